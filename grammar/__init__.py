@@ -1,0 +1,1 @@
+"""Language: text -> plan -> Python program, and plan -> plain words."""

@@ -1,0 +1,245 @@
+"""A plan: what a sentence means, as typed data, before it becomes a program.
+
+A plan is a list of steps over the robot methods of `robot_api.methods`, with conditions, loops and
+remembered values; it is the language-independent middle of the project. `grammar.program` writes
+it as Python, `grammar.explain` as plain words; `schema()` gives its JSON Schema. Every node is a
+tagged `msgspec.Struct`, so `to_data` and `from_data` round-trip through JSON.
+
+Richer commands ("bring the stapler from the supply room to Alice") are not nodes of their own: they
+are spelled out as the calls they consist of, so that what is explained is what is done.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+
+
+class Node(
+    msgspec.Struct, frozen=True, tag_field="is", omit_defaults=True, forbid_unknown_fields=True
+):
+    """Base of everything in a plan."""
+
+
+# --- values --------------------------------------------------------------------------------------
+
+
+class Text(Node, frozen=True, tag="text"):
+    """A fixed text, or a name the world knows, in the world's own spelling."""
+
+    value: str
+
+
+class Number(Node, frozen=True, tag="number"):
+    """A number in the unit of the parameter it is for (metres, degrees, seconds, percent)."""
+
+    value: int | float
+
+
+class Truth(Node, frozen=True, tag="truth"):
+    value: bool
+
+
+class Recall(Node, frozen=True, tag="recall"):
+    """The value a former step saved under this name, or the variable of a loop around."""
+
+    name: str
+
+
+class Items(Node, frozen=True, tag="items"):
+    """A list."""
+
+    items: tuple[Value, ...]
+
+
+class Ask(Node, frozen=True, tag="ask"):
+    """The result of a robot method: `robot.count("person")`. `field` picks a part of the result,
+    such as the time of the clock."""
+
+    method: str
+    arguments: dict[str, Value] = {}
+    field: str | None = None
+
+
+class Sentence(Node, frozen=True, tag="sentence"):
+    """Words put together from fixed texts and values: an f-string."""
+
+    parts: tuple[Value, ...]
+
+
+class Length(Node, frozen=True, tag="length"):
+    """How many items a list has."""
+
+    of: Value
+
+
+class Share(Node, frozen=True, tag="share"):
+    """What percentage `part` is of `whole`, a whole number; 0 if there is no whole."""
+
+    part: Value
+    whole: Value
+
+
+class Choice(Node, frozen=True, tag="choice"):
+    """One of the items, at random."""
+
+    among: Value
+
+
+Value = Text | Number | Truth | Recall | Items | Ask | Sentence | Length | Share | Choice
+
+
+# --- conditions ----------------------------------------------------------------------------------
+
+
+class Holds(Node, frozen=True, tag="holds"):
+    """The value is true (`sees`, `find`, `wait_for`)."""
+
+    value: Value
+
+
+class Compare(Node, frozen=True, tag="compare"):
+    """Two values compared: one of == != < <= > >=; `in` for an item of a list or a part of a text
+    (upper and lower case count as the same in texts)."""
+
+    left: Value
+    operator: str
+    right: Value
+
+
+class Not(Node, frozen=True, tag="not"):
+    condition: Condition
+
+
+class Both(Node, frozen=True, tag="and"):
+    conditions: tuple[Condition, ...]
+
+
+class Either(Node, frozen=True, tag="or"):
+    conditions: tuple[Condition, ...]
+
+
+Condition = Holds | Compare | Not | Both | Either
+
+
+# --- steps ---------------------------------------------------------------------------------------
+
+
+class Call(Node, frozen=True, tag="call"):
+    """Call a robot method; `save_as` remembers its result under a name."""
+
+    method: str
+    arguments: dict[str, Value] = {}
+    save_as: str | None = None
+
+
+class Remember(Node, frozen=True, tag="remember"):
+    """Keep a value under a name."""
+
+    name: str
+    value: Value
+
+
+class Collect(Node, frozen=True, tag="collect"):
+    """Add a value to the list of this name (`Remember(name, Items(()))` makes it first)."""
+
+    name: str
+    value: Value
+
+
+class Increase(Node, frozen=True, tag="increase"):
+    """Add one to the number of this name."""
+
+    name: str
+
+
+class If(Node, frozen=True, tag="if"):
+    condition: Condition
+    then: tuple[Step, ...]
+    otherwise: tuple[Step, ...] = ()
+
+
+class Repeat(Node, frozen=True, tag="repeat"):
+    """Do it so many times."""
+
+    times: Value
+    steps: tuple[Step, ...]
+
+
+class ForEach(Node, frozen=True, tag="for each"):
+    """Do it for every item, which goes by the name `variable` inside."""
+
+    variable: str
+    items: Value
+    steps: tuple[Step, ...]
+
+
+class While(Node, frozen=True, tag="while"):
+    """Do it as long as the condition holds; checked before each round."""
+
+    condition: Condition
+    steps: tuple[Step, ...]
+
+
+class RepeatUntil(Node, frozen=True, tag="repeat until"):
+    """Do it again and again; checked after each round."""
+
+    condition: Condition
+    steps: tuple[Step, ...]
+
+
+class Forever(Node, frozen=True, tag="forever"):
+    """Do it until somebody stops the robot."""
+
+    steps: tuple[Step, ...]
+
+
+class Try(Node, frozen=True, tag="try"):
+    """Do it, and if the robot fails at it, do the other."""
+
+    steps: tuple[Step, ...]
+    otherwise: tuple[Step, ...]
+
+
+class End(Node, frozen=True, tag="end"):
+    """Leave the innermost loop."""
+
+
+Step = (
+    Call
+    | Remember
+    | Collect
+    | Increase
+    | If
+    | Repeat
+    | ForEach
+    | While
+    | RepeatUntil
+    | Forever
+    | Try
+    | End
+)
+
+
+class Plan(msgspec.Struct, frozen=True):
+    """The whole: steps in order, and the language they were said in."""
+
+    steps: tuple[Step, ...]
+    language: str = "en"
+
+
+def to_data(plan: Plan) -> dict[str, Any]:
+    """The plan as plain data for JSON."""
+    data: dict[str, Any] = msgspec.to_builtins(plan)
+    return data
+
+
+def from_data(data: Any) -> Plan:
+    """The plan of such data. Raises `msgspec.ValidationError`, whose message names the spot."""
+    return msgspec.convert(data, Plan)
+
+
+def schema() -> dict[str, Any]:
+    """The JSON Schema of a plan."""
+    return msgspec.json.schema(Plan)
