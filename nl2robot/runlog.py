@@ -1,0 +1,232 @@
+"""The log of every run, in SQLite: heard, understood, program, who approved it, each call.
+
+Each fact is committed as it happens (write-ahead log), so a crash or a kill loses nothing that was
+done. A run that was never finished reads as "interrupted". When a line cannot be written (a full
+disk), `LogError` is raised: the caller stops the robot, because what is not logged is not done.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+_SCHEMA = """
+CREATE TABLE IF NOT EXISTS runs (
+    id INTEGER PRIMARY KEY,
+    started REAL NOT NULL,           -- seconds since the epoch
+    finished REAL,
+    heard TEXT,                      -- what the recogniser heard, if it was spoken
+    utterance TEXT,
+    language TEXT,
+    plan TEXT,                       -- JSON
+    program TEXT NOT NULL,
+    sha256 TEXT NOT NULL,            -- of exactly this program, which is what was approved
+    approved_by TEXT NOT NULL,
+    approved_at REAL NOT NULL,
+    world TEXT,
+    seed INTEGER,
+    robot TEXT,
+    status TEXT,                     -- done | failed | stopped | limit; NULL while it runs
+    message TEXT,
+    picture TEXT                     -- path of the picture of the run
+);
+CREATE TABLE IF NOT EXISTS calls (
+    run INTEGER NOT NULL REFERENCES runs(id),
+    number INTEGER NOT NULL,         -- from 1
+    line INTEGER NOT NULL,
+    method TEXT NOT NULL,
+    arguments TEXT NOT NULL,         -- JSON
+    started REAL NOT NULL,
+    seconds REAL,                    -- NULL: never came back
+    result TEXT,                     -- JSON
+    error TEXT,                      -- the error's name and sentence
+    PRIMARY KEY (run, number)
+);
+CREATE TABLE IF NOT EXISTS output (
+    run INTEGER NOT NULL REFERENCES runs(id),
+    time REAL NOT NULL,
+    text TEXT NOT NULL
+);
+PRAGMA user_version = 1;
+"""
+
+
+class LogError(Exception):
+    """The run log cannot be read or written."""
+
+
+class Run(msgspec.Struct, frozen=True, kw_only=True):
+    """A row of `runs`; see the schema above for what the fields mean."""
+
+    id: int
+    started: float
+    finished: float | None
+    heard: str | None
+    utterance: str | None
+    language: str | None
+    plan: str | None
+    program: str
+    sha256: str
+    approved_by: str
+    approved_at: float
+    world: str | None
+    seed: int | None
+    robot: str | None
+    status: str | None
+    message: str | None
+    picture: str | None
+
+
+class LoggedCall(msgspec.Struct, frozen=True, kw_only=True):
+    """A robot call of a run. `arguments` and `result` are JSON."""
+
+    number: int
+    line: int
+    method: str
+    arguments: str
+    started: float
+    seconds: float | None
+    result: str | None
+    error: str | None
+
+
+class RunLog:
+    """The log in one file; safe to use from several threads and processes."""
+
+    def __init__(self, path: Path | str) -> None:
+        self.path = Path(path)
+        self._lock = threading.Lock()
+        with self._trouble():
+            if str(path) != ":memory:":
+                self.path.parent.mkdir(parents=True, exist_ok=True)
+            self._db = sqlite3.connect(path, check_same_thread=False, isolation_level=None)
+            self._db.execute("PRAGMA journal_mode=WAL")
+            self._db.execute("PRAGMA busy_timeout=5000")
+            self._db.executescript(_SCHEMA)
+
+    def close(self) -> None:
+        with self._lock:
+            self._db.close()
+
+    # --- writing
+
+    def begin(
+        self,
+        *,
+        program: str,
+        sha256: str,
+        approved_by: str,
+        approved_at: float,
+        utterance: str | None = None,
+        heard: str | None = None,
+        language: str | None = None,
+        plan: str | None = None,
+        world: str | None = None,
+        seed: int | None = None,
+        robot: str | None = None,
+    ) -> int:
+        """Note that an approved program starts; returns the run's number."""
+        values = {
+            "started": time.time(),
+            "program": program,
+            "sha256": sha256,
+            "approved_by": approved_by,
+            "approved_at": approved_at,
+            "utterance": utterance,
+            "heard": heard,
+            "language": language,
+            "plan": plan,
+            "world": world,
+            "seed": seed,
+            "robot": robot,
+        }
+        cursor = self._write(
+            f"INSERT INTO runs ({', '.join(values)}) VALUES ({', '.join('?' * len(values))})",
+            *values.values(),
+        )
+        return int(cursor.lastrowid or 0)
+
+    def call_begins(self, run: int, number: int, line: int, method: str, arguments: str) -> None:
+        self._write(
+            "INSERT INTO calls (run, number, line, method, arguments, started)"
+            " VALUES (?, ?, ?, ?, ?, ?)",
+            *(run, number, line, method, arguments, time.time()),
+        )
+
+    def call_ends(
+        self,
+        run: int,
+        number: int,
+        seconds: float,
+        *,
+        result: str | None = None,
+        error: str | None = None,
+    ) -> None:
+        self._write(
+            "UPDATE calls SET seconds = ?, result = ?, error = ? WHERE run = ? AND number = ?",
+            *(seconds, result, error, run, number),
+        )
+
+    def printed(self, run: int, text: str) -> None:
+        self._write("INSERT INTO output VALUES (?, ?, ?)", run, time.time(), text)
+
+    def end(self, run: int, status: str, message: str | None) -> None:
+        self._write(
+            "UPDATE runs SET finished = ?, status = ?, message = ? WHERE id = ?",
+            *(time.time(), status, message, run),
+        )
+
+    def picture(self, run: int, path: str) -> None:
+        self._write("UPDATE runs SET picture = ? WHERE id = ?", path, run)
+
+    # --- reading
+
+    def runs(self, last: int = 20) -> list[Run]:
+        """The newest runs, newest first."""
+        rows = self._read("SELECT * FROM runs ORDER BY id DESC LIMIT ?", last)
+        return [Run(**row) for row in rows]
+
+    def run(self, number: int) -> Run | None:
+        rows = self._read("SELECT * FROM runs WHERE id = ?", number)
+        return Run(**rows[0]) if rows else None
+
+    def calls(self, run: int) -> list[LoggedCall]:
+        rows = self._read(
+            "SELECT number, line, method, arguments, started, seconds, result, error"
+            " FROM calls WHERE run = ? ORDER BY number",
+            run,
+        )
+        return [LoggedCall(**row) for row in rows]
+
+    def output(self, run: int) -> list[str]:
+        rows = self._read("SELECT text FROM output WHERE run = ? ORDER BY time, rowid", run)
+        return [row["text"] for row in rows]
+
+    # --- the file
+
+    def _write(self, sql: str, *values: Any) -> sqlite3.Cursor:
+        with self._lock, self._trouble():
+            return self._db.execute(sql, values)
+
+    def _read(self, sql: str, *values: Any) -> list[dict[str, Any]]:
+        with self._lock, self._trouble():
+            cursor = self._db.execute(sql, values)
+            names = [column[0] for column in cursor.description]
+            return [dict(zip(names, row, strict=True)) for row in cursor]
+
+    @contextmanager
+    def _trouble(self) -> Iterator[None]:
+        try:
+            yield
+        except (sqlite3.Error, OSError) as error:
+            raise LogError(
+                f"The run log {self.path} cannot be used ({error})."
+                " Free some disk space or check the folder's rights, then try again."
+            ) from error

@@ -1,0 +1,104 @@
+"""The log tells afterwards what was heard, approved and done, whatever happened in between."""
+
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import textwrap
+import time
+
+import pytest
+
+from nl2robot.runlog import LogError, RunLog
+
+ROUND = {
+    "program": 'robot.say("Good night.")\n',
+    "sha256": "0" * 64,
+    "approved_by": "Nurse Kim",
+    "approved_at": 1000.0,
+    "utterance": "say good night",
+}
+
+
+@pytest.fixture
+def log(tmp_path):
+    log = RunLog(tmp_path / "runs.sqlite")
+    yield log
+    log.close()
+
+
+def test_a_night_round_is_found_again(log) -> None:
+    run = log.begin(**ROUND, heard="say good night", world="ward", seed=3)
+    log.call_begins(run, 1, 1, "say", '{"text":"Good night."}')
+    log.call_ends(run, 1, 0.5, result="null")
+    log.call_begins(run, 2, 2, "goto", '{"place":"attic"}')
+    log.call_ends(run, 2, 0.1, error="UnknownPlace: There is no attic.")
+    log.printed(run, "done\n")
+    log.end(run, "failed", "There is no attic.")
+
+    [row] = log.runs()
+    assert (row.utterance, row.approved_by, row.status) == ("say good night", "Nurse Kim", "failed")
+    assert (row.heard, row.world, row.seed) == ("say good night", "ward", 3)
+    said, went = log.calls(run)
+    assert (said.method, said.result, said.error) == ("say", "null", None)
+    assert went.error == "UnknownPlace: There is no attic."
+    assert log.output(run) == ["done\n"]
+
+
+def test_the_newest_run_comes_first(log) -> None:
+    first, second = log.begin(**ROUND), log.begin(**ROUND)
+    assert [row.id for row in log.runs()] == [second, first]
+    assert log.run(first).status is None, "a run that was never ended has no status"
+    assert log.run(99) is None
+
+
+def test_a_killed_program_loses_nothing_that_was_done(tmp_path) -> None:
+    path = tmp_path / "runs.sqlite"
+    script = textwrap.dedent(f"""
+        import time
+        from nl2robot.runlog import RunLog
+        log = RunLog({str(path)!r})
+        run = log.begin(**{ROUND!r})
+        log.call_begins(run, 1, 1, "say", "{{}}")
+        print("begun", flush=True)
+        time.sleep(60)
+    """)
+    process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE)
+    assert process.stdout.readline() == b"begun\n"
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+
+    log = RunLog(path)
+    [row] = log.runs()
+    [call] = log.calls(row.id)
+    assert row.status is None
+    assert (call.method, call.seconds) == ("say", None), "it never came back"
+
+
+def test_a_full_disk_is_said_and_the_log_stays_readable(tmp_path) -> None:
+    log = RunLog(tmp_path / "runs.sqlite")
+    log.begin(**ROUND)
+    pages = log._db.execute("PRAGMA page_count").fetchone()[0]
+    log._db.execute(f"PRAGMA max_page_count = {pages}")  # SQLite's own "disk full"
+    with pytest.raises(LogError, match=r"full.*Free some disk space"):
+        for _ in range(1000):
+            log.begin(**{**ROUND, "program": "x" * 10_000})
+    assert RunLog(tmp_path / "runs.sqlite").run(1).utterance == "say good night"
+
+
+def test_a_file_that_is_no_log_is_refused_with_a_sentence(tmp_path) -> None:
+    path = tmp_path / "runs.sqlite"
+    path.write_bytes(b"this is no database" * 100)
+    with pytest.raises(LogError, match=r"cannot be used"):
+        RunLog(path)
+
+
+def test_two_processes_write_side_by_side(tmp_path) -> None:
+    one, other = RunLog(tmp_path / "runs.sqlite"), RunLog(tmp_path / "runs.sqlite")
+    numbers = [log.begin(**ROUND) for log in (one, other, one, other)]
+    assert len(set(numbers)) == 4
+    assert (
+        len(sqlite3.connect(tmp_path / "runs.sqlite").execute("SELECT 1 FROM runs").fetchall()) == 4
+    )
+    assert one.runs()[0].started <= time.time()
