@@ -1,0 +1,125 @@
+"""Random plans for property tests: any steps, any texts, valid by the method table."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hypothesis import strategies as st
+
+from grammar import plan as p
+from robot_api.methods import METHODS, Parameter
+
+WORDS = ("person", "red cup", "Alice's office", 'the "blue" room', "Größe", "pharmacy", "yes")
+NAMES = ("answer", "place", "class", "robot", "len", "Größe", "2 cups", "x")
+
+short_texts = st.one_of(st.sampled_from(WORDS), st.text(min_size=1, max_size=20)).map(p.Text)
+speeches = st.lists(st.sampled_from(WORDS), min_size=8, max_size=60).map(" ".join).map(p.Text)
+texts = st.one_of(short_texts, speeches)
+numbers = st.one_of(
+    st.integers(0, 100), st.floats(0, 100, allow_nan=False).map(lambda x: round(x, 2))
+).map(p.Number)
+names = st.sampled_from(NAMES)
+
+
+def of_kind(
+    parameter: Parameter, depth: int, text: st.SearchStrategy[p.Text]
+) -> st.SearchStrategy[p.Value]:
+    annotation = parameter.kind.annotation.removesuffix(" | None")
+    if annotation in ("int", "float"):
+        return numbers
+    if annotation == "list[str]":
+        return st.lists(text, min_size=1, max_size=4).map(lambda items: p.Items(tuple(items)))
+    return st.one_of(text, values(depth - 1)) if depth > 0 else text
+
+
+@st.composite
+def arguments(
+    draw: st.DrawFn, method: str, depth: int, text: st.SearchStrategy[p.Text] = short_texts
+) -> dict[str, p.Value]:
+    form = draw(st.sampled_from(METHODS[method].forms))
+    chosen: dict[str, Any] = {}
+    for parameter in form:
+        if parameter.required or draw(st.booleans()):
+            chosen[parameter.name] = draw(of_kind(parameter, depth, text))
+    return chosen
+
+
+@st.composite
+def asks(draw: st.DrawFn, depth: int) -> p.Ask:
+    giving = [name for name, method in METHODS.items() if method.returns.annotation != "None"]
+    method = draw(st.sampled_from(giving))
+    field = None
+    if method == "clock":
+        field = draw(st.sampled_from([None, "time", "weekday"]))
+    if method == "location":
+        field = draw(st.sampled_from([None, "place", "x"]))
+    return p.Ask(method, draw(arguments(method, depth - 1)), field)
+
+
+def values(depth: int = 2) -> st.SearchStrategy[p.Value]:
+    simple = st.one_of(short_texts, numbers, names.map(p.Recall), st.booleans().map(p.Truth))
+    if depth <= 0:
+        return simple
+    inner = values(depth - 1)
+    lists = st.lists(inner, max_size=4).map(lambda items: p.Items(tuple(items)))
+    return st.one_of(
+        simple,
+        asks(depth),
+        lists,
+        st.lists(inner, min_size=1, max_size=4).map(lambda parts: p.Sentence(tuple(parts))),
+        st.one_of(names.map(p.Recall), lists).map(p.Length),
+        st.builds(p.Share, inner, inner),
+        lists.map(p.Choice),
+    )
+
+
+def conditions(depth: int = 2) -> st.SearchStrategy[p.Condition]:
+    operators = st.sampled_from(["==", "!=", "<", "<=", ">", ">=", "in"])
+    simple = st.one_of(
+        st.builds(p.Holds, asks(1)), st.builds(p.Compare, values(1), operators, values(1))
+    )
+    if depth <= 0:
+        return simple
+    inner = conditions(depth - 1)
+    several = st.lists(inner, min_size=1, max_size=3).map(tuple)
+    return st.one_of(simple, inner.map(p.Not), several.map(p.Both), several.map(p.Either))
+
+
+@st.composite
+def calls(draw: st.DrawFn) -> p.Call:
+    method = draw(st.sampled_from(sorted(METHODS)))
+    returns = METHODS[method].returns.annotation != "None"
+    save_as = draw(st.one_of(st.none(), names)) if returns else None
+    return p.Call(method, draw(arguments(method, 2, texts)), save_as)
+
+
+def steps(depth: int = 2, in_loop: bool = False) -> st.SearchStrategy[p.Step]:
+    simple: list[st.SearchStrategy[p.Step]] = [
+        calls(),
+        st.builds(p.Remember, names, values()),
+        st.builds(p.Collect, names, values(1)),
+        names.map(p.Increase),
+    ]
+    if in_loop:
+        simple.append(st.just(p.End()))
+    if depth <= 0:
+        return st.one_of(*simple)
+    same = blocks(depth - 1, in_loop)
+    inside = blocks(depth - 1, True)
+    return st.one_of(
+        *simple,
+        st.builds(p.If, conditions(1), same, same),
+        st.builds(p.Repeat, st.one_of(numbers, names.map(p.Recall)), inside),
+        st.builds(p.ForEach, names, values(1), inside),
+        st.builds(p.While, conditions(1), inside),
+        st.builds(p.RepeatUntil, conditions(1), inside),
+        st.builds(p.Forever, inside),
+        st.builds(p.Try, same, same),
+    )
+
+
+def blocks(depth: int, in_loop: bool) -> st.SearchStrategy[tuple[p.Step, ...]]:
+    return st.lists(steps(depth, in_loop), max_size=3).map(tuple)
+
+
+plans = st.lists(steps(), max_size=6).map(lambda some: p.Plan(tuple(some)))
