@@ -1,0 +1,350 @@
+"""Reads a world's YAML and reports everything that is wrong with it, line by line.
+
+The text is composed into YAML nodes, which know their lines; `_Reader` walks them by the fields
+that a world has, so nothing in a file can make it build more than a world. Names are taken as they
+are written (`yes`, `12:30` and `0042` stay what they look like). What refers to something else is
+checked in the end, when all names are known.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, ClassVar, TypeVar
+
+from yaml.nodes import MappingNode, Node, ScalarNode
+
+from sim import world as w
+from sim.world import Place, Point, Segment, World, WorldError
+from sim.world_checks import Entries, cut_doors, kind_of, settle
+from sim.world_yaml import MAX_TEXT, Hopeless, NodeReader, compose, short
+
+MAX_WALLS = 20_000
+MAX_PIXELS = 8192
+"""Of a map's width and height."""
+
+UNITS = {"m": 1.0, "cm": 0.01}
+DEGREES_PER_RADIAN = 180 / math.pi
+
+_T = TypeVar("_T")
+
+
+def read_world(path: Path) -> World:
+    """The world in this file. Raises `WorldError` with all problems."""
+    reader = _Reader(str(path))
+    try:
+        root = compose(path)
+        world = reader.ros_map(root, path) if is_ros_map(root) else reader.world(root, path)
+    except Hopeless as problem:
+        reader.problems.append(problem.problem)
+        raise WorldError(reader.file, reader.problems) from None
+    if reader.problems:
+        raise WorldError(reader.file, reader.problems)
+    return world
+
+
+def is_ros_map(root: Node) -> bool:
+    """Whether this is what ROS's map_server writes, not a world."""
+    if not isinstance(root, MappingNode):
+        return False
+    fields = {node.value for node, _ in root.value if isinstance(node, ScalarNode)}
+    return {"image", "resolution"} <= fields and not fields & {"name", "places", "map"}
+
+
+class _Reader(NodeReader):
+    """Reads nodes into structs; what it cannot read becomes a problem, and it reads on."""
+
+    FIELDS: ClassVar = {
+        "a world": (
+            "name units scale map walls wall_thickness robot places people objects furniture doors "
+            "contacts questions keep_out"
+        ),
+        "a map": "image resolution origin negate occupied_thresh free_thresh mode",
+        "the robot": "name start radius battery",
+        "a place": "name kind pose area in aliases",
+        "a person": "name kind at pose is answers gender walks aliases",
+        "an object": "name kind at on pose is code size weight aliases",
+        "a piece of furniture": "name kind at pose size aliases",
+        "a door": "name at from to open",
+        "a contact": "name kind aliases",
+        "a question": "ask answer",
+    }
+
+    # --- entries
+
+    def entries(
+        self, fields: dict[str, Node], name: str, read: Callable[[Node], _T | None]
+    ) -> list[tuple[int, _T]]:
+        """Each entry of the list of this name with its line; those that cannot be read are left
+        out."""
+        if name not in fields:
+            return []
+        read_entries = [
+            (self.line(node), read(node)) for node in self.items(fields[name], f'"{name}"')
+        ]
+        return [(line, entry) for line, entry in read_entries if entry is not None]
+
+    def name(self, fields: dict[str, Node], node: Node, what: str) -> str | None:
+        if "name" in fields:
+            return self.text(fields["name"], f"The name of {what}")
+        if isinstance(node, MappingNode):
+            self.problem(self.line(node), f"{what.capitalize()} has no name. Give it one.")
+        return None
+
+    def _common(self, fields: dict[str, Node], what: str) -> dict[str, Any]:
+        """The fields that mean the same for everything."""
+        values: dict[str, Any] = {}
+        for field in ("kind", "at", "on", "gender", "code", "in"):
+            if field in fields:
+                values[field] = self.text(fields[field], f'"{field}" of {what}')
+        for field in ("is", "walks"):
+            if field in fields:
+                values[field] = self.texts(fields[field], f'"{field}" of {what}')
+        if "pose" in fields:
+            values["pose"] = self.pose(fields["pose"], f"The pose of {what}")
+        if "aliases" in fields:
+            values["aliases"] = self.languages(fields["aliases"], f"The aliases of {what}")
+        for field, attribute in (("is", "is_"), ("in", "inside")):
+            if field in values:
+                values[attribute] = values.pop(field)
+        return {field: value for field, value in values.items() if value is not None}
+
+    def place(self, node: Node) -> Place | None:
+        fields = self.mapping(node, "a place")
+        name = self.name(fields, node, "a place")
+        what = f'"{name}"'
+        values = self._common(fields, what)
+        if "area" in fields:
+            values["area"] = self.polygon(fields["area"], f"The area of {what}")
+        if name is None:
+            return None
+        return Place(**{"name": name, "kind": kind_of(name), **values})
+
+    def person(self, node: Node) -> w.Person | None:
+        fields = self.mapping(node, "a person")
+        name = self.name(fields, node, "a person")
+        values = self._common(fields, f'"{name}"')
+        if "answers" in fields:
+            values["answers"] = self.texts(fields["answers"], f'The answers of "{name}"', MAX_TEXT)
+        return None if name is None else w.Person(name=name, **values)
+
+    def thing(self, node: Node) -> w.Thing | None:
+        fields = self.mapping(node, "an object")
+        name = self.name(fields, node, "an object")
+        values = self._common(fields, f'"{name}"')
+        if "size" in fields:
+            values["size"] = self.size(fields["size"], f'The size of "{name}"', 3)
+        if "weight" in fields:
+            values["weight"] = self.number(fields["weight"], f'The weight of "{name}"', 0, 10_000)
+        if name is None:
+            return None
+        return w.Thing(**{"name": name, "kind": kind_of(name), **values})
+
+    def piece(self, node: Node) -> w.Furniture | None:
+        fields = self.mapping(node, "a piece of furniture")
+        name = self.name(fields, node, "a piece of furniture")
+        values = self._common(fields, f'"{name}"')
+        if "size" in fields and (size := self.size(fields["size"], f'The size of "{name}"', 2)):
+            values["size"] = size
+        if name is None:
+            return None
+        return w.Furniture(**{"name": name, "kind": kind_of(name), **values})
+
+    def door(self, node: Node) -> w.Door | None:
+        fields = self.mapping(node, "a door")
+        values: dict[str, Any] = self._common(fields, "a door")
+        if "name" in fields:
+            values["name"] = self.text(fields["name"], "The name of a door")
+        if "open" in fields:
+            values["open"] = self.truth(fields["open"], '"open" of a door') is not False
+        ends: list[Point] = []
+        for end in ("from", "to"):
+            if end not in fields:
+                if isinstance(node, MappingNode):
+                    self.problem(
+                        self.line(node),
+                        f'A door has no "{end}". Give both ends of the opening: '
+                        "from: [x, y], to: [x, y].",
+                    )
+            elif pair := self.numbers(fields[end], f'"{end}" of a door', "[x, y]", (2,)):
+                point = self.point(pair, f'"{end}" of a door')
+                ends += [point] if point else []
+        if len(ends) < 2:
+            return None
+        return w.Door(ends=(*ends[0], *ends[1]), **values)
+
+    def contact(self, node: Node) -> w.Contact | None:
+        if isinstance(node, ScalarNode):
+            name = self.text(node, "A contact")
+            return w.Contact(name=name) if name else None
+        fields = self.mapping(node, "a contact")
+        name = self.name(fields, node, "a contact")
+        values = self._common(fields, f'"{name}"')
+        return None if name is None else w.Contact(name=name, **values)
+
+    def question(self, node: Node) -> w.Question | None:
+        fields = self.mapping(node, "a question")
+        if isinstance(node, MappingNode):
+            for field in ("ask", "answer"):
+                if field not in fields:
+                    self.problem(
+                        self.line(node),
+                        f'A question has no "{field}". It needs "ask" and "answer".',
+                    )
+        if not {"ask", "answer"} <= set(fields):
+            return None
+        ask = self.languages(fields["ask"], "A question", MAX_TEXT)
+        answers = self.languages(fields["answer"], "An answer", MAX_TEXT)
+        return w.Question(ask=ask, answer={code: texts[0] for code, texts in answers.items()})
+
+    def walls(self, node: Node) -> list[Segment]:
+        """Each wall is a line through two or more points: [x1, y1, x2, y2, x3, y3, ...]."""
+        segments: list[Segment] = []
+        for item in self.items(node, '"walls"', MAX_WALLS):
+            numbers = self.numbers(item, "A wall", "[x1, y1, x2, y2, ...]", range(4, 2001, 2))
+            points = [
+                self.point(pair, "a wall") for pair in zip(numbers[::2], numbers[1::2], strict=True)
+            ]
+            for one, two in itertools.pairwise(points):
+                if one is not None and two is not None and one != two:
+                    segments.append((*one, *two))
+        return segments
+
+    def robot(self, node: Node) -> w.Robot:
+        fields = self.mapping(node, "the robot")
+        values: dict[str, Any] = {}
+        if "name" in fields:
+            values["name"] = self.text(fields["name"], "The robot's name")
+        if "start" in fields:
+            start = fields["start"]
+            if isinstance(start, ScalarNode):
+                values["start"] = self.text(start, '"start" of the robot')
+            else:
+                values["start"] = self.pose(start, '"start" of the robot')
+        if "radius" in fields:
+            values["radius"] = self.length(fields["radius"], '"radius" of the robot', 0.05, 2)
+        if "battery" in fields:
+            values["battery"] = self.number(fields["battery"], '"battery" of the robot', 0, 100)
+        return w.Robot(**{name: value for name, value in values.items() if value is not None})
+
+    # --- maps
+
+    def map(self, node: Node, path: Path) -> w.GridMap | None:
+        """A map in the manner of ROS (metres, radians), or the name of a file that holds one."""
+        if isinstance(node, ScalarNode):
+            name = self.text(node, '"map"', MAX_TEXT)
+            if name is None:
+                return None
+            path = path.parent / name
+            try:
+                node = compose(path)
+            except Hopeless as error:
+                self.problem(self.line(node), f"The map {name}: {error.problem.message}")
+                return None
+        fields = self.mapping(node, "a map")
+        for field in ("image", "resolution", "origin"):
+            if field not in fields and isinstance(node, MappingNode):
+                self.problem(
+                    self.line(node),
+                    f'A map has no "{field}". It needs image, resolution and origin, as ROS\'s '
+                    "map_server writes them.",
+                )
+        if not {"image", "resolution", "origin"} <= set(fields):
+            return None
+        image = self.text(fields["image"], "The image of the map", MAX_TEXT)
+        resolution = self.number(fields["resolution"], "The resolution of the map", 0.001, 10)
+        origin = self.numbers(fields["origin"], "The origin of the map", "[x, y, radians]", (2, 3))
+        numbers = [self.number(item, "The origin of the map", -1e3, 1e3) for item in origin]
+        thresholds = {
+            field: self.number(fields[field], f'"{field}" of the map', 0, 1)
+            for field in ("occupied_thresh", "free_thresh")
+            if field in fields
+        }
+        negate = "negate" in fields and self.truth(fields["negate"], '"negate" of the map')
+        mode = self.text(fields["mode"], '"mode" of the map') if "mode" in fields else "trinary"
+        if mode not in ("trinary", "scale", None):
+            self.problem(
+                self.line(fields["mode"]),
+                'The map\'s mode is neither "trinary" nor "scale". Save the map in one of these.',
+            )
+        if image is None or resolution is None or not numbers or None in numbers:
+            return None
+        from sim.maps import ImageError, image_size
+
+        try:
+            size = image_size(path.parent / image)
+        except ImageError as error:
+            self.problem(self.line(fields["image"]), str(error))
+            return None
+        if max(size) > MAX_PIXELS:
+            self.problem(
+                self.line(fields["image"]),
+                f"The map is {size[0]} x {size[1]} pixels, more than {MAX_PIXELS}. Scale it down.",
+            )
+            return None
+        x, y, theta = [number for number in [*numbers, 0.0] if number is not None][:3]
+        return w.GridMap(
+            image=str(path.parent / image),
+            resolution=resolution,
+            origin=(x, y, theta * DEGREES_PER_RADIAN),
+            size=size,
+            negate=bool(negate),
+            **{field: value for field, value in thresholds.items() if value is not None},
+        )
+
+    def ros_map(self, root: Node, path: Path) -> World:
+        """A world that is nothing but a map."""
+        return World(name=path.stem, map=self.map(root, path), file=str(path))
+
+    # --- the whole
+
+    def world(self, root: Node, path: Path) -> World:
+        fields = self.mapping(root, "a world")
+        name = self.text(fields["name"], "The name of the world") if "name" in fields else None
+        units = self.text(fields["units"], '"units"') if "units" in fields else "m"
+        if units is not None and units not in UNITS:
+            self.problem(
+                self.line(fields["units"]),
+                f'The unit "{short(units)}" is unknown.'
+                ' Use "m" for metres or "cm" for centimetres.',
+            )
+        self.factor = UNITS.get(units or "m", 1.0)
+        if "scale" in fields:
+            self.factor *= self.number(fields["scale"], '"scale"', 1e-4, 1e4) or 1.0
+
+        places = self.entries(fields, "places", self.place)
+        people = self.entries(fields, "people", self.person)
+        objects = self.entries(fields, "objects", self.thing)
+        furniture = self.entries(fields, "furniture", self.piece)
+        doors = self.entries(fields, "doors", self.door)
+        contacts = self.entries(fields, "contacts", self.contact)
+        questions = self.entries(fields, "questions", self.question)
+        keep_out = self.entries(
+            fields, "keep_out", lambda node: self.polygon(node, '"keep_out"') or None
+        )
+        walls = self.walls(fields["walls"]) if "walls" in fields else []
+        thickness = (
+            self.length(fields["wall_thickness"], '"wall_thickness"', 0.01, 2)
+            if "wall_thickness" in fields
+            else None
+        )
+        grid = self.map(fields["map"], path) if "map" in fields else None
+        robot = self.robot(fields["robot"]) if "robot" in fields else w.Robot()
+
+        bare = World(
+            name=name or path.stem,
+            units=units if units in UNITS else "m",
+            places=tuple(place for _, place in places),
+            drawn_walls=cut_doors(walls, [door.ends for _, door in doors]),
+            wall_thickness=thickness or 0.1,
+            contacts=tuple(contact for _, contact in contacts),
+            questions=tuple(question for _, question in questions),
+            keep_out=tuple(polygon for _, polygon in keep_out),
+            map=grid,
+            file=str(path),
+        )
+        start_line = self.line(fields["robot"]) if "robot" in fields else 1
+        entries = Entries(places, people, objects, furniture, doors, contacts, (start_line, robot))
+        return settle(self, bare, walls, entries)
