@@ -1,0 +1,511 @@
+"""From a plan to plain words that a nurse can agree with.
+
+    "I will note where I am. Then, three times, I will wait for a person, ask “...”, ..."
+
+`explain_steps` gives a line for each step, indented as the steps are nested; `explain` makes
+sentences of them. The words come from the language's data file (`grammar.speech`); the order of
+things from here. Everything a step does and every text it uses is named, so that what is approved
+is what is done.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Final, assert_never
+
+from grammar import plan as p
+from grammar.inference import Types, walk
+from grammar.speech import Speech, Words, fill, fitting, forms, gaps, speech
+from robot_api.methods import METHODS
+
+ROLES: Final = {
+    "thing": "thing",
+    "person": "thing",
+    "place": "place",
+    "to": "place",
+    "where": "place",
+    "kind": "bare",
+    "name": "bare",
+    "contact": "bare",
+    "code": "bare",
+    "language": "bare",
+    "options": "options",
+}
+"""How a parameter's text is put into a sentence; all others are quoted."""
+
+
+def explain(plan: p.Plan, language: str = "en") -> str:
+    """The plan in sentences."""
+    return sentences(tell(plan, speech(language)), speech(language))
+
+
+def explain_steps(plan: p.Plan, language: str = "en") -> list[tuple[int, str]]:
+    """The plan as a list of (depth, text), a line for each thing that is done."""
+    return listed(tell(plan, speech(language)), speech(language))
+
+
+@dataclass(frozen=True)
+class Told:
+    """A step in words: something to do, or a clause ("three times") over other steps."""
+
+    text: str
+    steps: tuple[Told, ...] = ()
+    is_clause: bool = False
+    continues: bool = False
+    """Whether it belongs to the one before it ("otherwise")."""
+
+
+def tell(plan: p.Plan, words: Speech) -> tuple[Told, ...]:
+    """The steps of a plan in words."""
+    return tuple(_Teller(words, plan).told(plan.steps))
+
+
+# --- putting together ----------------------------------------------------------------------------
+
+
+def sentences(told: Sequence[Told], words: Speech) -> str:
+    """Steps as sentences: simple ones that follow each other in one, every clause in its own."""
+    written: list[str] = []
+    simple: list[str] = []
+
+    def finish() -> None:
+        if simple:
+            pattern = words.sentences["next" if written else "first"]
+            written.append(fill(pattern, {"steps": _joined(simple, words)}))
+            simple.clear()
+
+    for each in told:
+        if not each.is_clause:
+            simple.append(each.text)
+            continue
+        finish()
+        each = _merged(each, words)
+        kind = "other_clause" if each.continues else "next_clause" if written else "first_clause"
+        steps = _inner(each.steps, words)
+        if any(inner.is_clause for inner in each.steps):
+            steps = fill(words.sentences["nested"], {"steps": steps})
+        written.append(fill(words.sentences[kind], {"clause": each.text, "steps": steps}))
+    finish()
+    if not written:
+        return _capital(fill(words.sentences["first"], {"steps": words.sentences["nothing"]}))
+    return " ".join(_capital(sentence) for sentence in written)
+
+
+def listed(told: Iterable[Told], words: Speech, depth: int = 0) -> list[tuple[int, str]]:
+    lines: list[tuple[int, str]] = []
+    for each in told:
+        if each.is_clause:
+            lines.append((depth, f"{each.text}:"))
+            lines += listed(each.steps, words, depth + 1) or [
+                (depth + 1, words.sentences["nothing"])
+            ]
+        else:
+            lines.append((depth, each.text))
+    return lines
+
+
+def _inner(told: Sequence[Told], words: Speech) -> str:
+    """The steps under a clause, within its sentence."""
+    if not told:
+        return words.sentences["nothing"]
+    if not any(each.is_clause for each in told):
+        return _joined([each.text for each in told], words)
+    parts: list[str] = []
+    for each in told:
+        if not each.is_clause:
+            parts.append(each.text)
+            continue
+        each = _merged(each, words)
+        pattern = words.joining["single" if len(each.steps) < 2 else "several"]
+        if any(inner.is_clause for inner in each.steps):
+            pattern = words.joining["several"]
+        parts.append(fill(pattern, {"clause": each.text, "steps": _inner(each.steps, words)}))
+    return words.joining["semicolon"].join(parts)
+
+
+def _merged(told: Told, words: Speech) -> Told:
+    """A clause over nothing but another clause as one: "for each of the offices, if ..."."""
+    while len(told.steps) == 1 and told.steps[0].is_clause:
+        inner = told.steps[0]
+        text = fill(words.joining["clauses"], {"outer": told.text, "inner": inner.text})
+        told = replace(told, text=text, steps=inner.steps)
+    return told
+
+
+def _joined(texts: Sequence[str], words: Speech) -> str:
+    if len(texts) == 1:
+        return texts[0]
+    last = words.joining["two" if len(texts) == 2 else "last"]
+    return words.joining["comma"].join(texts[:-1]) + last + texts[-1]
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+# --- steps, conditions and values in words -------------------------------------------------------
+
+
+@dataclass
+class _Teller:
+    words: Speech
+    plan: p.Plan
+    types: Types = field(init=False)
+    results: dict[str, str] = field(init=False, default_factory=dict)
+    """What each remembered name is called wherever it is spoken of."""
+    short: dict[str, str] = field(init=False, default_factory=dict)
+    """What it may be called while it is the latest of its sort: "the answer"."""
+    latest: dict[str, str] = field(init=False, default_factory=dict)
+    """For each such short way the name that it means at this point of the plan."""
+    told_apart: set[str] = field(init=False, default_factory=set)
+    """The names whose spelling is needed to tell them from another."""
+
+    def __post_init__(self) -> None:
+        self.types = Types(self.plan)
+        self._name_results()
+
+    def _name_results(self) -> None:
+        """Give everything remembered words of its own: the shortest that nothing else has."""
+        choices: dict[str, list[str]] = {}
+        for step in walk(self.plan.steps):
+            match step:
+                case p.Call(save_as=str() as name) | p.Remember(name=name):
+                    pass
+                case p.ForEach(variable=name):
+                    pass
+                case _:
+                    continue
+            wishes = list(self._called(name, step))
+            known = choices.setdefault(name, wishes)
+            if known != wishes:  # made in several ways: only what they have in common
+                choices[name] = [wish for wish in known if wish in wishes] or [
+                    self.named(name.replace("_", " "))
+                ]
+        for name, wishes in choices.items():
+            self.short[name] = wishes[0]
+            taken = {wish for other, them in choices.items() if other != name for wish in them}
+            free = [wish for wish in wishes if wish not in taken]
+            if free:
+                self.results[name] = free[0]
+            else:
+                self.told_apart.add(name)
+                values = {"value": wishes[0], "name": name.replace("_", " ")}
+                self.results[name] = fill(self.words.values["told apart"], values)
+
+    def forget(self, steps: Iterable[p.Step]) -> None:
+        """After or before steps that may run or not: what they make is no longer just the latest,
+        unless it would be the same anyway."""
+        for step in walk(steps):
+            if isinstance(step, p.Call) and step.save_as:
+                short = self.short[step.save_as]
+                if self.latest.get(short) != step.save_as:
+                    self.latest.pop(short, None)
+
+    def _called(self, name: str, step: p.Step) -> Iterator[str]:
+        readable = name.replace("_", " ")
+        match step:
+            case p.Call():
+                words = self.words.methods[step.method]
+                if words.first and self.plan.steps and step is self.plan.steps[0]:
+                    yield words.first
+                    return
+                given = step.arguments.keys()
+                patterns = [each for each in words.result if gaps(each) <= given]
+                yield from (self.filled(each, step.arguments) for each in patterns)
+                if not patterns:
+                    yield self.named(readable)
+            case p.ForEach():
+                yield fill(self.words.values["item"], {"name": readable})
+            case _:
+                yield self.named(readable)
+
+    def named(self, name: str) -> str:
+        return fill(self.words.values["named"], {"name": name})
+
+    # --- steps
+
+    def told(self, steps: Iterable[p.Step]) -> Iterator[Told]:
+        for step in steps:
+            yield from self.step(step)
+
+    def step(self, step: p.Step) -> Iterator[Told]:
+        say = self.words.steps
+        match step:
+            case p.Call():
+                yield Told(self.call(step))
+            case p.Remember(value=p.Items(items=())):
+                yield Told(fill(say["empty"], {"name": self.recall(step.name)}))
+            case p.Remember():
+                pattern = say["start" if isinstance(step.value, p.Number) else "remember"]
+                values = {"value": self.value(step.value), "name": self.recall(step.name)}
+                yield Told(fill(pattern, values))
+            case p.Collect():
+                values = {"value": self.value(step.value), "name": self.recall(step.name)}
+                yield Told(fill(say["collect"], values))
+            case p.Increase():
+                yield Told(fill(say["increase"], {"name": self.recall(step.name)}))
+            case p.End():
+                yield Told(say["end"])
+            case p.If():
+                yield from self.branches(step)
+            case p.Repeat():
+                yield self.loop("repeat", step.steps, times=self.times(step.times))
+            case p.ForEach():
+                yield self.loop("for each", step.steps, items=self.value(step.items))
+            case p.While():
+                yield self.loop("while", step.steps, condition=self.condition(step.condition))
+            case p.RepeatUntil():
+                condition = self.condition(step.condition)
+                yield self.loop("repeat until", step.steps, condition=condition)
+            case p.Forever():
+                yield self.loop("forever", step.steps)
+            case p.Try():
+                yield self.clause("try", step.steps)
+                self.forget(step.steps)
+                if step.otherwise:
+                    yield self.clause("failed", step.otherwise, continues=True)
+                    self.forget(step.otherwise)
+            case _:
+                assert_never(step)
+
+    def branches(self, step: p.If) -> Iterator[Told]:
+        """If, otherwise if, otherwise: one after the other."""
+        whole = step
+        before = dict(self.latest)
+        yield self.clause("if", step.then, condition=self.condition(step.condition))
+        while True:
+            self.latest = dict(before)
+            match step.otherwise:
+                case ():
+                    break
+                case (p.If() as inner,):
+                    step = inner
+                    clause = self.clause("if", step.then, condition=self.condition(step.condition))
+                    values = {"outer": self.words.clauses["otherwise"], "inner": clause.text}
+                    text = fill(self.words.joining["clauses"], values)
+                    yield replace(clause, text=text, continues=True)
+                case others:
+                    yield self.clause("otherwise", others, continues=True)
+                    break
+        self.latest = before
+        self.forget((whole,))
+
+    def loop(self, kind: str, steps: tuple[p.Step, ...], **values: str) -> Told:
+        self.forget(steps)
+        told = self.clause(kind, steps, False, **values)
+        if not steps and kind not in ("repeat", "for each"):
+            told = replace(told, steps=(Told(self.words.steps["pause"]),))
+        self.forget(steps)
+        return told
+
+    def clause(
+        self, kind: str, steps: tuple[p.Step, ...], continues: bool = False, **values: str
+    ) -> Told:
+        text = fill(self.words.clauses[kind], values)
+        return Told(text, tuple(self.told(steps)), is_clause=True, continues=continues)
+
+    def call(self, step: p.Call) -> str:
+        words = self.words.methods[step.method]
+        action = self.patterned(words.do, step.arguments)
+        if step.save_as:
+            self.latest[self.short[step.save_as]] = step.save_as
+        if step.save_as in self.told_apart:
+            return fill(
+                self.words.steps["save"],
+                {"action": action, "result": self.named(step.save_as.replace("_", " "))},
+            )
+        return action
+
+    def times(self, times: p.Value) -> str:
+        if isinstance(times, p.Number):
+            word = self.words.times.words.get(int(times.value))
+            if word and float(times.value).is_integer():
+                return word
+            return fill(self.words.times.number, {"number": self.value(times)})
+        return fill(self.words.times.value, {"value": self.value(times)})
+
+    # --- values
+
+    def patterned(self, patterns: tuple[str, ...], arguments: dict[str, p.Value]) -> str:
+        """The most specific pattern filled, and after it whatever it leaves out."""
+        pattern = fitting(patterns, set(arguments)) or patterns[-1]
+        text = self.filled(pattern, arguments)
+        left = [name for name in arguments if name not in gaps(pattern)]
+        if not left:
+            return text
+        told = (
+            f"{name.replace('_', ' ')}: {self.argument(name, arguments[name])}" for name in left
+        )
+        return f"{text} ({', '.join(told)})"
+
+    def filled(self, pattern: str, arguments: dict[str, p.Value]) -> str:
+        wanted = forms(pattern)
+        return fill(
+            pattern,
+            {
+                name: self.argument(name, arguments[name], form) if name in arguments else "…"
+                for name, form in wanted.items()
+            },
+        )
+
+    def argument(self, parameter: str, value: p.Value, form: str = "") -> str:
+        role = ROLES.get(parameter, "quoted")
+        nouns = self.words.nouns
+        match value:
+            case p.Text(value=text) if form == "plural":
+                return nouns.many(text)
+            case p.Text(value=text) if form == "the" or role == "place":
+                return nouns.the(text)
+            case p.Text(value=text) if role == "thing":
+                return nouns.indefinite(text)
+            case p.Text(value=text) if role == "bare":
+                return text
+            case p.Items() if role == "options":
+                return self.series(value.items, "or")
+            case p.Recall() if role == "place" and self._is_answer(value.name):
+                return fill(self.words.values["place"], {"value": self.value(value)})
+            case _:
+                return self.value(value)
+
+    def _is_answer(self, name: str) -> bool:
+        return any(
+            isinstance(step, p.Call)
+            and step.save_as == name
+            and METHODS[step.method].returns.annotation == "str"
+            for step in walk(self.plan.steps)
+        )
+
+    def recall(self, name: str) -> str:
+        short = self.short.get(name)
+        if short and self.latest.get(short) == name:
+            return short
+        return self.results.get(name) or self.named(name.replace("_", " "))
+
+    def value(self, value: p.Value) -> str:
+        say = self.words.values
+        match value:
+            case p.Text():
+                return fill(say["quoted"], {"text": value.value})
+            case p.Number():
+                number = value.value
+                whole = isinstance(number, float) and number.is_integer()
+                return str(int(number)) if whole else str(number)
+            case p.Truth():
+                return say["true" if value.value else "false"]
+            case p.Recall():
+                return self.recall(value.name)
+            case p.Items():
+                return self.series(value.items, "and")
+            case p.Ask():
+                return self.asked(value)
+            case p.Sentence():
+                return fill(say["quoted"], {"text": "".join(self._within_quotes(value.parts))})
+            case p.Length():
+                if self.types.of(value.of) == "int":
+                    return self.value(value.of)
+                return fill(say["length"], {"value": self.value(value.of)})
+            case p.Share():
+                values = {"part": self.value(value.part), "whole": self.value(value.whole)}
+                return fill(say["share"], values)
+            case p.Choice():
+                among = value.among
+                items = self.series(among.items, "or") if isinstance(among, p.Items) else None
+                return fill(say["choice"], {"value": items or self.value(among)})
+            case _:
+                assert_never(value)
+
+    def _within_quotes(self, parts: Iterable[p.Value]) -> Iterator[str]:
+        for part in parts:
+            match part:
+                case p.Text():
+                    yield part.value
+                case p.Sentence():
+                    yield from self._within_quotes(part.parts)
+                case _:
+                    yield fill(self.words.values["inserted"], {"value": self.value(part)})
+
+    def asked(self, ask: p.Ask) -> str:
+        words = self.words.methods[ask.method]
+        if ask.field in words.fields:
+            return words.fields[ask.field]
+        return self.patterned(words.value or words.do, ask.arguments)
+
+    def series(self, items: Sequence[p.Value], word: str) -> str:
+        told = [self.value(item) for item in items]
+        if not told:
+            return self.words.values["nothing"]
+        if len(told) == 1:
+            return told[0]
+        return self.words.values["comma"].join(told[:-1]) + self.words.values[word] + told[-1]
+
+    # --- conditions
+
+    def condition(self, condition: p.Condition, holds: bool = True) -> str:
+        say = self.words.conditions
+        match condition:
+            case p.Holds():
+                return self.holds(condition.value, holds)
+            case p.Compare():
+                return self.comparison(condition, holds)
+            case p.Not(condition=p.Both() | p.Either() as inner):
+                told = self.condition(inner)
+                return fill(say["not"], {"condition": told}) if holds else told
+            case p.Not():
+                return self.condition(condition.condition, not holds)
+            case p.Both() | p.Either():
+                if not condition.conditions:
+                    return say["always" if isinstance(condition, p.Both) else "never"]
+                word = say["and" if isinstance(condition, p.Both) else "or"]
+                if len(condition.conditions) == 1:
+                    return self.condition(condition.conditions[0], holds)
+                joined = word.join(self.operand(each) for each in condition.conditions)
+                return joined if holds else fill(say["not"], {"condition": joined})
+            case _:
+                assert_never(condition)
+
+    def operand(self, condition: p.Condition) -> str:
+        told = self.condition(condition)
+        if isinstance(condition, p.Both | p.Either) and len(condition.conditions) > 1:
+            return fill(self.words.conditions["group"], {"condition": told})
+        return told
+
+    def holds(self, value: p.Value, holds: bool) -> str:
+        say = self.words.conditions
+        match value:
+            case p.Truth():
+                return say["always" if value.value is holds else "never"]
+            case p.Ask(method=method, field=None):
+                words = self.words.methods[method]
+                pattern = words.holds if holds else words.fails
+                if pattern:
+                    return self.patterned((pattern,), value.arguments)
+            case _:
+                pass
+        return fill(say["holds" if holds else "fails"], {"value": self.value(value)})
+
+    def comparison(self, compare: p.Compare, holds: bool) -> str:
+        operator = compare.operator
+        values = {"left": self.value(compare.left), "right": self.value(compare.right)}
+        if operator == "in":
+            is_list = self.types.of(compare.right).startswith("list[")
+            operator = "among" if is_list else "in"
+            if isinstance(compare.right, p.Items):
+                values["right"] = self.series(compare.right.items, "or")
+        if not holds:
+            operator = _OPPOSITES[operator]
+        return fill(self.words.conditions[operator], values)
+
+
+_OPPOSITES: Final = {
+    "==": "!=",
+    "!=": "==",
+    "<": ">=",
+    ">=": "<",
+    ">": "<=",
+    "<=": ">",
+    "in": "not in",
+    "among": "not among",
+}
+
+__all__ = ["ROLES", "Told", "Words", "explain", "explain_steps", "listed", "sentences", "tell"]

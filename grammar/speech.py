@@ -1,0 +1,120 @@
+"""The words of explanations: a data file for each language, `languages/<code>/explain.yaml`.
+
+The file is read once, and checked against the shapes below, so that a phrase missing in a new
+language is noticed when it is loaded and not in front of a nurse.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+FOLDER = Path(__file__).with_name("languages")
+
+_GAP = re.compile(r"\{(\w+)(?:!(\w+))?\}")
+
+
+class Words(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What is said of one robot method; each list from the most to the least specific pattern."""
+
+    do: tuple[str, ...]
+    result: tuple[str, ...] = ()
+    first: str | None = None
+    value: tuple[str, ...] = ()
+    holds: str | None = None
+    fails: str | None = None
+    fields: dict[str, str] = {}
+
+
+class Times(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    number: str
+    words: dict[int, str]
+    value: str
+
+
+class Nouns(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    thing: tuple[str, ...]
+    place: tuple[str, ...]
+    bare: str
+    definite: str
+    vowels: str
+    plural: tuple[tuple[str, str], ...]
+
+    def indefinite(self, noun: str) -> str:
+        if re.fullmatch(self.definite, noun):
+            return self.the(noun)
+        return self._with_article(noun, self.thing)
+
+    def the(self, noun: str) -> str:
+        return self._with_article(noun, self.place)
+
+    def _with_article(self, noun: str, patterns: tuple[str, ...]) -> str:
+        if re.fullmatch(self.bare, noun):
+            return noun
+        before_vowel = noun[:1].lower() in self.vowels
+        return fill(patterns[-1 if before_vowel else 0], {"noun": noun})
+
+    def many(self, noun: str) -> str:
+        for pattern, replacement in self.plural:
+            changed, times = re.subn(pattern, replacement, noun, count=1)
+            if times:
+                return changed
+        return noun
+
+
+class Speech(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """All phrases of a language."""
+
+    sentences: dict[str, str]
+    joining: dict[str, str]
+    clauses: dict[str, str]
+    times: Times
+    steps: dict[str, str]
+    values: dict[str, str]
+    nouns: Nouns
+    conditions: dict[str, str]
+    methods: dict[str, Words]
+
+
+def languages() -> list[str]:
+    """The codes of the languages that plans can be explained in."""
+    return sorted(path.parent.name for path in FOLDER.glob("*/explain.yaml"))
+
+
+@lru_cache
+def speech(language: str) -> Speech:
+    """The phrases of a language. Raises `LookupError` if there are none for it."""
+    import yaml
+
+    path = FOLDER / language / "explain.yaml"
+    if language not in languages():
+        raise LookupError(f"There are no explanations in the language {language!r} yet.")
+    data: Any = yaml.load(
+        path.read_text(encoding="utf-8"), Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    )
+    return msgspec.convert(data, Speech)
+
+
+def gaps(pattern: str) -> set[str]:
+    """The names that a pattern has to be filled with."""
+    return {match[1] for match in _GAP.finditer(pattern)}
+
+
+def forms(pattern: str) -> dict[str, str]:
+    """For each gap the form it wants: "the", "plural", or "" for the usual one."""
+    return {match[1]: match[2] or "" for match in _GAP.finditer(pattern)}
+
+
+def fill(pattern: str, values: Mapping[str, str]) -> str:
+    """The pattern with its gaps filled. What is filled in is not looked at for gaps again."""
+    return _GAP.sub(lambda match: values[match[1]], pattern)
+
+
+def fitting(patterns: tuple[str, ...], given: set[str]) -> str | None:
+    """The first pattern that needs nothing but what is given."""
+    return next((pattern for pattern in patterns if gaps(pattern) <= given), None)

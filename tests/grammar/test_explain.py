@@ -1,0 +1,227 @@
+"""What the robot will do, in words a nurse would agree with."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+
+from grammar import plan as p
+from grammar.explain import explain, explain_steps
+from grammar.inference import walk
+from grammar.speech import gaps, languages, speech
+from robot_api.methods import METHODS
+from tests.grammar.random_plans import plans
+
+MODEST = settings(max_examples=80, deadline=None, suppress_health_check=list(HealthCheck))
+
+
+def text(value: str) -> p.Text:
+    return p.Text(value)
+
+
+def call(method: str, save_as: str | None = None, /, **arguments: p.Value) -> p.Call:
+    return p.Call(method, dict(arguments), save_as)
+
+
+def explained(*steps: p.Step) -> str:
+    return explain(p.Plan(steps))
+
+
+def question(words: str, save_as: str) -> p.Call:
+    return call("ask", save_as, question=text(words))
+
+
+def say(words: str) -> p.Call:
+    return call("say", text=text(words))
+
+
+def test_the_visitors_of_the_design() -> None:
+    options = p.Items((text("radiology"), text("pharmacy")))
+    assert explained(
+        call("location", "desk"),
+        p.Repeat(
+            p.Number(3),
+            (
+                call("wait_for", thing=text("person")),
+                call("ask", "place", question=text("Where to?"), options=options),
+                call("guide", person=text("person"), place=p.Recall("place")),
+                call("goto", place=p.Recall("desk")),
+            ),
+        ),
+        say("Three visitors have been shown the way."),
+    ) == (
+        "I will note where I am. "
+        "Then, three times, I will wait for a person, ask “Where to?” and take one of the answers "
+        "“radiology” or “pharmacy”, take the person to the place named in the answer, and then go "
+        "to where I started. "
+        "Then I will say “Three visitors have been shown the way.”."
+    )
+
+
+def test_nouns_have_their_articles() -> None:
+    assert explained(call("find", thing=text("apple"), place=text("kitchen"))) == (
+        "I will look for an apple at the kitchen."
+    )
+    assert explained(call("goto", place=text("Alice's office"))) == "I will go to Alice's office."
+    assert explained(call("goto", place=text("room 12"))) == "I will go to room 12."
+    assert explained(call("grab", thing=text("leftmost bottle"))) == (
+        "I will take the leftmost bottle."
+    )
+    people = p.Sentence((text("I see "), p.Ask("count", {"thing": text("person")})))
+    assert explained(call("say", text=people)) == (
+        "I will say “I see [the number of people I see]”."
+    )
+
+
+def test_what_was_heard_is_called_the_answer_to_its_question_when_there_are_two() -> None:
+    told = explained(
+        question("Coffee?", "coffee"),
+        question("Milk?", "milk"),
+        call("show", text=p.Recall("coffee")),
+        call("show", text=p.Recall("milk")),
+    )
+    assert (
+        "show the answer to “Coffee?” on my screen, and then show the answer on my screen" in told
+    )
+
+
+def test_the_answer_is_not_called_so_where_it_could_be_another() -> None:
+    """In the second round the latest answer is that about milk."""
+    told = explained(
+        question("Coffee?", "coffee"),
+        p.Repeat(
+            p.Number(2),
+            (say("x"), call("show", text=p.Recall("coffee")), question("Milk?", "milk")),
+        ),
+    )
+    assert "show the answer to “Coffee?” on my screen" in told
+    after_a_branch = explained(
+        question("Coffee?", "coffee"),
+        p.If(p.Holds(p.Ask("sees", {"thing": text("cup")})), (question("Milk?", "milk"),)),
+        call("show", text=p.Recall("coffee")),
+    )
+    assert "show the answer to “Coffee?” on my screen" in after_a_branch
+
+
+def test_two_ways_to_make_the_same_name() -> None:
+    told = explained(
+        p.If(
+            p.Holds(p.Ask("sees", {"thing": text("person")})),
+            (question("Coffee?", "answer"),),
+            (call("scan", "answer"),),
+        ),
+        call("show", text=p.Recall("answer")),
+    )
+    assert "show “answer” on my screen" in told
+
+
+def test_branches_read_one_after_the_other() -> None:
+    def hears(word: str) -> p.Compare:
+        return p.Compare(text(word), "in", p.Recall("answer"))
+
+    steps = (
+        question("Where to?", "answer"),
+        p.If(
+            hears("lab"),
+            (call("goto", place=text("lab")),),
+            (p.If(hears("ward"), (call("goto", place=text("ward")),), (call("dock"),)),),
+        ),
+    )
+    assert explained(*steps) == (
+        "I will ask “Where to?”. "
+        "Then, if the answer has “lab” in it, I will go to the lab. "
+        "Otherwise, if the answer has “ward” in it, I will go to the ward. "
+        "Otherwise, I will go back to the charging station."
+    )
+    assert explain_steps(p.Plan(steps)) == [
+        (0, "ask “Where to?”"),
+        (0, "if the answer has “lab” in it:"),
+        (1, "go to the lab"),
+        (0, "otherwise, if the answer has “ward” in it:"),
+        (1, "go to the ward"),
+        (0, "otherwise:"),
+        (1, "go back to the charging station"),
+    ]
+
+
+def test_a_clause_in_a_clause() -> None:
+    nobody = p.Not(p.Holds(p.Ask("sees", {"thing": text("person")})))
+    told = explained(
+        p.ForEach(
+            "office",
+            p.Ask("places", {"kind": text("office")}),
+            (call("goto", place=p.Recall("office")), p.If(nobody, (say("Nobody here."),))),
+        )
+    )
+    assert told == (
+        "For each of the offices I know, I will do this: go to this office; "
+        "if I do not see a person, say “Nobody here.”."
+    )
+
+
+def test_waiting_for_somebody_is_not_called_doing_nothing() -> None:
+    nobody = p.Not(p.Holds(p.Ask("sees", {"thing": text("person")})))
+    assert explained(p.While(nobody, ())) == (
+        "As long as I do not see a person, I will wait a moment."
+    )
+
+
+def test_nothing_to_do() -> None:
+    assert explained() == "I will do nothing."
+
+
+def test_an_unknown_language_is_said_so() -> None:
+    with pytest.raises(LookupError, match="tlh"):
+        explain(p.Plan(()), "tlh")
+
+
+@pytest.mark.parametrize("language", languages())
+def test_every_method_has_words_in_every_language(language: str) -> None:
+    words = speech(language)
+    assert set(words.methods) == set(METHODS)
+    for name, said in words.methods.items():
+        method = METHODS[name]
+        known = {parameter.name for form in method.forms for parameter in form}
+        required = [
+            {parameter.name for parameter in form if parameter.required} for form in method.forms
+        ]
+        patterns = [*said.do, *said.result, *said.value, said.holds or "", said.fails or ""]
+        assert all(gaps(pattern) <= known for pattern in patterns), name
+        for form in required:
+            assert any(gaps(pattern) <= form for pattern in said.do), f"{name}: nothing for {form}"
+        if method.returns.annotation != "None":
+            assert said.value and said.result, f"{name} has a result"
+        if method.returns.annotation == "bool":
+            assert said.holds and said.fails, f"{name} is yes or no"
+
+
+def spoken(language: str, method: str, told: str) -> bool:
+    """Whether one of the method's phrases is in the text, gaps being anything."""
+    words = speech(language).methods[method]
+    patterns = [*words.do, *words.value, words.holds or "", words.fails or ""]
+    patterns += [*words.fields.values()]
+    return any(
+        re.search(".+?".join(map(re.escape, re.split(r"\{[^}]*\}", pattern))), told, re.DOTALL)
+        for pattern in patterns
+        if pattern
+    )
+
+
+@MODEST
+@given(plans)
+def test_everything_that_is_done_is_said(plan: p.Plan) -> None:
+    for language in languages():
+        in_sentences = explain(plan, language)
+        in_a_list = "\n".join(line for _, line in explain_steps(plan, language))
+        for step in walk(plan.steps):
+            if isinstance(step, p.Call):
+                assert spoken(language, step.method, in_a_list)
+                assert spoken(language, step.method, in_sentences)
+                for value in step.arguments.values():
+                    plural = step.method in ("count", "places")
+                    if isinstance(value, p.Text) and not plural:
+                        # A sentence may begin with it, which makes its first letter large.
+                        assert value.value[1:] in in_a_list
+                        assert value.value[1:] in in_sentences
