@@ -66,7 +66,8 @@ def find_method(name: str) -> Method:
 
 
 def no_such_method(name: str, known: Iterable[str]) -> str:
-    return f"There is no method {_shown(name)}{_did_you_mean(name, known)}."
+    """The sentence for a method that is not among the known ones."""
+    return f"There is no method {_shown(name)}{did_you_mean(name, known)}"
 
 
 def read_arguments(
@@ -182,10 +183,9 @@ def _does_not_fit(method: Method, positional: Sequence[Any], named: Mapping[str,
     known = list(dict.fromkeys(parameter.name for form in method.forms for parameter in form))
     strange = next((name for name in named if name not in known), None)
     if strange is not None and not method.extra:
-        takes = f"it takes {_listed(known)}" if known else "it takes nothing"
-        return (
-            f"{method.name} has no parameter {_shown(strange)}"
-            f"{_did_you_mean(strange, known) or '; ' + takes}."
+        takes = f"; it takes {_listed(known)}." if known else "; it takes nothing."
+        return f"{method.name} has no parameter {_shown(strange)}" + did_you_mean(
+            strange, known, otherwise=takes
         )
     got = [*map(_shown, positional), *(str(name) for name in named)]
     wanted = ", or ".join(_needed(form) for form in method.forms)
@@ -250,6 +250,7 @@ def _shown(value: Any) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def _did_you_mean(name: str, known: Iterable[str]) -> str:
-    near = difflib.get_close_matches(name, list(known), n=1)
-    return f"; did you mean {near[0]}?" if near else ""
+def did_you_mean(name: str, known: Iterable[str], otherwise: str = ".") -> str:
+    """How a sentence about an unknown name ends: with the nearest known one, if one is near."""
+    near = difflib.get_close_matches(name[:100], list(known), n=1)
+    return f"; did you mean {near[0]}?" if near else otherwise
