@@ -1,0 +1,314 @@
+"""Routes: the shortest way around walls and furniture that keeps some clearance.
+
+A `Chart` is the free floor of one map for a round body, as a visibility graph: its nodes are the
+corners of the obstacles, grown by the clearance; its edges join the corners that see each other
+and around which a shortest way can bend. Doors and zones that may be closed are `gates`: the edges
+that cross one are left out of a query that names it. People who stand in the way are given with
+the query, as discs, and get corners of their own.
+
+Everything is in metres.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import dijkstra
+from shapely.geometry import LineString, MultiPolygon, Point, Polygon, box
+from shapely.geometry.base import BaseGeometry
+
+Spot = tuple[float, float]
+Floats = NDArray[np.float64]
+
+_GRAZE = 1e-3  # edges run along the grown obstacles; this much inside does not count as crossing
+_DISC_CORNERS = 8
+
+
+class Disc(NamedTuple):
+    """A person in the way; `radius` is what to keep from their middle."""
+
+    x: float
+    y: float
+    radius: float
+
+
+class Route(NamedTuple):
+    points: tuple[Spot, ...]
+    """From the start to the goal, both included."""
+    length: float
+    gates: frozenset[str]
+    """The gates it passes."""
+
+
+class Chart:
+    """The free floor for a body of `radius`, which routes keep `margin` further away than that.
+
+    `walls` are segments (x1, y1, x2, y2) of a `thickness`, `solids` the corners of furniture,
+    `gates` the lines of doors, `zones` the outlines of areas that a query may close as it does
+    gates."""
+
+    def __init__(
+        self,
+        walls: Iterable[tuple[float, float, float, float]],
+        solids: Iterable[Sequence[Spot]] = (),
+        gates: Mapping[str, tuple[float, float, float, float]] | None = None,
+        zones: Mapping[str, Sequence[Spot]] | None = None,
+        *,
+        thickness: float = 0.0,
+        radius: float = 0.25,
+        margin: float = 0.1,
+    ) -> None:
+        self.radius = radius
+        self.clearance = radius + margin
+        pieces: list[BaseGeometry] = [
+            _grow(LineString([(a, b), (c, d)]), thickness / 2) for a, b, c, d in walls
+        ]
+        self._walls = shapely.STRtree(pieces)
+        pieces += [Polygon(corners) for corners in solids]
+        self._obstacles = shapely.union_all(pieces) if pieces else Polygon()
+        self._obstacle_tree = shapely.STRtree(pieces)
+        self._gates: dict[str, BaseGeometry] = {
+            name: LineString([(a, b), (c, d)]) for name, (a, b, c, d) in (gates or {}).items()
+        }
+        grown_zones = {
+            name: _grow(Polygon(corners), radius) for name, corners in (zones or {}).items()
+        }
+        self._gates |= {name: zone.buffer(-_GRAZE) for name, zone in grown_zones.items()}
+
+        grown = shapely.union_all([_grow(piece, self.clearance) for piece in pieces])
+        frame = _frame([*pieces, *grown_zones.values()])
+        self._free = frame.difference(grown)
+        self._passable = self._free.buffer(_GRAZE, join_style="mitre")
+        shapely.prepare(self._free)
+        shapely.prepare(self._passable)
+        self._build_graph(grown, list(grown_zones.values()))
+
+    def _build_graph(self, grown: BaseGeometry, zones: list[BaseGeometry]) -> None:
+        corners = [_corners(grown), *(_corners(zone) for zone in zones)]
+        nodes = np.concatenate([place for place, _, _ in corners])
+        before = np.concatenate([before for _, before, _ in corners])
+        after = np.concatenate([after for _, _, after in corners])
+        reachable = shapely.intersects_xy(self._passable, nodes[:, 0], nodes[:, 1])
+        self._nodes, self._before, self._after = (
+            nodes[reachable],
+            before[reachable],
+            after[reachable],
+        )
+
+        first, second = np.triu_indices(len(self._nodes), 1)
+        bends = self._bends(self._nodes[first], second) & self._bends(self._nodes[second], first)
+        first, second = first[bends], second[bends]
+        lines = _lines(self._nodes[first], self._nodes[second])
+        clear = shapely.covers(self._passable, lines)
+        self._first, self._second, self._edges = first[clear], second[clear], lines[clear]
+        self._lengths = shapely.length(self._edges)
+        self._crossing = {
+            name: shapely.intersects(gate, self._edges) for name, gate in self._gates.items()
+        }
+
+    def _bends(self, origin: Floats, nodes: NDArray[Any]) -> NDArray[np.bool_]:
+        """Whether a shortest way that comes from `origin` can bend around each of the `nodes`."""
+        here = self._nodes[nodes]
+        way = here - origin
+        left = _cross(way, self._before[nodes] - here)
+        right = _cross(way, self._after[nodes] - here)
+        return left * right >= -1e-9
+
+    # --- questions about single spots ------------------------------------------------------------
+
+    def distance(self, x: float, y: float) -> float:
+        """How far the nearest wall or piece of furniture is; 0 inside of furniture."""
+        here = Point(x, y)
+        index = self._obstacle_tree.nearest(here)
+        return (
+            math.inf
+            if index is None
+            else float(here.distance(self._obstacle_tree.geometries[index]))
+        )
+
+    def fits(self, x: float, y: float) -> bool:
+        """Whether the body can be there without touching anything."""
+        return self.distance(x, y) >= self.radius
+
+    def in_gate(self, name: str, x: float, y: float) -> bool:
+        """Whether a spot lies in a zone."""
+        return bool(self._gates[name].covers(Point(x, y)))
+
+    def clear(self, start: Spot, goal: Spot) -> bool:
+        """Whether the straight way keeps the clearance."""
+        return bool(self._passable.covers(LineString([start, goal])))
+
+    def in_sight(self, start: Spot, end: Spot) -> bool:
+        """Whether no wall stands between; doors do not count."""
+        line = LineString([start, end])
+        return bool(self._walls.query(line, predicate="intersects").size == 0)
+
+    def nearest_free(self, x: float, y: float) -> Spot | None:
+        """The nearest spot that keeps the clearance, on this side of the walls."""
+        here = Point(x, y)
+        if self._passable.covers(here):
+            return x, y
+        parts = self._free.geoms if isinstance(self._free, MultiPolygon) else [self._free]
+        near = sorted((here.distance(part), i) for i, part in enumerate(parts) if not part.is_empty)
+        for _, i in near:
+            link = shapely.shortest_line(here, parts[i])
+            if not self._crosses_wall(link):
+                found = link.coords[-1]
+                return float(found[0]), float(found[1])
+        return None
+
+    def _crosses_wall(self, link: BaseGeometry) -> bool:
+        away = link.interpolate(min(1e-6, link.length))
+        beyond = LineString([away, link.coords[-1]])
+        return self._obstacle_tree.query(beyond, predicate="intersects").size > 0 and not (
+            # A body that stands against (or in) furniture may leave it.
+            self._obstacles.distance(away) < 1e-3
+        )
+
+    # --- routes ----------------------------------------------------------------------------------
+
+    def route(
+        self,
+        start: Spot,
+        goal: Spot,
+        closed: Collection[str] = (),
+        people: Sequence[Disc] = (),
+    ) -> Route | None:
+        """The shortest way that crosses none of the `closed` gates and keeps off the `people`;
+        None if there is none."""
+        depart, arrive = self.nearest_free(*start), self.nearest_free(*goal)
+        if depart is None or arrive is None:
+            return None
+        discs = [disc for disc in (_beside(disc, depart, arrive) for disc in people) if disc]
+        extra = np.array([depart, arrive, *self._around(discs)])
+        count = len(self._nodes)
+
+        ends, starts, lines = self._join(extra)
+        open_old = np.ones(len(self._edges), dtype=np.bool_)
+        open_new = np.ones(len(lines), dtype=np.bool_)
+        for name in closed:
+            open_old &= ~self._crossing[name]
+            open_new &= ~shapely.intersects(self._gates[name], lines)
+        for disc in discs:
+            open_old &= ~_near(disc, self._nodes[self._first], self._nodes[self._second])
+            open_new &= ~_near(disc, extra[starts - count], _spots(self._nodes, extra, ends))
+        rows = np.concatenate([self._first[open_old], starts[open_new]])
+        columns = np.concatenate([self._second[open_old], ends[open_new]])
+        lengths = np.concatenate([self._lengths[open_old], shapely.length(lines[open_new])])
+        size = count + len(extra)
+        # A tiny constant keeps edges of length nought in the graph.
+        graph = csr_array((lengths + 1e-9, (rows, columns)), shape=(size, size))
+        distances, before = dijkstra(
+            graph, directed=False, indices=[count], return_predecessors=True
+        )
+        if not math.isfinite(distances[0, count + 1]):
+            return None
+        way = [count + 1]
+        while way[-1] != count:
+            way.append(int(before[0, way[-1]]))
+        spots = _spots(self._nodes, extra, np.array(way[::-1]))
+        points = _without_repeats([start, *((float(x), float(y)) for x, y in spots), goal])
+        line = LineString(points) if len(points) > 1 else Point(points[0])
+        passed = frozenset(name for name, gate in self._gates.items() if gate.intersects(line))
+        return Route(points, float(line.length), passed)
+
+    def _join(self, extra: Floats) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
+        """Edges from each of the `extra` spots to all nodes and to each other that are clear."""
+        count = len(self._nodes)
+        starts = np.repeat(np.arange(len(extra)), count)
+        ends = np.tile(np.arange(count), len(extra))
+        bends = self._bends(extra[starts], ends)
+        among, others = np.triu_indices(len(extra), 1)
+        starts = np.concatenate([starts[bends], among])
+        ends = np.concatenate([ends[bends], others + count])
+        lines = _lines(extra[starts], _spots(self._nodes, extra, ends))
+        clear = shapely.covers(self._passable, lines)
+        return ends[clear], starts[clear] + count, lines[clear]
+
+    def _around(self, discs: Sequence[Disc]) -> list[Spot]:
+        reach = 1.02 / math.cos(math.pi / _DISC_CORNERS)
+        spots = [
+            (
+                disc.x + disc.radius * reach * math.cos(angle),
+                disc.y + disc.radius * reach * math.sin(angle),
+            )
+            for disc in discs
+            for angle in np.arange(_DISC_CORNERS) * (2 * math.pi / _DISC_CORNERS)
+        ]
+        return [spot for spot in spots if shapely.intersects_xy(self._passable, *spot)]
+
+
+# --- geometry ------------------------------------------------------------------------------------
+
+
+def _grow(piece: BaseGeometry, by: float) -> BaseGeometry:
+    # Mitred corners: a few nodes a wall, and room to cut a corner when following the route.
+    return piece.buffer(by, cap_style="square", join_style="mitre", mitre_limit=2) if by else piece
+
+
+def _frame(pieces: Sequence[BaseGeometry]) -> BaseGeometry:
+    """A floor without outer walls ends somewhere, too."""
+    if not pieces:
+        return box(-50, -50, 50, 50)
+    return box(*shapely.total_bounds(np.array(pieces, dtype=object))).buffer(5, join_style="mitre")
+
+
+def _corners(grown: BaseGeometry) -> tuple[Floats, Floats, Floats]:
+    """The corners of the obstacles around which a way can bend, each with its two neighbours."""
+    none = np.empty((0, 2))
+    found: list[tuple[Floats, Floats, Floats]] = [(none, none, none)]
+    polygons = grown.geoms if isinstance(grown, MultiPolygon) else [grown]
+    for polygon in polygons:
+        if polygon.is_empty:
+            continue
+        oriented = shapely.geometry.polygon.orient(polygon.simplify(_GRAZE / 2))
+        for ring in (oriented.exterior, *oriented.interiors):
+            here = np.array(ring.coords)[:-1]
+            before, after = np.roll(here, 1, axis=0), np.roll(here, -1, axis=0)
+            # Oriented rings have the obstacle on their left: left turns stick out.
+            sticks_out = _cross(here - before, after - here) > 1e-9
+            found.append((here[sticks_out], before[sticks_out], after[sticks_out]))
+    here, before, after = (np.concatenate(part) for part in zip(*found, strict=True))
+    return here, before, after
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
+
+
+def _lines(starts: Floats, ends: Floats) -> NDArray[Any]:
+    return np.asarray(shapely.linestrings(np.stack([starts, ends], axis=1)))
+
+
+def _spots(nodes: Floats, extra: Floats, which: NDArray[Any]) -> Floats:
+    return np.asarray(np.concatenate([nodes, extra])[which])
+
+
+def _near(disc: Disc, starts: Floats, ends: Floats) -> NDArray[np.bool_]:
+    """Which of the straight edges come nearer to the disc's middle than its radius."""
+    middle = np.array([disc.x, disc.y])
+    along = ends - starts
+    squared = np.maximum((along**2).sum(axis=1), 1e-12)
+    share = np.clip(((middle - starts) * along).sum(axis=1) / squared, 0, 1)
+    offset = starts + share[:, None] * along - middle
+    return np.asarray((offset**2).sum(axis=1) < disc.radius**2)
+
+
+def _beside(disc: Disc, *ends: Spot) -> Disc | None:
+    """The disc, made small enough for a way that starts or ends beside the person."""
+    room = min(math.dist(end, (disc.x, disc.y)) for end in ends) - 0.02
+    return disc if room >= disc.radius else Disc(disc.x, disc.y, room) if room > 0 else None
+
+
+def _without_repeats(points: Sequence[Spot]) -> tuple[Spot, ...]:
+    kept = [points[0]]
+    for point in points[1:]:
+        if math.dist(point, kept[-1]) > 1e-6:
+            kept.append(point)
+    return tuple(kept)

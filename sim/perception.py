@@ -1,0 +1,340 @@
+"""What the robot sees: a noun phrase and the things and people it fits, where the robot is.
+
+A phrase fits what explains all of its words, be it with name, aliases, kind or attributes. Words
+that say nothing about the thing itself are left out; a superlative picks one of those that fit; a
+relation ("on the desk") is about where it is.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from sim.errors import NotFound
+from sim.people import Human
+from sim.placing import Item
+from sim.robot import bearing, wrap
+from sim.words import words
+from sim.world import Aliases, Furniture, contains, key
+
+if TYPE_CHECKING:
+    from sim.hospital import Hospital
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A thing or a person that the robot sees. Metres on the map."""
+
+    name: str
+    kind: str
+    attributes: tuple[str, ...]
+    x: float
+    y: float
+    is_person: bool
+
+
+Sight = Human | Item | Furniture
+
+
+@dataclass(frozen=True)
+class Phrase:
+    """A noun phrase, taken apart."""
+
+    text: str
+    words: tuple[str, ...]
+    """What must be explained; fillers and superlatives are left out."""
+    measure: str | None
+    """A superlative: "leftmost", "biggest" ..."""
+    place: str | None
+    """What it is on, in or near: the words after a relation."""
+    whole: str
+    """All of it as one name."""
+
+
+@functools.lru_cache(maxsize=256)
+def parse(text: str) -> Phrase:
+    """Take a noun phrase apart."""
+    whole = key(text)
+    head, place = whole, None
+    for relation in words().relations:
+        before, found, after = whole.partition(f" {relation} ")
+        if found and len(before) < len(head):
+            head, place = before, after
+    superlatives = words().superlatives
+    tokens = _tokens(head)
+    measure = next((superlatives[token] for token in tokens if token in superlatives), None)
+    kept = [token for token in tokens if token not in superlatives and token not in words().fillers]
+    return Phrase(text, tuple(kept), measure, place, whole)
+
+
+def visible(hospital: Hospital, thing: str) -> list[Seen]:
+    """Those in view, the nearest first."""
+    return [_seen(hospital, sight) for sight in in_view(hospital, thing)]
+
+
+def in_view(hospital: Hospital, thing: str) -> list[Sight]:
+    """The people, things and, if there are none of these, furniture that a phrase fits and that
+    the robot sees."""
+    return pick(
+        hospital,
+        thing,
+        [sight for sight in fitting(hospital, thing) if hospital.here(*spot_of(sight))],
+    )
+
+
+def person_in_view(hospital: Hospital, person: str) -> Human:
+    """The one meant: whom the robot deals with already if the phrase fits them, else the nearest.
+    Raises `NotFound`."""
+    here = [sight for sight in in_view(hospital, person) if isinstance(sight, Human)]
+    if not here:
+        raise NotFound(
+            f'The robot does not see "{person}" here. Send it to where they are, or wait for them.'
+        )
+    return next((human for human in here if human.name == hospital.partner), here[0])
+
+
+def item_in_view(hospital: Hospital, thing: str) -> Item:
+    """The nearest thing meant that nobody holds. Raises `NotFound`."""
+    for sight in in_view(hospital, thing):
+        if isinstance(sight, Item) and sight.holder is None:
+            return sight
+    raise NotFound(
+        f'The robot does not see "{thing}" here. Look for it in another place, '
+        "or describe it differently."
+    )
+
+
+def describe(hospital: Hospital, thing: str) -> str:
+    sights = in_view(hospital, thing)
+    if not sights:
+        raise NotFound(f'The robot does not see "{thing}" here. Look for it in another place.')
+    sight = sights[0]
+    if isinstance(sight, Furniture):
+        return f"The {sight.name} is a {sight.kind}."
+    seen = _seen(hospital, sight)
+    if isinstance(sight, Human):
+        kind = "" if sight.person.kind in ("person", seen.name) else f", {_a(sight.person.kind)},"
+        held = [hospital.items[number].thing.name for number in sight.holding]
+        doing = _listed([*seen.attributes, *(f"holding {_a(name)}" for name in held)])
+        return f"{seen.name}{kind} is {doing}."
+    what = _a(" ".join([*seen.attributes, seen.name]))
+    kind = (
+        "" if key(seen.kind) in key(seen.name) or seen.kind == "object" else f", {_a(seen.kind)},"
+    )
+    where = f" on the {sight.on}" if sight.on else ""
+    return f"It is {what}{kind}{where}.".replace(",.", ".")
+
+
+# --- which it fits -------------------------------------------------------------------------------
+
+
+def fitting(hospital: Hospital, thing: str) -> list[Sight]:
+    """All that a phrase fits, wherever it is; a superlative is not applied."""
+    phrase = parse(thing)
+    sights: list[Sight] = [*hospital.people]
+    sights += [item for item in hospital.items if item.present and item.holder != "the robot"]
+    found = [sight for sight in sights if fits(hospital, sight, phrase)]
+    if found:
+        return found
+    return [
+        piece for piece in hospital.world.furniture if piece.pose and fits(hospital, piece, phrase)
+    ]
+
+
+def fits(hospital: Hospital, sight: Sight, phrase: Phrase) -> bool:
+    if not phrase.words and phrase.measure is None:
+        return False
+    if phrase.whole in _names(sight):
+        return True
+    known = _vocabulary(sight)
+    if phrase.place is None:
+        return _explains(known, phrase.words)
+    if _explains(known, phrase.words) and _is_at(hospital, sight, phrase.place):
+        return True
+    # "the man in the blue coat": no relation after all.
+    after = [token for token in _tokens(phrase.place) if token not in words().fillers]
+    return _explains(known, [*phrase.words, *after])
+
+
+def _explains(known: frozenset[str], tokens: Iterable[str]) -> bool:
+    return all(any(single in known for single in words().singulars(token)) for token in tokens)
+
+
+def _names(sight: Sight) -> set[str]:
+    if isinstance(sight, Furniture):
+        return {key(sight.name)}
+    named = sight.person if isinstance(sight, Human) else sight.thing
+    return {key(named.name), *(key(alias) for alias in _all(named.aliases))}
+
+
+def _vocabulary(sight: Sight) -> frozenset[str]:
+    """Every word that explains what it is."""
+    if isinstance(sight, Human):
+        known = _texts_words(
+            (sight.name, sight.person.kind, *sight.person.is_), sight.person.aliases
+        )
+        known -= frozenset().union(*words().postures.values())
+        known |= words().person | words().postures[posture_now(sight)]
+        if sight.person.gender == "male":
+            known |= words().male
+        elif sight.person.gender == "female":
+            known |= words().female
+        return known
+    if isinstance(sight, Item):
+        thing = sight.thing
+        known = _texts_words((thing.name, thing.kind, *thing.is_), thing.aliases) | words().thing
+        for group in (words().big, words().small):
+            if known & group:
+                known |= group
+        return known
+    return _texts_words((sight.name, sight.kind), sight.aliases)
+
+
+@functools.lru_cache(maxsize=4096)
+def _words_of(texts: tuple[str, ...]) -> frozenset[str]:
+    found: set[str] = set()
+    for text in texts:
+        for token in _tokens(key(text)):
+            found.update(words().singulars(token))
+    return frozenset(found)
+
+
+def _texts_words(texts: tuple[str, ...], aliases: Aliases) -> frozenset[str]:
+    return _words_of((*texts, *_all(aliases)))
+
+
+def _all(aliases: Aliases) -> Iterable[str]:
+    return (alias for group in aliases.values() for alias in group)
+
+
+def _tokens(text: str) -> list[str]:
+    # "Alice's" explains "Alice", and "l'objet" is an "objet".
+    return re.findall(r"\w+", re.sub(r"\b(l|d|qu)'|'s\b", " ", text.replace("-", " ")))
+
+
+def posture_now(human: Human) -> str:
+    return "walking" if human.walking else human.posture
+
+
+# --- where it is ---------------------------------------------------------------------------------
+
+
+def spot_of(sight: Sight) -> tuple[float, float]:
+    if isinstance(sight, Human):
+        return sight.position
+    if isinstance(sight, Item):
+        return sight.x, sight.y
+    assert sight.pose is not None
+    return sight.pose.x, sight.pose.y
+
+
+def _is_at(hospital: Hospital, sight: Sight, where: str) -> bool:
+    """Whether it is on, in or near the furniture or place of that name."""
+    tokens = [token for token in _tokens(where) if token not in words().fillers]
+    if isinstance(sight, Item) and sight.on and _explains(_words_of((sight.on,)), tokens):
+        return True
+    x, y = spot_of(sight)
+    place = hospital.world.place(" ".join(where.split()[1:])) or hospital.world.place(where)
+    if place is not None:
+        at = hospital.world.place_at(x, y)
+        return (at is not None and at.name == place.name) or bool(
+            place.area and contains(place.area, x, y)
+        )
+    return any(
+        piece.pose is not None
+        and piece is not sight
+        and math.dist((piece.pose.x, piece.pose.y), (x, y)) < max(piece.size) / 2 + 0.5
+        and _explains(_words_of((piece.name, piece.kind)), tokens)
+        for piece in hospital.world.furniture
+    )
+
+
+# --- the superlatives ----------------------------------------------------------------------------
+
+
+def pick(hospital: Hospital, thing: str, sights: Sequence[Sight]) -> list[Sight]:
+    """Those of the sights that a superlative leaves; the nearest first."""
+    robot = hospital.robot.position
+    near = sorted(sights, key=lambda sight: math.dist(robot, spot_of(sight)))
+    measure = parse(thing).measure
+    if measure is None or not near:
+        return near
+    score = _measures(hospital, near)[measure]
+    return [max(near, key=score)]
+
+
+def _measures(hospital: Hospital, sights: Sequence[Sight]) -> dict[str, Callable[[Sight], float]]:
+    """How much of what a superlative asks for each has."""
+    robot = hospital.robot.position
+    count = len(sights)
+    middle = (
+        sum(spot_of(sight)[0] for sight in sights) / count,
+        sum(spot_of(sight)[1] for sight in sights) / count,
+    )
+    # Left and right as the robot sees them when it looks at them all.
+    ahead = bearing(robot, middle)
+
+    def left(sight: Sight) -> float:
+        return wrap(bearing(robot, spot_of(sight)) - ahead)
+
+    def distance(sight: Sight) -> float:
+        return math.dist(robot, spot_of(sight))
+
+    def size(axis: int | None) -> Callable[[Sight], float]:
+        def measure(sight: Sight) -> float:
+            if isinstance(sight, Item) and sight.thing.size is not None:
+                return math.prod(sight.thing.size) if axis is None else sight.thing.size[axis]
+            known = _vocabulary(sight)
+            # Without a size, "big" and "small" say what is known.
+            return float(bool(known & words().big)) - float(bool(known & words().small))
+
+        return measure
+
+    def weight(sight: Sight) -> float:
+        known = sight.thing.weight if isinstance(sight, Item) else None
+        return known if known is not None else size(None)(sight)
+
+    def least(measure: Callable[[Sight], float]) -> Callable[[Sight], float]:
+        return lambda sight: -measure(sight)
+
+    return {
+        "leftmost": left,
+        "rightmost": least(left),
+        "nearest": least(distance),
+        "farthest": distance,
+        "biggest": size(None),
+        "smallest": least(size(None)),
+        "heaviest": weight,
+        "lightest": least(weight),
+        "tallest": size(2),
+        "shortest": least(size(2)),
+        "thickest": size(1),
+        "thinnest": least(size(1)),
+    }
+
+
+# --- in words ------------------------------------------------------------------------------------
+
+
+def _seen(hospital: Hospital, sight: Sight) -> Seen:
+    x, y = spot_of(sight)
+    if isinstance(sight, Human):
+        postures = frozenset().union(*words().postures.values())
+        others = [text for text in sight.person.is_ if not set(_tokens(key(text))) & postures]
+        attributes = (posture_now(sight), *others)
+        return Seen(sight.name, sight.person.kind, attributes, x, y, True)
+    if isinstance(sight, Item):
+        return Seen(sight.thing.name, sight.thing.kind, sight.thing.is_, x, y, False)
+    return Seen(sight.name, sight.kind, (), x, y, False)
+
+
+def _a(noun: str) -> str:
+    return f"{'an' if noun[:1].lower() in 'aeiou' else 'a'} {noun}"
+
+
+def _listed(parts: Sequence[str]) -> str:
+    return " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)

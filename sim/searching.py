@@ -1,0 +1,247 @@
+"""Looking for somebody or something, and waiting for somebody."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+
+from sim.driving import come_to_rest, face, travel, way_to, wheel
+from sim.errors import Blocked, NotPossible
+from sim.hospital import Hospital
+from sim.navigation import Spot
+from sim.people import Human
+from sim.perception import Sight, fits, fitting, in_view, parse, spot_of
+from sim.physics import STEP
+from sim.placing import Item
+from sim.robot import bearing
+from sim.runner import Behaviour
+from sim.words import words
+from sim.world import Person, Place
+
+_LOOK_EVERY = 15  # steps: four times a second
+_NEXT_TO = 0.75
+"""Metres from the middle of what the robot stands by, where there is room."""
+_NEWCOMER_AFTER = (12.0, 25.0)
+"""Seconds after which somebody comes where nobody new is, at least and at most."""
+_MOST_CHASES = 20
+
+
+def find(hospital: Hospital, thing: str, place: str | None) -> Behaviour[bool]:
+    """Look here, then from place to place, the nearest next; stand by what is found."""
+    target = hospital.place_named(place) if place is not None else None
+    with wheel(hospital):
+        if target is not None:
+            x, y, theta = hospital.locate(target.name)
+            if _place_here(hospital) != target.name:
+                yield from travel(hospital, (x, y), theta)
+            found = yield from _look_around(hospital, thing)
+            return found
+        looked: set[str] = set()
+        while True:
+            found = yield from _look_around(hospital, thing)
+            if found:
+                return True
+            here = hospital.place
+            if here is not None:
+                looked.add(here.name)
+            ahead = _next_place(hospital, looked)
+            if ahead is None:
+                return False
+            looked.add(ahead.name)
+            pose = hospital.pose_of(ahead)
+            assert pose is not None
+            with contextlib.suppress(Blocked, NotPossible):
+                # A place that cannot be reached is one that it is not found in.
+                yield from _travel_looking(hospital, pose, thing)
+
+
+def _place_here(hospital: Hospital) -> str | None:
+    here = hospital.place
+    return here.name if here else None
+
+
+def _next_place(hospital: Hospital, looked: set[str]) -> Place | None:
+    """The place with the shortest way of those where it has not looked."""
+    lengths: dict[str, float] = {}
+    for place in hospital.world.places:
+        pose = hospital.pose_of(place)
+        if place.name in looked or pose is None:
+            continue
+        room = hospital.world.place_at(pose[0], pose[1])
+        if room is not None and room.name != place.name and room.name in looked:
+            continue  # it lies in a room that it has seen
+        way = way_to(hospital, (pose[0], pose[1]))
+        if way is not None and hospital.robot.battery > 0:
+            lengths[place.name] = way.length
+    if not lengths:
+        return None
+    return hospital.world.place(min(lengths, key=lambda name: lengths[name]))
+
+
+def _travel_looking(
+    hospital: Hospital, pose: tuple[float, float, float], thing: str
+) -> Behaviour[None]:
+    """Drive to a place; done at once when one is in view on the way."""
+    way = travel(hospital, (pose[0], pose[1]), pose[2])
+    steps = 0
+    with contextlib.closing(way):
+        for _ in way:
+            steps += 1
+            if steps % _LOOK_EVERY == 0 and in_view(hospital, thing):
+                yield from come_to_rest(hospital)
+                return
+            yield
+
+
+def _look_around(hospital: Hospital, thing: str) -> Behaviour[bool]:
+    """Whether one is here; goes and stands by it."""
+    sights = in_view(hospital, thing)
+    for sight in sights:
+        reached = yield from approach(hospital, sight)
+        if reached:
+            if isinstance(sight, Human):
+                hospital.partner = sight.name
+            return True
+    # What cannot be reached is found all the same.
+    if sights:
+        yield from face(hospital, bearing(hospital.robot.position, spot_of(sights[0])))
+    return bool(sights)
+
+
+def approach(hospital: Hospital, sight: Sight, reach: float = _NEXT_TO) -> Behaviour[bool]:
+    """Drive next to it and face it; goes after somebody who walks. Returns whether it is there."""
+    for _ in range(_MOST_CHASES):
+        goal = spot_of(sight)
+        if isinstance(sight, Human):
+            sight.attend(hospital)
+        spot = _spot_by(hospital, goal, reach)
+        if spot is None:
+            return False
+        if math.dist(spot, hospital.robot.position) > 0.1:
+            try:
+                yield from travel(hospital, spot)
+            except (Blocked, NotPossible):
+                return False
+        if math.dist(spot_of(sight), goal) < 0.5:
+            yield from face(hospital, bearing(hospital.robot.position, spot_of(sight)))
+            return True
+    return False
+
+
+def _spot_by(hospital: Hospital, goal: Spot, reach: float) -> Spot | None:
+    """Where to stand by something: as near as there is room, on the robot's side, in its room."""
+    here, chart = hospital.robot.position, hospital.chart
+    if math.dist(here, goal) <= reach + 0.05 and hospital.physics.sees(here, goal):
+        return here
+    towards = math.radians(bearing(goal, here))
+    for further in (0.0, 0.15, 0.3, 0.5, 0.7, 0.9):
+        for side in (0, 20, -20, 45, -45, 70, -70, 100, -100, 135, -135, 180):
+            angle = towards + math.radians(side)
+            x = goal[0] + (reach + further) * math.cos(angle)
+            y = goal[1] + (reach + further) * math.sin(angle)
+            if (
+                chart.distance(x, y) >= chart.clearance
+                and hospital.physics.sees((x, y), goal)
+                and all(human.distance((x, y)) > 0.6 for human in hospital.people)
+                and way_to(hospital, (x, y)) is not None
+            ):
+                return x, y
+    return None
+
+
+# --- waiting -------------------------------------------------------------------------------------
+
+
+def wait_for(hospital: Hospital, thing: str, timeout: float | None) -> Behaviour[bool]:
+    """Until one is here that was not met here before. In a lobby somebody new comes in after a
+    while; elsewhere somebody of the house whom the phrase fits comes by."""
+    begin = hospital.time
+    comes_after = hospital.random.uniform(*_NEWCOMER_AFTER)
+    steps = 0
+    while True:
+        if steps % _LOOK_EVERY == 0:
+            place = _place_here(hospital)
+            met = hospital.met.setdefault(place, set())
+            for sight in in_view(hospital, thing):
+                name = _identity(sight)
+                if name in met or (isinstance(sight, Human) and sight.comes):
+                    continue
+                met.add(name)
+                if isinstance(sight, Human):
+                    hospital.partner = sight.name
+                    sight.attend(hospital)
+                return True
+            if hospital.time - begin >= comes_after:
+                comes_after += hospital.random.uniform(*_NEWCOMER_AFTER)
+                _let_somebody_come(hospital, thing, met)
+        if timeout is not None and hospital.time - begin >= timeout - STEP / 2:
+            return False
+        steps += 1
+        yield
+
+
+def _identity(sight: Sight) -> str:
+    return f"thing {sight.number}" if isinstance(sight, Item) else sight.name
+
+
+def _let_somebody_come(hospital: Hospital, thing: str, met: set[str]) -> None:
+    if any(human.comes for human in hospital.people):
+        return
+    robot = hospital.robot.position
+    spot = hospital.free_spot(*robot, 1.0, 2.5)
+    if spot is None:
+        return
+    place = hospital.place
+    newcomer = _newcomer(hospital, thing)
+    if place is not None and place.kind in words().public and newcomer is not None:
+        door = _way_in(hospital, spot)
+        human = hospital.add_person(newcomer, *door, bearing(door, spot), "standing")
+        hospital.newcomers += 1
+    else:
+        free = [
+            sight
+            for sight in fitting(hospital, thing)
+            if isinstance(sight, Human)
+            and sight.name not in met
+            and sight.posture == "standing"
+            and hospital.time >= sight.busy_until
+        ]
+        if not free:
+            return
+        human = min(free, key=lambda sight: (sight.distance(robot), sight.name))
+    human.comes = human.walk_to(hospital, spot)
+
+
+def _newcomer(hospital: Hospital, thing: str) -> Person | None:
+    """Somebody from outside whom the phrase fits; None if it is about something else."""
+    known = {human.person.kind for human in hospital.people} | {"visitor", "patient"}
+    taken = {human.name for human in hospital.people}
+    genders = ("female", "male") if hospital.random.random() < 0.5 else ("male", "female")
+    kinds = ["visitor", *sorted(known - {"visitor"})]
+    number = hospital.newcomers + 1
+    while any(name.endswith(f" {number}") for name in taken):
+        number += 1
+    phrase = parse(thing)
+    for kind in kinds:
+        for gender in genders:
+            person = Person(name=f"{kind} {number}", kind=kind, gender=gender)
+            candidate = Human(-1, person, hospital.robot.body, 0.0, "standing")
+            if fits(hospital, candidate, phrase):
+                return person
+    return None
+
+
+def _way_in(hospital: Hospital, spot: Spot) -> Spot:
+    """Where somebody new comes in: an entrance if the map has one within reach, else a spot some
+    way off that the robot does not see."""
+    chart, closed = hospital.chart, hospital.closed_doors()
+    ways = []
+    for place in hospital.world.places:
+        pose = hospital.pose_of(place)
+        if pose is None or place.name == _place_here(hospital):
+            continue
+        inside = hospital.free_spot(pose[0], pose[1], 0.0, 1.5)
+        way = chart.route(inside, spot, closed) if inside else None
+        if inside and way is not None:
+            ways.append((place.kind not in words().public, way.length, inside))
+    return min(ways)[2] if ways else spot

@@ -1,0 +1,283 @@
+"""The simulated hospital, as a robot's driver sees it.
+
+    simulation = Simulation(load_world("city-hospital"), seed=1)
+    simulation.run(simulation.drive_to(12.0, 3.5), stop)
+
+Without a `speed` no time passes except inside `run`, and there it passes as fast as the machine
+can; the same seed and the same calls give exactly the same run. With a speed a clock thread lets
+time pass at that multiple of real time. Methods that take time return a behaviour for `run`; all
+others return at once. Metres, seconds, degrees (left is +) everywhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from datetime import datetime, timedelta
+from types import TracebackType
+from typing import Any, TypeVar
+
+from sim import company, driving, handling, perception, searching, talking
+from sim.hospital import Hospital, Listener
+from sim.perception import Seen
+from sim.physics import STEP
+from sim.record import Record
+from sim.robot import RobotState
+from sim.runner import Behaviour, Runner, Stop
+from sim.world import World
+
+__all__ = ["Behaviour", "RobotState", "Seen", "Simulation", "Stop"]
+
+T = TypeVar("T")
+
+
+class Simulation:
+    """A hospital floor with a robot in it.
+
+    Raises `sim.errors.NotPossible` if the world has no geometry."""
+
+    def __init__(
+        self,
+        world: World,
+        seed: int = 0,
+        speed: float | None = None,
+        start: datetime | None = None,
+    ) -> None:
+        self._open(Hospital(world, seed, start), speed)
+
+    def _open(self, hospital: Hospital, speed: float | None) -> None:
+        self._hospital = hospital
+        self._listeners: dict[int, Listener] = {}
+        self._runner = Runner(hospital.step, hospital.rest, self._deliver, STEP, speed)
+
+    # --- running ---------------------------------------------------------------------------------
+
+    def run(self, behaviour: Behaviour[T], stop: Stop) -> T:
+        """Run a behaviour to its end and return its result. Raises the kinds of
+        `sim.errors.SimError`, or `Interrupted` once `stop` is set or somebody halts."""
+        return self._runner.run(behaviour, stop)
+
+    def halt(self) -> None:
+        """Bring the robot to rest this instant and interrupt every running behaviour; from any
+        thread."""
+        self._runner.halt()
+
+    def copy(self) -> Simulation:
+        """The present state as a simulation of its own, without a clock, for trying things out."""
+        twin = Simulation.__new__(Simulation)
+        with self._runner.turn:
+            hospital = self._hospital.copy()
+        twin._open(hospital, None)
+        return twin
+
+    def close(self) -> None:
+        """End the clock thread, if there is one, and whatever runs."""
+        self._runner.close()
+
+    def __enter__(self) -> Simulation:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    # --- looking in from outside -----------------------------------------------------------------
+
+    @property
+    def world(self) -> World:
+        return self._hospital.world
+
+    @property
+    def time(self) -> float:
+        """Simulated seconds since the start."""
+        return self._hospital.time
+
+    def clock(self) -> datetime:
+        """The simulated date and time."""
+        return self._hospital.start + timedelta(seconds=self._hospital.time)
+
+    @property
+    def robot(self) -> RobotState:
+        """The robot at this moment."""
+        with self._runner.turn:
+            return self._hospital.robot_state()
+
+    @property
+    def record(self) -> Record:
+        """What has happened so far."""
+        return self._hospital.record
+
+    def subscribe(self, listener: Listener) -> Callable[[], None]:
+        """Call `listener(kind, data)` for every event (see `robot_api.driver.EVENTS`), from
+        whichever thread lets time pass; returns what ends it."""
+        number = max(self._listeners, default=0) + 1
+        self._listeners = {**self._listeners, number: listener}
+
+        def unsubscribe() -> None:
+            self._listeners = {k: v for k, v in self._listeners.items() if k != number}
+
+        return unsubscribe
+
+    def emit(self, kind: str, data: dict[str, Any]) -> None:
+        """Put an event into the record and tell it to those who subscribed."""
+        with self._runner.turn:
+            self._hospital.emit(kind, data)
+        self._deliver()
+
+    def _deliver(self) -> None:
+        events = self._hospital.events
+        while events:
+            kind, data = events.popleft()
+            for listener in self._listeners.values():
+                listener(kind, data)
+
+    # --- things that take no time ----------------------------------------------------------------
+
+    def locate(self, name: str) -> tuple[float, float, float]:
+        """Where the robot stands when it is at the place of that name or alias: x, y, theta.
+        Raises `UnknownPlace`."""
+        return self._hospital.locate(name)
+
+    def visible(self, thing: str) -> list[Seen]:
+        """What the robot sees of such things or people where it is, the nearest first: "stapler",
+        "red cup", "person waving", "people", "objects", "leftmost bottle"."""
+        with self._runner.turn:
+            return perception.visible(self._hospital, thing)
+
+    def describe(self, thing: str) -> str:
+        """The first of them in a sentence. Raises `NotFound`."""
+        with self._runner.turn:
+            return perception.describe(self._hospital, thing)
+
+    def lidar(self) -> list[float]:
+        """The latest scan: 36 distances of at most 8 m, the first straight ahead, then leftwards.
+        Ten scans a second."""
+        with self._runner.turn:
+            return list(self._hospital.lidar)
+
+    def localize(self, x: float, y: float, theta: float) -> None:
+        """Tell the robot where it is. It never gets lost here, so this sets it down there.
+        Raises `NotPossible` where there is no room for it."""
+        with self._runner.turn:
+            self._hospital.localize(x, y, theta)
+        self._deliver()
+
+    def forget_met(self) -> None:
+        """A new program begins: `wait_for` has met nobody yet."""
+        with self._runner.turn:
+            self._hospital.met.clear()
+            self._hospital.partner = None
+
+    def set_emotion(self, name: str) -> None:
+        with self._runner.turn:
+            self._hospital.robot.emotion = name
+        self.emit("emotion", {"name": name})
+
+    def set_joint(self, name: str, degrees: float) -> None:
+        with self._runner.turn:
+            self._hospital.robot.joints[name] = degrees
+
+    def set_volume(self, percent: int) -> None:
+        with self._runner.turn:
+            self._hospital.robot.volume = percent
+
+    def set_language(self, code: str) -> None:
+        with self._runner.turn:
+            self._hospital.robot.language = code
+
+    def show(self, content: dict[str, Any]) -> None:
+        """Put it on the screen: {"text"}, {"html"}, {"url"} or {"options"} with what to show."""
+        with self._runner.turn:
+            self._hospital.robot.screen = content
+        self.emit("screen", content)
+
+    def set_door(self, number: int, open_: bool) -> None:
+        """Open or close the world's door of that number. The robot finds out when it gets there."""
+        with self._runner.turn:
+            self._hospital.set_door(number, open_)
+
+    # --- behaviours: driving ---------------------------------------------------------------------
+
+    def wait(self, seconds: float) -> Behaviour[None]:
+        return self._hospital.wait(seconds)
+
+    def drive_to(self, x: float, y: float, theta: float | None = None) -> Behaviour[None]:
+        """Raises `Blocked`; `NotPossible` if nobody could stand there, or the battery is empty."""
+        return driving.drive_to(self._hospital, x, y, theta)
+
+    def move(self, metres: float) -> Behaviour[None]:
+        """Straight ahead or back. Raises `Blocked`, `NotPossible`."""
+        return driving.move(self._hospital, metres)
+
+    def turn(self, degrees: float) -> Behaviour[None]:
+        return driving.turn(self._hospital, degrees)
+
+    def drive(self, linear: float, angular: float, seconds: float) -> Behaviour[None]:
+        """As with a joystick: m/s and degrees/s; a newer one takes over. Raises `Blocked`."""
+        return driving.drive(self._hospital, linear, angular, seconds)
+
+    def dock(self) -> Behaviour[None]:
+        """Drive to the charger. Raises `Blocked`, `NotPossible`."""
+        return driving.dock(self._hospital)
+
+    def gesture(self, name: str) -> Behaviour[None]:
+        """Two seconds of it."""
+        return talking.gesture(self._hospital, name)
+
+    # --- behaviours: people ----------------------------------------------------------------------
+
+    def follow(self, person: str, to: str | None = None) -> Behaviour[None]:
+        """Raises `NotFound`, `UnknownPlace`, `Blocked`."""
+        return company.follow(self._hospital, person, to)
+
+    def guide(self, person: str, x: float, y: float, theta: float | None = None) -> Behaviour[None]:
+        """Raises `NotFound`, `Blocked`, `NotPossible`."""
+        return company.guide(self._hospital, person, x, y, theta)
+
+    def find(self, thing: str, place: str | None = None) -> Behaviour[bool]:
+        """True and standing by it, or False. Raises `UnknownPlace`, `Blocked`."""
+        return searching.find(self._hospital, thing, place)
+
+    def wait_for(self, thing: str, timeout: float | None = None) -> Behaviour[bool]:
+        """Whether one came that `wait_for` had not met here before."""
+        return searching.wait_for(self._hospital, thing, timeout)
+
+    # --- behaviours: handling --------------------------------------------------------------------
+
+    def grab(self, thing: str) -> Behaviour[str]:
+        """Returns the name of what it took. Raises `NotFound`, `NotPossible`."""
+        return handling.grab(self._hospital, thing)
+
+    def put(self, thing: str, where: str | None = None) -> Behaviour[None]:
+        """Raises `NotFound`, `NotPossible`."""
+        return handling.put(self._hospital, thing, where)
+
+    def give(self, thing: str, person: str | None = None) -> Behaviour[str]:
+        """Returns the name of who has it now. Raises `NotFound`, `NotPossible`."""
+        return handling.give(self._hospital, thing, person)
+
+    # --- behaviours: talking ---------------------------------------------------------------------
+
+    def speak(self, text: str, language: str | None = None) -> Behaviour[None]:
+        return talking.speak(self._hospital, text, language)
+
+    def hear(
+        self,
+        timeout: float = 10.0,
+        question: str | None = None,
+        options: Sequence[str] | None = None,
+        person: str | None = None,
+    ) -> Behaviour[str | None]:
+        """What somebody says, or None if nobody does. Raises `NotFound` if `person` is not here."""
+        return talking.hear(self._hospital, timeout, question, options, person)
+
+    def scan(self, timeout: float = 30.0) -> Behaviour[str | None]:
+        """The code of the thing held, or of one that is held up or lies before the robot."""
+        return talking.scan(self._hospital, timeout)
+
+    def touch(self, options: Sequence[str], timeout: float = 30.0) -> Behaviour[str | None]:
+        """Which of the options somebody presses, or None if nobody does."""
+        return talking.touch(self._hospital, options, timeout)
