@@ -60,7 +60,7 @@ class Method:
     """What a robot must have to do it; `CORE` ones every robot has."""
     errors: tuple[str, ...] = ()
     """Class names from `robot_api.errors` that it raises besides NotSupported, InvalidCall,
-    LostConnection."""
+    LostConnection, and, if it moves the body, NotPossible while another movement goes on."""
     paper: int | None = None
     moves: bool = False
     """Whether it can set the body in motion."""

@@ -1,0 +1,181 @@
+"""Hearing: `listen`, `ask`, `answer`.
+
+A robot only has to hear (`Hearing.hear`); asking until the answer is one of the options, with the
+touchscreen as the way out, is the same for all.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from robot_api.capabilities.base import Capability
+from robot_api.capabilities.languages import language_data
+from robot_api.capabilities.matching import match_answer, match_question
+from robot_api.capabilities.simulation import InSimulation
+from robot_api.driver import StopFlag
+from robot_api.errors import NotFound, TimedOut
+from robot_api.methods import MAX_TEXT
+
+if TYPE_CHECKING:
+    from robot_api.capabilities.emulation import Emulation
+    from robot_api.capabilities.screen import Screen
+    from robot_api.capabilities.speech import Speech
+
+ANSWER_TIMEOUT = 10.0
+"""Seconds that somebody has to begin an answer."""
+_TRIES = 2
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A question that there is an answer for, in one language."""
+
+    ways: tuple[str, ...]
+    """The ways of asking it."""
+    answer: str
+
+
+class Hearing(Capability):
+    """Ears, with a voice to ask and, if the robot has one, a touchscreen to fall back on."""
+
+    name = "hearing"
+    lacking = "cannot hear"
+
+    def __init__(self, speech: Speech | None, screen: Screen | None) -> None:
+        super().__init__()
+        self._speech = speech
+        self._screen = screen
+
+    @property
+    @abstractmethod
+    def language(self) -> str:
+        """The code of the language that is heard."""
+
+    @abstractmethod
+    def hear(
+        self,
+        stop: StopFlag,
+        timeout: float,
+        question: str | None = None,
+        options: Sequence[str] | None = None,
+        person: str | None = None,
+    ) -> str | None:
+        """The words of whoever speaks within `timeout` seconds, or None. What was asked, the
+        answers that count and who is asked may help to recognise them."""
+
+    @abstractmethod
+    def prepared(self, language: str) -> Sequence[Prepared]:
+        """The questions that there are answers for."""
+
+    def is_here(self, person: str) -> bool:
+        """Whether that person can be spoken to; a robot that cannot tell believes it."""
+        return True
+
+    def listen(self, stop: StopFlag, prompt: str | None, timeout: float) -> str:
+        if prompt:
+            self._say(stop, prompt)
+        heard = self.hear(stop, timeout, prompt)
+        if heard is None:
+            raise TimedOut(
+                f"I listened for {timeout:g} seconds, but nobody spoke. "
+                "Speak up, or let me listen longer."
+            )
+        return heard[:MAX_TEXT]
+
+    def ask(
+        self, stop: StopFlag, question: str, options: list[str] | None, person: str | None
+    ) -> str:
+        if person is not None and not self.is_here(person):
+            raise NotFound(f"I do not see {person} here. Let me look for {person} first.")
+        language = language_data(self.language)
+        misheard = False
+        for attempt in range(_TRIES):
+            self._say(stop, f"{language.again} {question}" if misheard else question)
+            heard = self.hear(stop, ANSWER_TIMEOUT, question, options, person)
+            if heard is None:
+                continue
+            if not options:
+                return heard[:MAX_TEXT]
+            answer = match_answer(heard, options, self.language)
+            if answer is not None:
+                return answer
+            misheard = attempt == 0
+        if not options or self._screen is None or not self._screen.touchable:
+            raise TimedOut(
+                "Nobody gave an answer that I understood. Ask again when somebody is there."
+                if options
+                else "Nobody answered my question. Ask again when somebody is there."
+            )
+        return self._screen.touch(stop, options, f"{question} {language.choose}")
+
+    def answer(self, stop: StopFlag, question: str | None) -> str:
+        asked = self.listen(stop, None, ANSWER_TIMEOUT) if question is None else question
+        prepared = self.prepared(self.language)
+        which = match_question(asked, [known.ways for known in prepared], self.language)
+        reply = language_data(self.language).no_answer if which is None else prepared[which].answer
+        self._say(stop, reply)
+        return reply[:MAX_TEXT]
+
+    def _say(self, stop: StopFlag, text: str) -> None:
+        if self._speech is not None:
+            self._speech.say(stop, text)
+        elif self._screen is not None:
+            self._screen.show(stop, text, None, None)
+
+
+class EmulatedHearing(Hearing):
+    """Hears the canned answers in their order, then the first option or "yes"."""
+
+    def __init__(self, emulation: Emulation, speech: Speech | None, screen: Screen | None) -> None:
+        super().__init__(speech, screen)
+        self._emulation = emulation
+
+    @property
+    def language(self) -> str:
+        return self._emulation.language
+
+    def hear(
+        self,
+        stop: StopFlag,
+        timeout: float,
+        question: str | None = None,
+        options: Sequence[str] | None = None,
+        person: str | None = None,
+    ) -> str | None:
+        heard = self._emulation.next_answer(options[0] if options else "yes")
+        self._emulation.pass_time(timeout if heard is None else min(2.0, timeout), stop)
+        if heard is not None:
+            self._emulation.publish("heard", text=heard, person=person)
+        return heard
+
+    def prepared(self, language: str) -> Sequence[Prepared]:
+        return [Prepared((ask,), answer) for ask, answer in self._emulation.questions.items()]
+
+
+class SimulatedHearing(InSimulation, Hearing):
+    @property
+    def language(self) -> str:
+        return self.simulation.robot.language
+
+    def hear(
+        self,
+        stop: StopFlag,
+        timeout: float,
+        question: str | None = None,
+        options: Sequence[str] | None = None,
+        person: str | None = None,
+    ) -> str | None:
+        return self.run(self.simulation.hear(timeout, question, options, person), stop)
+
+    def prepared(self, language: str) -> Sequence[Prepared]:
+        return [
+            Prepared(known.ask[language], known.answer[language])
+            for known in self.simulation.world.questions
+            if language in known.ask and language in known.answer
+        ]
+
+    def is_here(self, person: str) -> bool:
+        return bool(self.simulation.visible(person))

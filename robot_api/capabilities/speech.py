@@ -1,0 +1,99 @@
+"""Speech: `say`, `set_volume`, `set_language`."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING, Any
+
+from robot_api.capabilities.base import Capability, Turns
+from robot_api.capabilities.names import listed
+from robot_api.capabilities.simulation import InSimulation
+from robot_api.driver import StopFlag
+from robot_api.errors import NotSupported
+
+if TYPE_CHECKING:
+    from robot_api.capabilities.emulation import Emulation
+
+LANGUAGES = {"en": "English", "de": "German", "fr": "French"}
+
+
+class Speech(Capability):
+    """A voice. One text is spoken after the other, whoever asks for them."""
+
+    name = "speech"
+    lacking = "has no voice"
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._turns = Turns()
+
+    @property
+    @abstractmethod
+    def language(self) -> str:
+        """The code of the language that is spoken and heard unless a call says another."""
+
+    @abstractmethod
+    def speak(self, stop: StopFlag, text: str, language: str) -> None:
+        """Speak aloud; returns when it has been spoken."""
+
+    @abstractmethod
+    def set_volume(self, stop: StopFlag, percent: int) -> None: ...
+
+    @abstractmethod
+    def choose_language(self, code: str) -> None:
+        """Speak and hear that one from now on."""
+
+    def languages(self) -> tuple[str, ...]:
+        return tuple(LANGUAGES)
+
+    def say(self, stop: StopFlag, text: str, language: str | None = None) -> None:
+        code = self._known(language) if language else self.language
+        with self._turns.mine(stop):
+            self.speak(stop, text, code)
+
+    def set_language(self, stop: StopFlag, code: str) -> None:
+        self.choose_language(self._known(code))
+
+    def declares(self) -> dict[str, Any]:
+        return {"languages": self.languages()}
+
+    def _known(self, code: str) -> str:
+        if code[:2] in self.languages():
+            return code[:2]
+        names = [LANGUAGES.get(known, known) for known in self.languages()]
+        raise NotSupported(f"I do not speak the language '{code}'. I speak {listed(names)}.")
+
+
+class EmulatedSpeech(Speech):
+    def __init__(self, emulation: Emulation) -> None:
+        super().__init__()
+        self._emulation = emulation
+
+    @property
+    def language(self) -> str:
+        return self._emulation.language
+
+    def speak(self, stop: StopFlag, text: str, language: str) -> None:
+        self._emulation.publish("speech", text=text, language=language)
+        self._emulation.pass_time(1.0 + len(text) / 15, stop)
+
+    def set_volume(self, stop: StopFlag, percent: int) -> None:
+        self._emulation.volume = percent
+
+    def choose_language(self, code: str) -> None:
+        self._emulation.language = code
+
+
+class SimulatedSpeech(InSimulation, Speech):
+    @property
+    def language(self) -> str:
+        return self.simulation.robot.language
+
+    def speak(self, stop: StopFlag, text: str, language: str) -> None:
+        self.run(self.simulation.speak(text, language), stop)
+
+    def set_volume(self, stop: StopFlag, percent: int) -> None:
+        self.simulation.set_volume(percent)
+
+    def choose_language(self, code: str) -> None:
+        self.simulation.set_language(code)
