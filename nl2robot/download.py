@@ -1,9 +1,9 @@
 """Fetching a large file and unpacking it, so that nothing half-done is ever left in place.
 
-`fetch` goes over HTTP and resumes; `npm_pack` asks the user's own npm; `unpack` takes one folder out
-of a zip or tar archive. All of them raise `DownloadError`, whose text is a half-sentence ("npm is not
-installed") that the caller puts into a sentence; what the disk refuses stays an `OSError`. Nothing
-here knows what a speech model is.
+`fetch` goes over HTTP and resumes; `npm_pack` asks the user's own npm; `unpack` takes one folder
+out of a zip or tar archive. All of them raise `DownloadError`, whose text is a half-sentence ("npm
+is not installed") that the caller puts into a sentence; what the disk refuses stays an `OSError`.
+Nothing here knows what a speech model is.
 """
 
 from __future__ import annotations

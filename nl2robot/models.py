@@ -3,9 +3,9 @@
     list_models() -> list[Listed]     get("en", progress) -> Path     find("en") -> Path | None
     verify("en") -> list of problems, empty when nothing is wrong
 
-A model is a folder `<models>/en` with a manifest of its files. It is put in place by one rename once
-it is complete and checked, so a folder that is there is whole. A folder that somebody unpacked there
-by hand (a hospital without internet) is used as it is. Where models come from is data:
+A model is a folder `<models>/en` with a manifest of its files. It is put in place by one rename
+once it is complete and checked, so a folder that is there is whole. A folder that somebody unpacked
+there by hand (a hospital without internet) is used as it is. Where models come from is data:
 data/models.yaml.
 
 Every failure is a `ModelError`: what happened, and what to do next.
