@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from collections.abc import Sequence
 
-from sim.driving import check_goal, come_to_rest, face, travel, wheel
+from sim.driving import check_goal, come_to_rest, face, lengths_to, travel, wheel
 from sim.errors import Blocked, NotFound
 from sim.hospital import Hospital
 from sim.navigation import Spot
@@ -22,6 +24,8 @@ _LOST_AFTER = 90.0
 _CRUMB = 0.2
 """Metres between two marks of the robot's trail."""
 _FOLLOW_GAP = 1.2
+_BY = 0.8
+"""Metres from somebody's way at which the robot lets them by."""
 _STANDS_AFTER = 4.0
 """Seconds of standing still that end following."""
 
@@ -150,8 +154,9 @@ def _go_after(hospital: Hospital, human: Human) -> Behaviour[None]:
     while True:
         if human.distance(spot) > 0.3:
             spot, still_since = human.position, hospital.time
-        gap = human.distance(robot.position)
-        if gap > _FOLLOW_GAP + 0.3:
+        if human.waits_since is not None:
+            yield from _step_aside(hospital, human)
+        elif human.distance(robot.position) > _FOLLOW_GAP + 0.3:
             yield from _catch_up(hospital, human)
             continue
         if hospital.time - still_since > _STANDS_AFTER and human.errand is not Errand.LEAD:
@@ -161,6 +166,42 @@ def _go_after(hospital: Hospital, human: Human) -> Behaviour[None]:
         yield
     yield from come_to_rest(hospital)
     yield from face(hospital, bearing(robot.position, human.position))
+
+
+def _step_aside(hospital: Hospital, human: Human) -> Behaviour[None]:
+    """Let the person by, whose way leads past the robot."""
+    chart, here = hospital.chart, hospital.robot.position
+    way = (human.position, *human.route)
+    spots = [
+        (here[0] + reach * math.cos(angle), here[1] + reach * math.sin(angle))
+        for reach in (0.8, 1.2, 1.8, 2.5, 3.5)
+        for angle in (math.radians(human.theta + side) for side in (90, -90, 60, -60, 30, -30, 0))
+    ]
+    for spot in spots:
+        if chart.distance(*spot) >= chart.clearance and _away(spot, way) > _BY:
+            length = lengths_to(hospital, [spot])[0]
+            if length < 2 * math.dist(here, spot):
+                yield from travel(hospital, spot)
+                return
+    yield
+
+
+def _away(spot: Spot, way: Sequence[Spot]) -> float:
+    """How far a spot is from a way's first few metres."""
+    nearest, gone = math.inf, 0.0
+    for start, end in itertools.pairwise(way):
+        length = math.dist(start, end)
+        for i in range(int(length / 0.2) + 1):
+            share = i * 0.2 / length if length else 0.0
+            on_way = (
+                start[0] + share * (end[0] - start[0]),
+                start[1] + share * (end[1] - start[1]),
+            )
+            nearest = min(nearest, math.dist(spot, on_way))
+        gone += length
+        if gone > 6:
+            break
+    return nearest
 
 
 def _catch_up(hospital: Hospital, human: Human) -> Behaviour[None]:

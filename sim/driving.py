@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from sim.errors import Blocked, NotPossible
@@ -198,6 +198,11 @@ def check_goal(hospital: Hospital, goal: Spot) -> None:
 def way_to(hospital: Hospital, goal: Spot) -> Route | None:
     """The way the robot would take to a spot, for all it knows; None if there is none."""
     return hospital.chart.route(hospital.robot.position, goal, _closed(hospital))
+
+
+def lengths_to(hospital: Hospital, goals: Sequence[Spot]) -> list[float]:
+    """How long the robot's way to each of several spots is; infinite where there is none."""
+    return hospital.chart.lengths(hospital.robot.position, goals, _closed(hospital))
 
 
 def _closed(hospital: Hospital) -> set[str]:

@@ -15,6 +15,8 @@ from sim.world import Furniture
 
 HANDS = 1
 """How many things the robot holds at most."""
+STRENGTH = 5.0
+"""Kilograms that it lifts at most."""
 _GRASP = 2.0
 """Seconds."""
 _ARM = 1.6
@@ -31,6 +33,10 @@ def grab(hospital: Hospital, thing: str) -> Behaviour[str]:
                 f"The robot already holds the {held}. Let it put that down or hand it over first."
             )
         item = item_in_view(hospital, thing)
+        if (item.thing.weight or 0.0) > STRENGTH:
+            raise NotPossible(
+                f"The {item.thing.name} is too heavy for the robot. Ask somebody to carry it."
+            )
         yield from approach(hospital, item)
         _check_reach(hospital, item.thing.name, (item.x, item.y))
         yield from hospital.wait(_GRASP)

@@ -188,7 +188,37 @@ class Chart:
         discs = [disc for disc in (_beside(disc, depart, arrive) for disc in people) if disc]
         extra = np.array([depart, arrive, *self._around(discs)])
         count = len(self._nodes)
+        distances, before = self._search(extra, closed, discs)
+        if not math.isfinite(distances[count + 1]):
+            return None
+        way = [count + 1]
+        while way[-1] != count:
+            way.append(int(before[way[-1]]))
+        spots = _spots(self._nodes, extra, np.array(way[::-1]))
+        points = _without_repeats([start, *((float(x), float(y)) for x, y in spots), goal])
+        line = LineString(points) if len(points) > 1 else Point(points[0])
+        passed = frozenset(name for name, gate in self._gates.items() if gate.intersects(line))
+        return Route(points, float(line.length), passed)
 
+    def lengths(
+        self, start: Spot, goals: Sequence[Spot], closed: Collection[str] = ()
+    ) -> list[float]:
+        """How long the shortest way to each of the goals is; infinite where there is none."""
+        depart = self.nearest_free(*start)
+        arrivals = [self.nearest_free(*goal) for goal in goals]
+        reachable = [spot for spot in arrivals if spot is not None]
+        if depart is None or not reachable:
+            return [math.inf] * len(goals)
+        distances, _ = self._search(np.array([depart, *reachable]), closed, ())
+        found = iter(distances[len(self._nodes) + 1 :])
+        return [math.inf if spot is None else float(next(found)) for spot in arrivals]
+
+    def _search(
+        self, extra: Floats, closed: Collection[str], discs: Sequence[Disc]
+    ) -> tuple[Floats, NDArray[Any]]:
+        """The distance of every node, and then of every `extra` spot, from the first of these;
+        and for each which comes before it on the way."""
+        count = len(self._nodes)
         ends, starts, lines = self._join(extra)
         open_old = np.ones(len(self._edges), dtype=np.bool_)
         open_new = np.ones(len(lines), dtype=np.bool_)
@@ -207,16 +237,7 @@ class Chart:
         distances, before = dijkstra(
             graph, directed=False, indices=[count], return_predecessors=True
         )
-        if not math.isfinite(distances[0, count + 1]):
-            return None
-        way = [count + 1]
-        while way[-1] != count:
-            way.append(int(before[0, way[-1]]))
-        spots = _spots(self._nodes, extra, np.array(way[::-1]))
-        points = _without_repeats([start, *((float(x), float(y)) for x, y in spots), goal])
-        line = LineString(points) if len(points) > 1 else Point(points[0])
-        passed = frozenset(name for name, gate in self._gates.items() if gate.intersects(line))
-        return Route(points, float(line.length), passed)
+        return distances[0], before[0]
 
     def _join(self, extra: Floats) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
         """Edges from each of the `extra` spots to all nodes and to each other that are clear."""

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import math
+from collections.abc import Iterator
 
-from sim.driving import come_to_rest, face, travel, way_to, wheel
+from sim.driving import check_battery, come_to_rest, face, lengths_to, travel, way_to, wheel
 from sim.errors import Blocked, NotPossible
 from sim.hospital import Hospital
 from sim.navigation import Spot
-from sim.people import Human
+from sim.people import Errand, Human
 from sim.perception import Sight, fits, fitting, in_view, parse, spot_of
 from sim.physics import STEP
 from sim.placing import Item
@@ -62,7 +63,9 @@ def _place_here(hospital: Hospital) -> str | None:
 
 def _next_place(hospital: Hospital, looked: set[str]) -> Place | None:
     """The place with the shortest way of those where it has not looked."""
-    lengths: dict[str, float] = {}
+    check_battery(hospital)
+    places: list[Place] = []
+    spots: list[Spot] = []
     for place in hospital.world.places:
         pose = hospital.pose_of(place)
         if place.name in looked or pose is None:
@@ -70,12 +73,11 @@ def _next_place(hospital: Hospital, looked: set[str]) -> Place | None:
         room = hospital.world.place_at(pose[0], pose[1])
         if room is not None and room.name != place.name and room.name in looked:
             continue  # it lies in a room that it has seen
-        way = way_to(hospital, (pose[0], pose[1]))
-        if way is not None and hospital.robot.battery > 0:
-            lengths[place.name] = way.length
-    if not lengths:
-        return None
-    return hospital.world.place(min(lengths, key=lambda name: lengths[name]))
+        places.append(place)
+        spots.append((pose[0], pose[1]))
+    lengths = lengths_to(hospital, spots)
+    nearest = min(range(len(places)), key=lambda i: lengths[i], default=None)
+    return None if nearest is None or math.isinf(lengths[nearest]) else places[nearest]
 
 
 def _travel_looking(
@@ -203,12 +205,12 @@ def _let_somebody_come(hospital: Hospital, thing: str, met: set[str]) -> None:
             for sight in fitting(hospital, thing)
             if isinstance(sight, Human)
             and sight.name not in met
-            and sight.posture == "standing"
-            and hospital.time >= sight.busy_until
+            and sight.posture != "lying"
+            and sight.errand in (Errand.NONE, Errand.WALK)
         ]
         if not free:
             return
-        human = min(free, key=lambda sight: (sight.distance(robot), sight.name))
+        human = min(free, key=lambda sight: (sight.posture == "sitting", sight.distance(robot)))
     human.comes = human.walk_to(hospital, spot)
 
 
@@ -232,9 +234,12 @@ def _newcomer(hospital: Hospital, thing: str) -> Person | None:
 
 
 def _way_in(hospital: Hospital, spot: Spot) -> Spot:
-    """Where somebody new comes in: an entrance if the map has one within reach, else a spot some
-    way off that the robot does not see."""
+    """Where somebody new comes in: at the door of the house, else at the nearest other place,
+    public ones first."""
     chart, closed = hospital.chart, hospital.closed_doors()
+    doors = [inside for inside in _front_doors(hospital) if chart.route(inside, spot, closed)]
+    if doors:
+        return min(doors, key=lambda inside: math.dist(inside, spot))
     ways = []
     for place in hospital.world.places:
         pose = hospital.pose_of(place)
@@ -245,3 +250,20 @@ def _way_in(hospital: Hospital, spot: Spot) -> Spot:
         if inside and way is not None:
             ways.append((place.kind not in words().public, way.length, inside))
     return min(ways)[2] if ways else spot
+
+
+def _front_doors(hospital: Hospital) -> Iterator[Spot]:
+    """The spots inside of the doors that lead out of the building."""
+    least_x, least_y, most_x, most_y = hospital.world.bounds
+    for door in hospital.world.doors:
+        x1, y1, x2, y2 = door.ends
+        width = math.hypot(x2 - x1, y2 - y1)
+        if width == 0:
+            continue
+        for side in (0.7 / width, -0.7 / width):
+            dx, dy = side * (y1 - y2), side * (x2 - x1)
+            x, y = (x1 + x2) / 2 + dx, (y1 + y2) / 2 + dy
+            out_x, out_y = x - 2 * dx, y - 2 * dy
+            outside = not (least_x <= out_x <= most_x and least_y <= out_y <= most_y)
+            if outside and hospital.chart.fits(x, y):
+                yield x, y
