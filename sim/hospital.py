@@ -51,7 +51,7 @@ class Hospital:
         self.start = start or OPENING
         self.random = random.Random(seed)
         self.steps = 0
-        self.chart = _chart(world)
+        self.chart = chart_of(world)
         self.open_doors = [door.open for door in world.doors]
         self.physics = self._new_physics()
         self.robot = Robot(
@@ -393,7 +393,8 @@ def _again(sample: Sample, time: float) -> Sample:
     return Sample(round(time, 3), sample.x, sample.y, sample.theta, sample.people)
 
 
-def _chart(world: World) -> Chart:
+def chart_of(world: World) -> Chart:
+    """The free floor of a world; made once."""
     return _build_chart(
         world.walls,
         world.wall_thickness,

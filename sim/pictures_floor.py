@@ -1,0 +1,386 @@
+"""The floor of a world: rooms tinted by their kind, walls, doors, furniture, people, things."""
+
+from __future__ import annotations
+
+import math
+import zlib
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from sim.pictures_labels import Board, label_area, label_spot
+from sim.pictures_scene import (
+    Area,
+    Box,
+    Disc,
+    Frame,
+    Line,
+    Scene,
+    Shape,
+    Text,
+    arc,
+    box_about,
+    box_at,
+    dashes,
+    mixed,
+)
+from sim.world import Door, Furniture, Place, Pose, World, polygon_area, rectangle
+
+LONGEST = 1480.0
+"""Pixels of the longer side of the floor."""
+MOST_SCALE = 90.0
+"""Pixels a metre, for the smallest worlds."""
+MARGIN = 26.0
+
+BACKGROUND = "#fbfbfa"
+INK = "#27313d"
+WALL = "#3d4855"
+ROOM_NAME = "#54606d"
+FLOOR = "#f1f1ee"
+NO_ENTRY = "#d9b3b0"
+
+_ROOMS = {
+    "ward": "#d9e8f5",
+    "office": "#fbf0cf",
+    "lab": "#d8eee5",
+    "lobby": "#f7ebdf",
+    "reception": "#f3dfcc",
+    "pharmacy": "#d6efd9",
+    "corridor": "#f3f3f0",
+    "cafeteria": "#fde4d3",
+    "kitchen": "#fad9c6",
+    "lift": "#dfe1e8",
+    "restroom": "#e2e8f2",
+    "charger": "#dcf3c6",
+    "department": "#e6dff2",
+    "room": "#e9ecef",
+}
+_PEOPLE = {
+    "nurse": "#2b7bbd",
+    "doctor": "#148a7d",
+    "patient": "#d27a1c",
+    "visitor": "#8257c2",
+    "receptionist": "#bd4179",
+    "pharmacist": "#35934a",
+    "technician": "#57708a",
+    "porter": "#9a6b32",
+}
+_WOOD, _WOOD_RIM = "#efe6d6", "#c9baa0"
+_STEEL, _STEEL_RIM = "#e3e7eb", "#b4bec8"
+_LINEN, _LINEN_RIM = "#ffffff", "#aab8c6"
+_CLOTH, _CLOTH_RIM = "#dfe3ee", "#b3bacd"
+_FURNITURE = {
+    "bed": (_LINEN, _LINEN_RIM),
+    "chair": (_CLOTH, _CLOTH_RIM),
+    "sofa": (_CLOTH, _CLOTH_RIM),
+    "plant": ("#bfdcae", "#8fb878"),
+    **dict.fromkeys(("fridge", "machine", "scanner", "monitor"), (_STEEL, _STEEL_RIM)),
+    **dict.fromkeys(("incubator", "washbasin", "trolley"), (_STEEL, _STEEL_RIM)),
+}
+_COLOURS = {
+    "red": "#d64541",
+    "blue": "#3f78c9",
+    "green": "#4a9d55",
+    "yellow": "#ecc32f",
+    "white": "#ffffff",
+    "black": "#33383d",
+    "brown": "#8d6540",
+    "orange": "#e8862e",
+    "pink": "#e58bb1",
+    "purple": "#8a5fc0",
+    "grey": "#9aa3ab",
+    "gray": "#9aa3ab",
+}
+
+
+@dataclass(frozen=True)
+class Floor:
+    """A drawn floor, and what is taken on it, for those who draw on top."""
+
+    scene: Scene
+    frame: Frame
+    board: Board
+
+
+def draw_floor(
+    world: World, *, top: float = 0.0, people: bool = True, longest: float = LONGEST
+) -> Floor:
+    """The floor as it is before anything happens; `top` pixels are left free for a title.
+
+    Raises `sim.maps.ImageError` if the image of the world's map can be read no more.
+    """
+    x1, y1, x2, y2 = _extent(world)
+    scale = min(MOST_SCALE, longest / max(x2 - x1, y2 - y1))
+    width, height = (x2 - x1) * scale + 2 * MARGIN, (y2 - y1) * scale + 2 * MARGIN
+    frame = Frame(scale, MARGIN - x1 * scale, top + MARGIN + y2 * scale)
+    scene = Scene(width, height + top, BACKGROUND)
+    board = Board(Box(4, top + 4, width - 4, height + top - 4))
+
+    _draw_rooms(world, frame, scene, board)
+    _draw_furniture(world, frame, scene, board)
+    _draw_doors(world, frame, scene)
+    _draw_walls(world, frame, scene, board)
+    _draw_charger(world, frame, scene, board)
+    inhabitants = _inhabitants(world) if people else []
+    things = _things(world)
+    for x, y, _, _ in inhabitants:
+        board.labels.append(box_at(*frame.spot(x, y), 2 * _head(frame), 2 * _head(frame)))
+    for x, y, _, _ in things:
+        board.drawings.append((box_at(*frame.spot(x, y), 9, 9), 3.0))
+    _draw_place_names(world, frame, scene, board)
+    _draw_things(things, frame, scene)
+    for x, y, name, kind in inhabitants:
+        scene.layer("people").extend(person_shapes(frame, x, y, name, kind))
+    for x, y, name, _ in inhabitants:
+        label = label_spot(board, name, frame.spot(x, y), _head(frame), 10, INK)
+        scene.layer("names").extend(label or [])
+    return Floor(scene, frame, board)
+
+
+def person_shapes(frame: Frame, x: float, y: float, name: str, kind: str) -> list[Shape]:
+    """A head with the person's initial in it, in the colour of their kind."""
+    u, v = frame.spot(x, y)
+    radius = _head(frame)
+    colour = _PEOPLE.get(kind) or tint(kind, 0.55, 0.62)
+    note = f"{name}, {kind}" if name != kind else name
+    initial = Text(u, v + radius * 0.44, name[:1].upper(), radius * 1.25, "#ffffff", "middle", True)
+    return [Disc(u, v, radius, colour, "#ffffff", 1.5, note), initial]
+
+
+def robot_shapes(frame: Frame, x: float, y: float, theta: float, radius: float) -> list[Shape]:
+    """The robot: a disc with a nose that shows which way it faces."""
+    u, v = frame.spot(x, y)
+    size = max(radius * frame.scale, 7.0)
+    angle = math.radians(theta)
+    ahead, aside = (math.cos(angle), -math.sin(angle)), (math.sin(angle), math.cos(angle))
+    nose = tuple(
+        (u + size * (a * ahead[0] + b * aside[0]), v + size * (a * ahead[1] + b * aside[1]))
+        for a, b in ((0.78, 0.0), (-0.3, 0.52), (-0.3, -0.52))
+    )
+    return [Disc(u, v, size, "#1f2a36", "#ffffff", 2.0, "the robot"), Area(nose, "#7fe0c3")]
+
+
+def tint(kind: str, saturation: float, lightness: float) -> str:
+    """A colour of its own for any kind, always the same."""
+    import colorsys
+
+    hue = zlib.crc32(kind.encode()) % 360 / 360
+    red, green, blue = colorsys.hls_to_rgb(hue, lightness, saturation)
+    return f"#{round(red * 255):02x}{round(green * 255):02x}{round(blue * 255):02x}"
+
+
+def _head(frame: Frame) -> float:
+    return min(max(0.22 * frame.scale, 6.5), 11.0)
+
+
+def _extent(world: World) -> tuple[float, float, float, float]:
+    """What is drawn, at least four metres each way."""
+    x1, y1, x2, y2 = world.bounds
+    around = 0.2 if world.drawn_walls or world.map else 1.5
+    wide, high = max(around, 2 - (x2 - x1) / 2), max(around, 2 - (y2 - y1) / 2)
+    return (x1 - wide, y1 - high, x2 + wide, y2 + high)
+
+
+# --- the building --------------------------------------------------------------------------------
+
+
+def _draw_rooms(world: World, frame: Frame, scene: Scene, board: Board) -> None:
+    rooms = scene.layer("rooms")
+    if world.map is not None:
+        rooms.append(Area(frame.spots(_corners(world)), FLOOR))
+    places = sorted(
+        (place for place in world.places if place.area), key=lambda p: -polygon_area(p.area)
+    )
+    for place in places:
+        fill = _ROOMS.get(place.kind) or tint(place.kind, 0.5, 0.91)
+        rooms.append(Area(frame.spots(place.area), fill, note=_note(place)))
+        if place.inside and world.place(place.inside):
+            rim = mixed(fill, INK, 0.22)
+            outline = frame.spots((*place.area, place.area[0]))
+            rooms += [Line(dash, rim, 0.9) for dash in dashes(outline, 4, 4)]
+    for zone in world.keep_out:
+        outline = frame.spots((*zone, zone[0]))
+        rooms += [Line(dash, NO_ENTRY, 2) for dash in dashes(outline, 6, 5)]
+
+
+def _corners(world: World) -> Sequence[tuple[float, float]]:
+    x1, y1, x2, y2 = world.bounds
+    return ((x1, y1), (x2, y1), (x2, y2), (x1, y2))
+
+
+def _note(place: Place) -> str:
+    return f"{place.name} ({place.kind})"
+
+
+def _draw_furniture(world: World, frame: Frame, scene: Scene, board: Board) -> None:
+    layer = scene.layer("furniture")
+    for piece in world.furniture:
+        if piece.pose is None:
+            continue
+        layer.extend(_furniture_shapes(piece, piece.pose, frame))
+        board.drawings.append((box_about(frame.spots(piece.outline)), 1.0))
+
+
+def _furniture_shapes(piece: Furniture, pose: Pose, frame: Frame) -> Iterable[Shape]:
+    fill, rim = _FURNITURE.get(piece.kind, (_WOOD, _WOOD_RIM))
+    if piece.kind == "plant":
+        u, v = frame.spot(pose.x, pose.y)
+        radius = min(piece.size) / 2 * frame.scale
+        yield Disc(u, v, radius, fill, rim, 1, piece.name)
+        yield Disc(u, v, radius * 0.45, rim)
+        return
+    yield Area(frame.spots(piece.outline), fill, rim, 1, piece.name)
+    length, width = piece.size
+    if piece.kind == "bed":
+        # The head is where the bed's length points to.
+        yield _part(pose, frame, length * 0.36, width * 0.72, length * 0.2, "#e6edf4", rim)
+        yield _part(pose, frame, -length * 0.16, width * 0.96, length * 0.62, "#eef4f9", None)
+    elif piece.kind in ("chair", "sofa"):
+        back = mixed(fill, rim, 0.7)
+        yield _part(pose, frame, 0, length * 0.98, width * 0.2, back, None, across=-width * 0.39)
+    elif piece.kind == "shelf":
+        ends = (frame.spot(*point) for point in _middle_line(pose, length))
+        yield Line(tuple(ends), rim, 0.8)
+
+
+def _part(
+    pose: Pose,
+    frame: Frame,
+    along: float,
+    width: float,
+    length: float,
+    fill: str,
+    rim: str | None,
+    across: float = 0.0,
+) -> Area:
+    """A rectangle on a piece of furniture, off its middle; across it lies along its width."""
+    angle = math.radians(pose.theta)
+    x = pose.x + along * math.cos(angle) - across * math.sin(angle)
+    y = pose.y + along * math.sin(angle) + across * math.cos(angle)
+    size = (width, length) if across else (length, width)
+    return Area(frame.spots(rectangle(Pose(x, y, pose.theta), size)), fill, rim, 0.8)
+
+
+def _middle_line(pose: Pose, length: float) -> Iterable[tuple[float, float]]:
+    angle = math.radians(pose.theta)
+    for along in (-length * 0.46, length * 0.46):
+        yield (pose.x + along * math.cos(angle), pose.y + along * math.sin(angle))
+
+
+def _draw_doors(world: World, frame: Frame, scene: Scene) -> None:
+    layer = scene.layer("doors")
+    for door in world.doors:
+        x1, y1, x2, y2 = door.ends
+        if not door.open:
+            ends = (frame.spot(x1, y1), frame.spot(x2, y2))
+            layer.append(Line(ends, "#b08a5b", max(world.wall_thickness * frame.scale * 0.6, 2)))
+            continue
+        width = math.hypot(x2 - x1, y2 - y1)
+        side = _side(world, door)
+        if width <= 1.45:
+            layer.extend(_leaf(frame, (x1, y1), (x2, y2), side))
+        elif width <= 2.2:
+            middle = ((x1 + x2) / 2, (y1 + y2) / 2)
+            layer.extend(_leaf(frame, (x1, y1), middle, side))
+            layer.extend(_leaf(frame, (x2, y2), middle, -side))
+
+
+def _side(world: World, door: Door) -> int:
+    """1 if the door opens to the left of its line, -1 if to the right: into its place."""
+    place = world.place(door.at) if door.at else None
+    if place is None or place.pose is None:
+        return 1
+    x1, y1, x2, y2 = door.ends
+    cross = (x2 - x1) * (place.pose.y - y1) - (y2 - y1) * (place.pose.x - x1)
+    return 1 if cross > 0 else -1
+
+
+def _leaf(
+    frame: Frame, hinge: tuple[float, float], end: tuple[float, float], side: int
+) -> Iterable[Shape]:
+    """A door's leaf, open, and the arc it swings along."""
+    width = math.hypot(end[0] - hinge[0], end[1] - hinge[1])
+    shut = math.degrees(math.atan2(end[1] - hinge[1], end[0] - hinge[0]))
+    u, v = frame.spot(*hinge)
+    swing = arc(u, v, width * frame.scale, shut, shut + 90 * side)
+    yield Line(swing, "#c3c9d0", 0.8)
+    yield Line(((u, v), swing[-1]), "#8d98a4", 1.5)
+
+
+def _draw_walls(world: World, frame: Frame, scene: Scene, board: Board) -> None:
+    width = max(world.wall_thickness * frame.scale, 2.0)
+    layer = scene.layer("walls")
+    for x1, y1, x2, y2 in world.walls:
+        ends = (frame.spot(x1, y1), frame.spot(x2, y2))
+        layer.append(Line(ends, WALL, width, square=world.map is None))
+        if ends[0][0] == ends[1][0] or ends[0][1] == ends[1][1]:
+            board.drawings.append((box_about(ends).grown(width / 2 + 1), 8.0))
+
+
+def _draw_charger(world: World, frame: Frame, scene: Scene, board: Board) -> None:
+    """A bolt where the robot is charged."""
+    charger = world.charger
+    if charger is None or charger.pose is None:
+        return
+    u, v = frame.spot(charger.pose.x, charger.pose.y)
+    size = min(max(0.22 * frame.scale, 7.0), 14.0)
+    bolt = ((0.25, -1), (-0.6, 0.15), (-0.05, 0.15), (-0.25, 1), (0.6, -0.2), (0.05, -0.2))
+    points = tuple((u + a * size, v + b * size) for a, b in bolt)
+    scene.layer("charger").append(Area(points, "#6cae3e", note="charging station"))
+    board.labels.append(box_at(u, v, 2 * size, 2 * size))
+
+
+# --- who and what is there -----------------------------------------------------------------------
+
+
+def _inhabitants(world: World) -> list[tuple[float, float, str, str]]:
+    """x, y, name and kind of everybody, as they are when the simulation begins."""
+    from sim.hospital import chart_of
+    from sim.placing import people_at_start
+
+    return [
+        (placing.x, placing.y, person.name, person.kind)
+        for person, placing in people_at_start(world, chart_of(world))
+    ]
+
+
+def _things(world: World) -> list[tuple[float, float, str, str]]:
+    """x, y, description and colour of every object."""
+    from sim.hospital import chart_of
+    from sim.placing import things_at_start
+
+    return [
+        (
+            item.x,
+            item.y,
+            " ".join([*item.thing.is_, item.thing.name]),
+            next((_COLOURS[word] for word in item.thing.is_ if word in _COLOURS), "#9aa3ab"),
+        )
+        for item in things_at_start(world, chart_of(world))
+        if item.present
+    ]
+
+
+def _draw_things(
+    things: Iterable[tuple[float, float, str, str]], frame: Frame, scene: Scene
+) -> None:
+    layer = scene.layer("objects")
+    for x, y, note, colour in things:
+        u, v = frame.spot(x, y)
+        diamond = ((u, v - 4.6), (u + 4.6, v), (u, v + 4.6), (u - 4.6, v))
+        layer.append(Area(diamond, colour, INK, 1.1, note))
+
+
+def _draw_place_names(world: World, frame: Frame, scene: Scene, board: Board) -> None:
+    """Small places first: they have less choice. A part's floor is taken for what it is in."""
+    layer = scene.layer("names")
+    named = sorted(world.places, key=lambda p: polygon_area(p.area) if p.area else 0.0)
+    for place in named:
+        if place.area:
+            outline = frame.spots(place.area)
+            layer.extend(label_area(board, place.name, outline, ROOM_NAME) or [])
+            if place.inside and world.place(place.inside):
+                board.drawings.append((box_about(outline), 2.0))
+        elif place.pose is not None:
+            spot = frame.spot(place.pose.x, place.pose.y)
+            layer.append(Disc(*spot, 3, ROOM_NAME, note=_note(place)))
+            layer.extend(label_spot(board, place.name, spot, 3, 12, ROOM_NAME) or [])
