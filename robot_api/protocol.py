@@ -398,7 +398,15 @@ class Event:
 
 def request(id: int, method: str, params: Params = None) -> str:
     """The frame of a request. Raises InvalidCall if the params cannot be sent."""
-    content = {"jsonrpc": "2.0", "id": id, "method": method}
+    return _request({"jsonrpc": "2.0", "id": id, "method": method}, method, params)
+
+
+def notification(method: str, params: Params = None) -> str:
+    """The frame of a request that is not answered. Raises InvalidCall as `request` does."""
+    return _request({"jsonrpc": "2.0", "method": method}, method, params)
+
+
+def _request(content: dict[str, Any], method: str, params: Params) -> str:
     try:
         frame = _write(content if params is None else {**content, "params": params})
     except (msgspec.MsgspecError, TypeError, ValueError, RecursionError):

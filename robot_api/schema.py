@@ -80,11 +80,7 @@ def read_arguments(
     written 5.0 is 5. Raises `InvalidCall`.
     """
     method = find_method(name)
-    named = named or {}
-    form = _form_meant(method, positional, named)
-    given = dict(zip((parameter.name for parameter in form), positional, strict=False)) | dict(
-        named
-    )
+    form, given = _bind(method, positional, named or {})
     arguments = {
         parameter.name: _read_value(method, parameter, given[parameter.name])
         if parameter.name in given
@@ -94,11 +90,21 @@ def read_arguments(
     return {**given, **arguments} if method.extra else arguments
 
 
-def _form_meant(method: Method, positional: Sequence[Any], named: Mapping[str, Any]) -> Form:
-    fitting = [form for form in method.forms if _fits(form, method, len(positional), named)]
-    if not fitting:
-        raise InvalidCall(_does_not_fit(method, positional, named))
-    return fitting[0]
+def bind(name: str, positional: Sequence[Any], named: Mapping[str, Any]) -> dict[str, Any]:
+    """The parameters that were given, by name, unchecked. Raises `InvalidCall` if they fit no form
+    of the method."""
+    return _bind(find_method(name), positional, named)[1]
+
+
+def _bind(
+    method: Method, positional: Sequence[Any], named: Mapping[str, Any]
+) -> tuple[Form, dict[str, Any]]:
+    """The form of the method that was meant, and what was given for it by name."""
+    for form in method.forms:
+        if _fits(form, method, len(positional), named):
+            names = (parameter.name for parameter in form)
+            return form, {**dict(zip(names, positional, strict=False)), **named}
+    raise InvalidCall(_does_not_fit(method, positional, named))
 
 
 def _fits(form: Form, method: Method, count: int, named: Mapping[str, Any]) -> bool:

@@ -1,0 +1,504 @@
+"""A robot's server: the wire and the web pages on one port.
+
+The path of a call: a frame comes in (`_Client.serve`), the protocol reads it (`protocol`), a worker
+thread does it (`dispatch`), and the reply goes out through the client's own queue. The loop thread
+never waits for a robot, so that a stop is heard at once, whatever else goes on.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import errno
+import logging
+import signal
+import socket
+import threading
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import jsonschema
+import msgspec
+import uvicorn
+from starlette.applications import Starlette
+from starlette.requests import HTTPConnection, Request
+from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse
+from starlette.routing import Route, WebSocketRoute
+from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.websockets import WebSocket
+
+from robot_api import access, protocol
+from robot_api.dispatch import Dispatcher, Job
+from robot_api.driver import EVENTS, Driver, Event, StopFlag
+from robot_api.errors import InvalidCall, RobotError, Stopped
+from robot_api.methods import METHODS
+from robot_api.openrpc import openrpc
+from robot_api.schema import read_arguments
+from robot_api.status import HEADERS, Status, status_page
+
+DEFAULT_PORT: Final = 9090
+MAX_WAITING: Final = 512
+"""Most frames that wait for a slow client; older events are dropped first, poses before others."""
+PING_SECONDS: Final = 5.0
+"""How often a client is asked for a sign of life, and how long it has to answer."""
+
+_log = logging.getLogger("robot_api.server")
+
+
+class CannotListen(Exception):
+    """The server cannot be reached at the address it was to have: the port is in use, or it is no
+    address of this machine."""
+
+
+@dataclass(frozen=True)
+class Context:
+    """What the handler of a service is told besides its params."""
+
+    connection: str
+    """The name of the connection that the call came from."""
+    stop: StopFlag
+    """Set when the call is cancelled or the robot is stopped."""
+    publish: Callable[[str, Event], None]
+    """`Server.publish`."""
+
+
+@dataclass(frozen=True)
+class Service:
+    """A further method on the wire, such as `program.run`.
+
+    A service goes on when the connection that called it is lost; it ends when it is done, when the
+    call is cancelled, and when the robot is stopped.
+    """
+
+    handler: Callable[[dict[str, Any], Context], Any]
+    """Runs in a worker thread; returns JSON data, raises a `RobotError`."""
+    params: Mapping[str, Any] = field(default_factory=lambda: {"type": "object"})
+    """The JSON Schema of its params, an object."""
+    doc: str = ""
+    """One line."""
+    result: Mapping[str, Any] = field(default_factory=dict)
+    """The JSON Schema of its result."""
+
+
+class Server:
+    """Serves one robot.
+
+        with Server(driver, port=0) as server:
+            robot = Robot(server.address)
+
+    `port` 0 is any free port. On another host than this machine a `token` is needed; if none is
+    given one is made up. `services` are further methods by their names, `events` the kinds of
+    events that they publish, each with what its data says. `status_page` makes the page at `/`.
+    The driver stays the caller's: the server stops the robot when it ends, and does not close it.
+    """
+
+    def __init__(
+        self,
+        driver: Driver,
+        host: str = "127.0.0.1",
+        port: int = DEFAULT_PORT,
+        *,
+        services: Mapping[str, Service] | None = None,
+        events: Mapping[str, str] | None = None,
+        token: str | None = None,
+        status_page: Callable[[Status], str] = status_page,
+        ping_seconds: float = PING_SECONDS,
+    ) -> None:
+        self.token = token if token or access.is_loopback(host) else access.new_token()
+        """What a client must bring, or None."""
+        self.driver = driver
+        self.services = dict(services or {})
+        self.events = {**EVENTS, **(events or {})}
+        self.dispatcher = Dispatcher(driver)
+        self.clients: set[_Client] = set()
+        self.methods = self._readers()
+        self._host = host
+        self._port = port
+        self._status_page = status_page
+        self._pose: Event | None = None
+        self._clients_met = 0
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._unsubscribe: Callable[[], None] = _nothing
+        self._started = threading.Event()
+        self._uvicorn = uvicorn.Server(
+            uvicorn.Config(
+                self._app(),
+                log_config=None,
+                access_log=False,
+                proxy_headers=False,
+                timeout_graceful_shutdown=1,
+                ws="websockets-sansio",
+                ws_max_size=protocol.MAX_FRAME,
+                ws_per_message_deflate=False,
+                ws_ping_interval=ping_seconds,
+                ws_ping_timeout=ping_seconds,
+            )
+        )
+        self._thread: threading.Thread | None = None
+
+    @property
+    def address(self) -> str:
+        """ "host:port", with the port that it really has once it is started."""
+        host = f"[{self._host}]" if ":" in self._host else self._host
+        return f"{host}:{self._port}"
+
+    # --- from start to end
+
+    def start(self) -> None:
+        """Begin to serve, in a thread of its own. Raises CannotListen."""
+        listening = _listen(self._host, self._port)
+        self._port = listening.getsockname()[1]
+        self._unsubscribe = self.driver.subscribe(self.publish)
+        self._thread = threading.Thread(
+            target=self._uvicorn.run, args=([listening],), name="robot server", daemon=True
+        )
+        self._thread.start()
+        self._started.wait()
+
+    def close(self, because: str = "The robot's server was ended.") -> None:
+        """Stop the robot, leave it standing, and let every client go."""
+        if self._thread is None:
+            return
+        stopped = threading.Event()
+        self.dispatcher.stop(because, lambda result, error: stopped.set())
+        stopped.wait(2)
+        self._unsubscribe()
+        self._uvicorn.should_exit = True
+        self._thread.join(5)
+        self._thread = None
+        self.dispatcher.close()
+
+    def __enter__(self) -> Server:
+        self.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def serve_forever(self, started: Callable[[Server], None] | None = None) -> None:
+        """Serve until Ctrl-C or SIGTERM, then stop the robot and return. Main thread only.
+
+        `started` is called once the server can be reached; for the line that says where.
+        """
+        ended = threading.Event()
+        with _on_signals(ended.set):
+            self.start()
+            try:
+                if started:
+                    started(self)
+                ended.wait()
+            finally:
+                self.close()
+
+    def publish(self, kind: str, data: Event) -> None:
+        """Send an event to every client that subscribed to its kind. From any thread; returns at
+        once."""
+        if kind == "pose":
+            self._pose = data
+        try:
+            frame = protocol.event_frame(kind, data)
+        except (msgspec.MsgspecError, TypeError, ValueError):
+            _log.exception("an event of the kind %s cannot be sent", kind)
+            return
+        self.in_loop(self._send_event, kind, frame)
+
+    def in_loop(self, task: Callable[..., None], *arguments: Any) -> None:
+        """Do it in the loop thread, which alone touches connections; not at all after the end."""
+        if self._loop is not None:
+            with contextlib.suppress(RuntimeError):  # the loop has ended
+                self._loop.call_soon_threadsafe(task, *arguments)
+
+    def _send_event(self, kind: str, frame: str) -> None:
+        for client in self.clients:
+            if client.wire.wants(kind):
+                client.send(frame, kind)
+
+    # --- what can be called
+
+    def _readers(self) -> dict[str, protocol.Reader]:
+        """Each method's full name with what checks its params."""
+        readers: dict[str, protocol.Reader] = {
+            f"robot.{name}": _robot_reader(name) for name in METHODS
+        }
+        # Whatever else comes with it, a stop is a stop.
+        readers[protocol.STOP] = lambda params: {}
+        for name in ("robot.capabilities", "rpc.discover"):
+            readers[name] = _service_reader(name, {})
+        for name, service in self.services.items():
+            if name.partition(".")[0] in ("robot", "rpc", "event"):
+                raise ValueError(f"a service cannot be called {name}")
+            readers[name] = _service_reader(name, service.params)
+        return readers
+
+    def job(self, client: _Client, call: protocol.Call) -> Job:
+        """The job that does a call."""
+
+        def done(result: Any, error: RobotError | Stopped | None) -> None:
+            reply = (
+                protocol.result_reply(call, result)
+                if error is None
+                else protocol.error_reply(call, error)
+            )
+            self.in_loop(client.finish, call, reply)
+
+        name = call.method.removeprefix("robot.")
+        method = METHODS.get(name) if name != call.method else None
+        if method is None:
+            return Job(call.method, self._service(client, call), done, client, robot=False)
+
+        def run(stop: StopFlag) -> Any:
+            return self.driver.call(name, call.arguments, stop)
+
+        return Job(call.method, run, done, client, robot=True, moves=method.moves)
+
+    def _service(self, client: _Client, call: protocol.Call) -> Callable[[StopFlag], Any]:
+        if call.method == "robot.capabilities":
+            return lambda stop: self.driver.capabilities()
+        if call.method == "rpc.discover":
+            return lambda stop: openrpc(self.driver.capabilities(), self.services, self.events)
+        handler = self.services[call.method].handler
+        return lambda stop: handler(call.arguments, Context(client.name, stop, self.publish))
+
+    # --- web pages and the wire
+
+    def _app(self) -> ASGIApp:
+        routes = [
+            Route("/", self._page),
+            Route("/healthz", self._health),
+            WebSocketRoute("/", self._serve_client),
+        ]
+        return self._guarded(Starlette(routes=routes, lifespan=self._lifespan))
+
+    @contextlib.asynccontextmanager
+    async def _lifespan(self, app: Starlette) -> Any:
+        self._loop = asyncio.get_running_loop()
+        self._started.set()
+        yield
+
+    def _guarded(self, app: ASGIApp) -> ASGIApp:
+        """The application, reached only by who may (`access`)."""
+
+        async def guarded(scope: Scope, receive: Receive, send: Send) -> None:
+            refusal = self._refusal(HTTPConnection(scope)) if scope["type"] != "lifespan" else None
+            if refusal is None:
+                await app(scope, receive, send)
+                return
+            response = PlainTextResponse(refusal.sentence + "\n", refusal.status, HEADERS)
+            if scope["type"] == "websocket":
+                await WebSocket(scope, receive, send).send_denial_response(response)
+            else:
+                await response(scope, receive, send)
+
+        return guarded
+
+    def _refusal(self, request: HTTPConnection) -> access.Refusal | None:
+        # Whether the server is alive is no secret.
+        token = None if request.url.path == "/healthz" else self.token
+        local = access.is_loopback(self._host)
+        return access.refusal(request.headers, request.query_params, local=local, token=token)
+
+    async def _health(self, request: Request) -> JSONResponse:
+        return JSONResponse({"status": "ok"})
+
+    async def _page(self, request: Request) -> HTMLResponse:
+        status = Status(
+            capabilities=await asyncio.to_thread(self.driver.capabilities),
+            address=self.address,
+            pose=_in_words(self._pose),
+            connections=len(self.clients),
+            in_flight=self.dispatcher.in_flight,
+            needs_token=self.token is not None,
+        )
+        return HTMLResponse(self._status_page(status), headers=HEADERS)
+
+    async def _serve_client(self, socket: WebSocket) -> None:
+        self._clients_met += 1
+        client = _Client(self, f"{self._clients_met}")
+        self.clients.add(client)
+        try:
+            await client.serve(socket)
+        finally:
+            self.clients.discard(client)
+            self.dispatcher.drop(client)
+
+
+class _Client:
+    """One connection. Only the loop thread touches it."""
+
+    def __init__(self, server: Server, name: str) -> None:
+        self.name = name
+        self.wire = protocol.Connection(server.methods, server.events)
+        self._server = server
+        # The job of each call in flight, for a cancel.
+        self._jobs: dict[protocol.Call, Job] = {}
+        # Frames to send, each with the kind of event it is, None for a reply.
+        self._waiting: deque[tuple[str | None, str]] = deque()
+        self._something_waits = asyncio.Event()
+        # The client does not read its replies; it is not served any more.
+        self._overrun = False
+
+    async def serve(self, socket: WebSocket) -> None:
+        await socket.accept()
+        sender = asyncio.create_task(self._send_waiting(socket))
+        try:
+            while not self._overrun:
+                message = await socket.receive()
+                if message["type"] != "websocket.receive":
+                    return
+                frame = message.get("text")
+                self._act(message["bytes"] if frame is None else frame)
+            await socket.close(1008, "Replies are not read.")
+        finally:
+            sender.cancel()
+
+    def _act(self, frame: str | bytes) -> None:
+        for action in self.wire.receive(frame):
+            match action:
+                case protocol.Send():
+                    self.send(action.frame)
+                case protocol.Cancel():
+                    self._server.dispatcher.cancel(self._jobs[action.call])
+                case protocol.Call(method=protocol.STOP):
+                    self._stop(action)
+                case protocol.Call():
+                    job = self._jobs[action] = self._server.job(self, action)
+                    self._server.dispatcher.start(job)
+
+    def _stop(self, call: protocol.Call) -> None:
+        because = "The robot was stopped."
+
+        def done(result: Any, error: RobotError | Stopped | None) -> None:
+            reply = (
+                protocol.error_reply(call, error) if error else protocol.result_reply(call, None)
+            )
+            self._server.in_loop(self.finish, call, reply)
+
+        self._server.dispatcher.stop(because, done)
+
+    def finish(self, call: protocol.Call, reply: str) -> None:
+        self._jobs.pop(call, None)
+        frame = self.wire.finish(call, reply)
+        if frame is not None:
+            self.send(frame)
+
+    def send(self, frame: str, event: str | None = None) -> None:
+        """Put a frame into the queue; the client gets it when it can take it."""
+        if len(self._waiting) >= MAX_WAITING:
+            self._make_room()
+        self._waiting.append((event, frame))
+        self._something_waits.set()
+
+    def _make_room(self) -> None:
+        kinds = [kind for kind, _ in self._waiting]
+        dropped = next(
+            (
+                index
+                for wanted in (lambda kind: kind == "pose", lambda kind: kind is not None)
+                for index, kind in enumerate(kinds)
+                if wanted(kind)
+            ),
+            None,
+        )
+        if dropped is None:
+            self._overrun = True
+            dropped = 0
+        del self._waiting[dropped]
+
+    async def _send_waiting(self, socket: WebSocket) -> None:
+        """Send what waits, at the client's pace."""
+        while True:
+            await self._something_waits.wait()
+            self._something_waits.clear()
+            while self._waiting:
+                _, frame = self._waiting.popleft()
+                await socket.send_text(frame)
+
+
+def _robot_reader(name: str) -> protocol.Reader:
+    def read(params: protocol.Params) -> dict[str, Any]:
+        if isinstance(params, list):
+            return read_arguments(name, params)
+        return read_arguments(name, named=params)
+
+    return read
+
+
+def _service_reader(name: str, schema: Mapping[str, Any]) -> protocol.Reader:
+    """Params by position stand in the order of the schema's properties."""
+    validator = jsonschema.Draft202012Validator(schema)
+    names = list(schema.get("properties", {}))
+
+    def read(params: protocol.Params) -> dict[str, Any]:
+        if isinstance(params, list):
+            if len(params) > len(names):
+                raise InvalidCall(f"{name} takes {len(names)} params at most.")
+            params = dict(zip(names, params, strict=False))
+        given = dict(params or {})
+        error = jsonschema.exceptions.best_match(validator.iter_errors(given))
+        if error is not None:
+            at = f"{'.'.join(map(str, error.absolute_path))} of " if error.absolute_path else ""
+            raise InvalidCall(f"{at}{name} is not as it should be: {error.message[:300]}.")
+        return given
+
+    return read
+
+
+def _in_words(pose: Event | None) -> str:
+    if pose is None:
+        return "has not moved yet"
+    return f"{pose.get('place') or 'on its way'} ({pose.get('x', 0):.1f}, {pose.get('y', 0):.1f})"
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    """A listening socket. Raises CannotListen with what to do about it."""
+    try:
+        family, kind, number, _, where = socket.getaddrinfo(
+            host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
+        )[0]
+        listening = socket.socket(family, kind, number)
+    except OSError:
+        raise CannotListen(f"{host} is no address of this machine. Try 127.0.0.1.") from None
+    try:
+        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listening.bind(where)
+        listening.listen(128)
+    except OSError as error:
+        listening.close()
+        match error.errno:
+            case errno.EADDRINUSE:
+                sentence = f"Port {port} is in use by another program. "
+                sentence += "End that program, or choose another port with --port."
+            case errno.EACCES:
+                sentence = f"Port {port} may not be used. Choose one above 1023 with --port."
+            case _:
+                sentence = f"{host} is no address of this machine. Try 127.0.0.1."
+        raise CannotListen(sentence) from None
+    return listening
+
+
+@contextlib.contextmanager
+def _on_signals(react: Callable[[], None]) -> Iterator[None]:
+    """React to the first Ctrl-C or SIGTERM; a second one ends the process as usual."""
+    numbers = (signal.SIGINT, signal.SIGTERM)
+    before = {number: signal.getsignal(number) for number in numbers}
+
+    def restore() -> None:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+    def first(number: int, frame: object) -> None:
+        restore()
+        react()
+
+    for number in numbers:
+        signal.signal(number, first)
+    try:
+        yield
+    finally:
+        restore()
+
+
+def _nothing() -> None:
+    pass
