@@ -11,9 +11,11 @@ Everything is in metres.
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from typing import Any, NamedTuple
+import threading
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from typing import Any, Concatenate, NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
 import shapely
@@ -46,6 +48,24 @@ class Route(NamedTuple):
     """The gates it passes."""
 
 
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def _one_at_a_time(
+    question: Callable[Concatenate[Chart, P], R],
+) -> Callable[Concatenate[Chart, P], R]:
+    """Simulations in several threads share a chart, but GEOS's prepared shapes allow one at a
+    time."""
+
+    @functools.wraps(question)
+    def alone(chart: Chart, /, *args: P.args, **kwargs: P.kwargs) -> R:
+        with chart._lock:
+            return question(chart, *args, **kwargs)
+
+    return alone
+
+
 class Chart:
     """The free floor for a body of `radius`, which routes keep `margin` further away than that.
 
@@ -64,6 +84,7 @@ class Chart:
         radius: float = 0.25,
         margin: float = 0.1,
     ) -> None:
+        self._lock = threading.RLock()
         self.radius = radius
         self.clearance = radius + margin
         pieces: list[BaseGeometry] = [
@@ -82,8 +103,8 @@ class Chart:
         self._gates |= {name: zone.buffer(-_GRAZE) for name, zone in grown_zones.items()}
 
         grown = shapely.union_all([_grow(piece, self.clearance) for piece in pieces])
-        frame = _frame([*pieces, *grown_zones.values()])
-        self._free = frame.difference(grown)
+        self._frame = _frame([*pieces, *grown_zones.values()])
+        self._free = self._frame.difference(grown)
         self._passable = self._free.buffer(_GRAZE, join_style="mitre")
         shapely.prepare(self._free)
         shapely.prepare(self._passable)
@@ -122,6 +143,7 @@ class Chart:
 
     # --- questions about single spots ------------------------------------------------------------
 
+    @_one_at_a_time
     def distance(self, x: float, y: float) -> float:
         """How far the nearest wall or piece of furniture is; 0 inside of furniture."""
         here = Point(x, y)
@@ -132,28 +154,35 @@ class Chart:
             else float(here.distance(self._obstacle_tree.geometries[index]))
         )
 
+    @_one_at_a_time
     def fits(self, x: float, y: float) -> bool:
-        """Whether the body can be there without touching anything."""
-        return self.distance(x, y) >= self.radius
+        """Whether the body can be there without touching anything, on the floor."""
+        return self.distance(x, y) >= self.radius and bool(self._frame.covers(Point(x, y)))
 
+    @_one_at_a_time
     def in_gate(self, name: str, x: float, y: float) -> bool:
         """Whether a spot lies in a zone."""
         return bool(self._gates[name].covers(Point(x, y)))
 
+    @_one_at_a_time
     def clear(self, start: Spot, goal: Spot) -> bool:
         """Whether the straight way keeps the clearance."""
         return bool(self._passable.covers(LineString([start, goal])))
 
+    @_one_at_a_time
     def in_sight(self, start: Spot, end: Spot) -> bool:
         """Whether no wall stands between; doors do not count."""
         line = LineString([start, end])
         return bool(self._walls.query(line, predicate="intersects").size == 0)
 
+    @_one_at_a_time
     def nearest_free(self, x: float, y: float) -> Spot | None:
         """The nearest spot that keeps the clearance, on this side of the walls."""
         here = Point(x, y)
         if self._passable.covers(here):
             return x, y
+        if not self._frame.covers(here):
+            return None
         parts = self._free.geoms if isinstance(self._free, MultiPolygon) else [self._free]
         near = sorted((here.distance(part), i) for i, part in enumerate(parts) if not part.is_empty)
         for _, i in near:
@@ -173,6 +202,7 @@ class Chart:
 
     # --- routes ----------------------------------------------------------------------------------
 
+    @_one_at_a_time
     def route(
         self,
         start: Spot,
@@ -200,6 +230,7 @@ class Chart:
         passed = frozenset(name for name, gate in self._gates.items() if gate.intersects(line))
         return Route(points, float(line.length), passed)
 
+    @_one_at_a_time
     def lengths(
         self, start: Spot, goals: Sequence[Spot], closed: Collection[str] = ()
     ) -> list[float]:
