@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import zlib
 from collections.abc import Iterable, Sequence
@@ -16,6 +17,7 @@ from sim.pictures_scene import (
     Line,
     Scene,
     Shape,
+    Spot,
     Text,
     arc,
     box_about,
@@ -25,8 +27,8 @@ from sim.pictures_scene import (
 )
 from sim.world import Door, Furniture, Place, Pose, World, polygon_area, rectangle
 
-LONGEST = 1480.0
-"""Pixels of the longer side of the floor."""
+LARGEST = (1480.0, 1080.0)
+"""Pixels that the floor's width and height may have."""
 MOST_SCALE = 90.0
 """Pixels a metre, for the smallest worlds."""
 MARGIN = 26.0
@@ -92,6 +94,10 @@ _COLOURS = {
 }
 
 
+Inhabitant = tuple[float, float, str, str]
+"""Somebody's x, y, name and kind."""
+
+
 @dataclass(frozen=True)
 class Floor:
     """A drawn floor, and what is taken on it, for those who draw on top."""
@@ -102,36 +108,45 @@ class Floor:
 
 
 def draw_floor(
-    world: World, *, top: float = 0.0, people: bool = True, longest: float = LONGEST
+    world: World,
+    people: Sequence[Inhabitant] | None = None,
+    ways: Iterable[Sequence[tuple[float, float]]] = (),
+    *,
+    top: float = 0.0,
+    largest: tuple[float, float] = LARGEST,
 ) -> Floor:
-    """The floor as it is before anything happens; `top` pixels are left free for a title.
+    """The floor with these people, or with everybody where the simulation begins. Labels
+    keep off the `ways` (in metres) that will be drawn on it, as far as they can; `top` pixels are
+    left free for a title.
 
     Raises `sim.maps.ImageError` if the image of the world's map can be read no more.
     """
     x1, y1, x2, y2 = _extent(world)
-    scale = min(MOST_SCALE, longest / max(x2 - x1, y2 - y1))
+    scale = min(MOST_SCALE, largest[0] / (x2 - x1), largest[1] / (y2 - y1))
     width, height = (x2 - x1) * scale + 2 * MARGIN, (y2 - y1) * scale + 2 * MARGIN
     frame = Frame(scale, MARGIN - x1 * scale, top + MARGIN + y2 * scale)
     scene = Scene(width, height + top, BACKGROUND)
     board = Board(Box(4, top + 4, width - 4, height + top - 4))
 
-    _draw_rooms(world, frame, scene, board)
+    _draw_rooms(world, frame, scene)
     _draw_furniture(world, frame, scene, board)
-    _draw_doors(world, frame, scene)
+    _draw_doors(world, frame, scene, board)
     _draw_walls(world, frame, scene, board)
     _draw_charger(world, frame, scene, board)
-    inhabitants = _inhabitants(world) if people else []
+    inhabitants = _inhabitants(world) if people is None else people
     things = _things(world)
-    for x, y, _, _ in inhabitants:
+    for x, y, *_ in inhabitants:
         board.labels.append(box_at(*frame.spot(x, y), 2 * _head(frame), 2 * _head(frame)))
-    for x, y, _, _ in things:
-        board.drawings.append((box_at(*frame.spot(x, y), 9, 9), 3.0))
+    for x, y, *_ in things:
+        board.draw(box_at(*frame.spot(x, y), 9, 9), 3.0)
+    for way in ways:
+        for one, two in itertools.pairwise(_even(frame.spots(way), 12)):
+            board.draw(box_about((one, two)).grown(3), 4.0)
     _draw_place_names(world, frame, scene, board)
     _draw_things(things, frame, scene)
     for x, y, name, kind in inhabitants:
         scene.layer("people").extend(person_shapes(frame, x, y, name, kind))
-    for x, y, name, _ in inhabitants:
-        label = label_spot(board, name, frame.spot(x, y), _head(frame), 10, INK)
+        label = label_spot(board, name, frame.spot(x, y), _head(frame), 10.5, INK)
         scene.layer("names").extend(label or [])
     return Floor(scene, frame, board)
 
@@ -140,7 +155,7 @@ def person_shapes(frame: Frame, x: float, y: float, name: str, kind: str) -> lis
     """A head with the person's initial in it, in the colour of their kind."""
     u, v = frame.spot(x, y)
     radius = _head(frame)
-    colour = _PEOPLE.get(kind) or tint(kind, 0.55, 0.62)
+    colour = _PEOPLE.get(kind) or tint(kind, 0.55, 0.42)
     note = f"{name}, {kind}" if name != kind else name
     initial = Text(u, v + radius * 0.44, name[:1].upper(), radius * 1.25, "#ffffff", "middle", True)
     return [Disc(u, v, radius, colour, "#ffffff", 1.5, note), initial]
@@ -168,6 +183,19 @@ def tint(kind: str, saturation: float, lightness: float) -> str:
     return f"#{round(red * 255):02x}{round(green * 255):02x}{round(blue * 255):02x}"
 
 
+def _even(way: Sequence[Spot], step: float) -> list[Spot]:
+    """Points of a way that are at most about a step apart, and not many more than needed."""
+    even: list[Spot] = []
+    for x, y in way:
+        if even and (far := math.dist(even[-1], (x, y))) < step:
+            continue
+        if even and far > 2 * step:
+            (u, v), pieces = even[-1], math.ceil(far / step)
+            even += [(u + (x - u) * i / pieces, v + (y - v) * i / pieces) for i in range(1, pieces)]
+        even.append((x, y))
+    return even
+
+
 def _head(frame: Frame) -> float:
     return min(max(0.22 * frame.scale, 6.5), 11.0)
 
@@ -183,7 +211,7 @@ def _extent(world: World) -> tuple[float, float, float, float]:
 # --- the building --------------------------------------------------------------------------------
 
 
-def _draw_rooms(world: World, frame: Frame, scene: Scene, board: Board) -> None:
+def _draw_rooms(world: World, frame: Frame, scene: Scene) -> None:
     rooms = scene.layer("rooms")
     if world.map is not None:
         rooms.append(Area(frame.spots(_corners(world)), FLOOR))
@@ -217,7 +245,7 @@ def _draw_furniture(world: World, frame: Frame, scene: Scene, board: Board) -> N
         if piece.pose is None:
             continue
         layer.extend(_furniture_shapes(piece, piece.pose, frame))
-        board.drawings.append((box_about(frame.spots(piece.outline)), 1.0))
+        board.draw(box_about(frame.spots(piece.outline)), 1.0)
 
 
 def _furniture_shapes(piece: Furniture, pose: Pose, frame: Frame) -> Iterable[Shape]:
@@ -234,30 +262,28 @@ def _furniture_shapes(piece: Furniture, pose: Pose, frame: Frame) -> Iterable[Sh
         # The head is where the bed's length points to.
         yield _part(pose, frame, length * 0.36, width * 0.72, length * 0.2, "#e6edf4", rim)
         yield _part(pose, frame, -length * 0.16, width * 0.96, length * 0.62, "#eef4f9", None)
-    elif piece.kind in ("chair", "sofa"):
-        back = mixed(fill, rim, 0.7)
-        yield _part(pose, frame, 0, length * 0.98, width * 0.2, back, None, across=-width * 0.39)
+    elif piece.kind == "chair":
+        # One sits facing where its length points to; on a sofa, with it to the right.
+        yield _part(pose, frame, -length * 0.39, width, length * 0.22, _back(fill, rim), rim)
+    elif piece.kind == "sofa":
+        back = Pose(pose.x, pose.y, pose.theta + 90)
+        yield _part(back, frame, -width * 0.39, length, width * 0.22, _back(fill, rim), rim)
     elif piece.kind == "shelf":
         ends = (frame.spot(*point) for point in _middle_line(pose, length))
         yield Line(tuple(ends), rim, 0.8)
 
 
+def _back(fill: str, rim: str) -> str:
+    return mixed(fill, rim, 0.6)
+
+
 def _part(
-    pose: Pose,
-    frame: Frame,
-    along: float,
-    width: float,
-    length: float,
-    fill: str,
-    rim: str | None,
-    across: float = 0.0,
+    pose: Pose, frame: Frame, along: float, width: float, length: float, fill: str, rim: str | None
 ) -> Area:
-    """A rectangle on a piece of furniture, off its middle; across it lies along its width."""
+    """A rectangle on a piece of furniture, so far along from its middle."""
     angle = math.radians(pose.theta)
-    x = pose.x + along * math.cos(angle) - across * math.sin(angle)
-    y = pose.y + along * math.sin(angle) + across * math.cos(angle)
-    size = (width, length) if across else (length, width)
-    return Area(frame.spots(rectangle(Pose(x, y, pose.theta), size)), fill, rim, 0.8)
+    middle = Pose(pose.x + along * math.cos(angle), pose.y + along * math.sin(angle), pose.theta)
+    return Area(frame.spots(rectangle(middle, (length, width))), fill, rim, 0.8)
 
 
 def _middle_line(pose: Pose, length: float) -> Iterable[tuple[float, float]]:
@@ -266,7 +292,7 @@ def _middle_line(pose: Pose, length: float) -> Iterable[tuple[float, float]]:
         yield (pose.x + along * math.cos(angle), pose.y + along * math.sin(angle))
 
 
-def _draw_doors(world: World, frame: Frame, scene: Scene) -> None:
+def _draw_doors(world: World, frame: Frame, scene: Scene, board: Board) -> None:
     layer = scene.layer("doors")
     for door in world.doors:
         x1, y1, x2, y2 = door.ends
@@ -276,12 +302,17 @@ def _draw_doors(world: World, frame: Frame, scene: Scene) -> None:
             continue
         width = math.hypot(x2 - x1, y2 - y1)
         side = _side(world, door)
+        leaves: list[Shape] = []
         if width <= 1.45:
-            layer.extend(_leaf(frame, (x1, y1), (x2, y2), side))
+            leaves += _leaf(frame, (x1, y1), (x2, y2), side)
         elif width <= 2.2:
             middle = ((x1 + x2) / 2, (y1 + y2) / 2)
-            layer.extend(_leaf(frame, (x1, y1), middle, side))
-            layer.extend(_leaf(frame, (x2, y2), middle, -side))
+            leaves += _leaf(frame, (x1, y1), middle, side)
+            leaves += _leaf(frame, (x2, y2), middle, -side)
+        for leaf in leaves:
+            if isinstance(leaf, Line):
+                board.draw(box_about(leaf.points), 0.4)
+        layer.extend(leaves)
 
 
 def _side(world: World, door: Door) -> int:
@@ -307,13 +338,13 @@ def _leaf(
 
 
 def _draw_walls(world: World, frame: Frame, scene: Scene, board: Board) -> None:
-    width = max(world.wall_thickness * frame.scale, 2.0)
+    width = min(max(world.wall_thickness * frame.scale, 2.0), 7.0)
     layer = scene.layer("walls")
     for x1, y1, x2, y2 in world.walls:
         ends = (frame.spot(x1, y1), frame.spot(x2, y2))
         layer.append(Line(ends, WALL, width, square=world.map is None))
         if ends[0][0] == ends[1][0] or ends[0][1] == ends[1][1]:
-            board.drawings.append((box_about(ends).grown(width / 2 + 1), 8.0))
+            board.draw(box_about(ends).grown(width / 2 + 1), 8.0)
 
 
 def _draw_charger(world: World, frame: Frame, scene: Scene, board: Board) -> None:
@@ -332,8 +363,8 @@ def _draw_charger(world: World, frame: Frame, scene: Scene, board: Board) -> Non
 # --- who and what is there -----------------------------------------------------------------------
 
 
-def _inhabitants(world: World) -> list[tuple[float, float, str, str]]:
-    """x, y, name and kind of everybody, as they are when the simulation begins."""
+def _inhabitants(world: World) -> list[Inhabitant]:
+    """Everybody as they are when the simulation begins."""
     from sim.hospital import chart_of
     from sim.placing import people_at_start
 
@@ -379,7 +410,7 @@ def _draw_place_names(world: World, frame: Frame, scene: Scene, board: Board) ->
             outline = frame.spots(place.area)
             layer.extend(label_area(board, place.name, outline, ROOM_NAME) or [])
             if place.inside and world.place(place.inside):
-                board.drawings.append((box_about(outline), 2.0))
+                board.draw(box_about(outline), 2.0)
         elif place.pose is not None:
             spot = frame.spot(place.pose.x, place.pose.y)
             layer.append(Disc(*spot, 3, ROOM_NAME, note=_note(place)))

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
 
 from sim.pictures_scene import Box, Spot, Text, box_about, box_at
 from sim.pictures_text import text_width, wrapped
@@ -17,31 +19,43 @@ _SIZES = (15.0, 14.0, 13.0, 12.0, 11.0, 10.0, 9.0, 8.0)
 _SMALLER = 90.0
 """What a label's being one size smaller counts, in square pixels covered."""
 _GRID = 12
-_FORBIDDEN = 1e9
+_CELL = 2
+"""Pixels: how finely it is kept what is drawn where."""
 
 
-@dataclass
 class Board:
-    """What is taken on a picture: labels, which nothing may cover, and drawings, which had better
+    """What is taken on a picture: `labels`, which nothing may cover, and drawings, which had better
     not be covered, each by its weight for every square pixel."""
 
-    whole: Box
-    labels: list[Box] = field(default_factory=list)
-    drawings: list[tuple[Box, float]] = field(default_factory=list)
+    def __init__(self, whole: Box) -> None:
+        self.whole = whole
+        self.labels: list[Box] = []
+        self._weights = np.zeros((_cell(whole.bottom) + 1, _cell(whole.right) + 1))
+        self._sums: NDArray[np.float64] | None = None
 
-    def near(self, box: Box) -> Board:
-        """The part of it that has to do with this box."""
-        return Board(
-            self.whole,
-            [label for label in self.labels if label.covers(box)],
-            [drawing for drawing in self.drawings if drawing[0].covers(box)],
-        )
+    def draw(self, box: Box, weight: float) -> None:
+        """Something has been drawn in the box."""
+        rows = slice(_cell(box.top), max(_cell(box.bottom), _cell(box.top) + 1))
+        columns = slice(_cell(box.left), max(_cell(box.right), _cell(box.left) + 1))
+        self._weights[rows, columns] += weight
+        self._sums = None
 
     def cost(self, box: Box) -> float:
         """What covering this box covers; infinite for labels and beyond the picture."""
         if not box.within(self.whole) or any(label.covers(box) for label in self.labels):
             return math.inf
-        return sum(weight * box.common(drawing) for drawing, weight in self.drawings)
+        if self._sums is None:
+            # The sum of all weights above and to the left: a box's sum is four of these.
+            self._sums = np.pad(self._weights.cumsum(0).cumsum(1), ((1, 0), (1, 0)))
+        sums = self._sums
+        top, bottom = _cell(box.top), _cell(box.bottom) + 1
+        left, right = _cell(box.left), _cell(box.right) + 1
+        inner = sums[bottom, right] - sums[top, right] - sums[bottom, left] + sums[top, left]
+        return float(inner) * _CELL * _CELL
+
+
+def _cell(pixels: float) -> int:
+    return max(int(pixels / _CELL), 0)
 
 
 def text_box(x: float, y: float, lines: Sequence[str], size: float) -> Box:
@@ -64,7 +78,6 @@ def label_area(board: Board, name: str, outline: Sequence[Spot], colour: str) ->
     """The name of a room, somewhere in its outline, as large and as free as can be; None if there
     is no room for it."""
     around = box_about(outline)
-    nearby = board.near(around)
     middle_x, middle_y = around.middle
     best: tuple[float, Box, list[str], float] | None = None
     for size in _SIZES:
@@ -77,7 +90,7 @@ def label_area(board: Board, name: str, outline: Sequence[Spot], colour: str) ->
                 if not all(contains(tuple(outline), *spot) for spot in _rim(box)):
                     continue
                 far = math.hypot((x - middle_x) / 2, y - middle_y)
-                cost = penalty + nearby.cost(box) + far + 40 * (len(lines) - 1)
+                cost = penalty + board.cost(box) + far + 40 * (len(lines) - 1)
                 if math.isfinite(cost) and (best is None or cost < best[0]):
                     best = (cost, box, lines, size)
     if best is None:
@@ -97,7 +110,7 @@ def label_spot(
         cost = board.cost(box)
         if best is None or cost < best[0]:
             best = (cost, box)
-    if best is None or math.isinf(best[0]) or best[0] > _FORBIDDEN:
+    if best is None or math.isinf(best[0]):
         return None
     board.labels.append(best[1])
     return text_lines(best[1], [name], size, colour)

@@ -123,12 +123,6 @@ class Box:
             and other.top < self.bottom
         )
 
-    def common(self, other: Box) -> float:
-        """The area of that piece."""
-        width = min(self.right, other.right) - max(self.left, other.left)
-        height = min(self.bottom, other.bottom) - max(self.top, other.top)
-        return width * height if width > 0 and height > 0 else 0.0
-
     def within(self, other: Box) -> bool:
         return (
             self.left >= other.left

@@ -112,7 +112,7 @@ def draw_text(
     letters, accents = _spelled(text)
     x, y = at
     x -= {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor] * text_width(text, size)
-    weight = round(size * 0.025) if bold else 0
+    weight = round(size * 0.02) if bold else 0
     draw.text((x, y), letters, colour, font, "ls", stroke_width=weight, stroke_fill=colour)
     pen = max(1, round(size * (0.1 if bold else 0.075)))
     for number, accent in accents:
