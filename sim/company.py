@@ -19,6 +19,8 @@ from sim.world import Place
 
 _SLOW_GAP, _WAIT_GAP = 1.8, 2.8
 """Metres of lead from which the robot slows down, and at which it waits."""
+_CREEP = 0.1
+"""A share of the speed below which it rather stands."""
 _LOST_AFTER = 90.0
 """Seconds after which the robot waits no longer."""
 _CRUMB = 0.2
@@ -69,11 +71,11 @@ class _Waiting:
     def limit(self) -> float:
         gap = self._human.distance(self._hospital.robot.position)
         share = (_WAIT_GAP - gap) / (_WAIT_GAP - _SLOW_GAP)
-        return TOP_SPEED * max(0.0, min(1.0, share))
+        return TOP_SPEED * min(1.0, share) if share > _CREEP else 0.0
 
     def check(self) -> None:
         gap = self._human.distance(self._hospital.robot.position)
-        if gap < _WAIT_GAP:
+        if gap < _WAIT_GAP - 2 * _CREEP:
             self._near = self._hospital.time
         elif self._hospital.time - self._near > _LOST_AFTER:
             raise NotFound(

@@ -186,8 +186,8 @@ def check_goal(hospital: Hospital, goal: Spot) -> None:
     name = hospital.name_of_spot(*goal)
     if not hospital.chart.fits(*goal):
         raise NotPossible(
-            f"The robot cannot stand at {goal[0]:.1f}, {goal[1]:.1f} ({name}): a wall or furniture "
-            "is there. Choose a spot on free floor."
+            f"The robot cannot stand at {goal[0]:.1f}, {goal[1]:.1f} ({name}): there is a wall or "
+            "furniture, or no floor. Choose a spot on free floor."
         )
     if any(hospital.chart.in_gate(zone, *goal) for zone in _zones(hospital)):
         raise NotPossible(

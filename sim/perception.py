@@ -122,11 +122,10 @@ def describe(hospital: Hospital, thing: str) -> str:
         doing = _listed([*seen.attributes, *(f"holding {_a(name)}" for name in held)])
         return f"{seen.name}{kind} is {doing}."
     what = _a(" ".join([*seen.attributes, seen.name]))
-    kind = (
-        "" if key(seen.kind) in key(seen.name) or seen.kind == "object" else f", {_a(seen.kind)},"
-    )
+    plain = seen.kind == "object" or key(seen.kind) in key(seen.name)
+    kind = "" if plain else f" ({seen.kind})"
     where = f" on the {sight.on}" if sight.on else ""
-    return f"It is {what}{kind}{where}.".replace(",.", ".")
+    return f"It is {what}{kind}{where}."
 
 
 # --- which it fits -------------------------------------------------------------------------------
@@ -264,11 +263,27 @@ def pick(hospital: Hospital, thing: str, sights: Sequence[Sight]) -> list[Sight]
     if measure is None or not near:
         return near
     score = _measures(hospital, near)[measure]
-    return [max(near, key=score)]
+    known = [(value, -i) for i, sight in enumerate(near) if (value := score(sight)) is not None]
+    return [near[-max(known)[1]] if known else _by_words(near, measure)]
 
 
-def _measures(hospital: Hospital, sights: Sequence[Sight]) -> dict[str, Callable[[Sight], float]]:
-    """How much of what a superlative asks for each has."""
+def _by_words(sights: Sequence[Sight], measure: str) -> Sight:
+    """Where nothing was measured, "big" and "small" are what is known."""
+    sign = -1 if measure in _LEAST else 1
+
+    def size(sight: Sight) -> int:
+        known = _vocabulary(sight)
+        return sign * (bool(known & words().big) - bool(known & words().small))
+
+    return max(sights, key=size)
+
+
+_LEAST = frozenset({"smallest", "lightest", "shortest", "thinnest"})
+_Measure = Callable[[Sight], float | None]
+
+
+def _measures(hospital: Hospital, sights: Sequence[Sight]) -> dict[str, _Measure]:
+    """How much of what a superlative asks for each has; None if that is not known."""
     robot = hospital.robot.position
     count = len(sights)
     middle = (
@@ -284,30 +299,28 @@ def _measures(hospital: Hospital, sights: Sequence[Sight]) -> dict[str, Callable
     def distance(sight: Sight) -> float:
         return math.dist(robot, spot_of(sight))
 
-    def size(axis: int | None) -> Callable[[Sight], float]:
-        def measure(sight: Sight) -> float:
-            if isinstance(sight, Item) and sight.thing.size is not None:
-                return math.prod(sight.thing.size) if axis is None else sight.thing.size[axis]
-            known = _vocabulary(sight)
-            # Without a size, "big" and "small" say what is known.
-            return float(bool(known & words().big)) - float(bool(known & words().small))
+    def size(axis: int) -> _Measure:
+        return lambda sight: (
+            sight.thing.size[axis] if isinstance(sight, Item) and sight.thing.size else None
+        )
 
-        return measure
+    def volume(sight: Sight) -> float | None:
+        known = isinstance(sight, Item) and sight.thing.size
+        return math.prod(known) if known else None
 
-    def weight(sight: Sight) -> float:
-        known = sight.thing.weight if isinstance(sight, Item) else None
-        return known if known is not None else size(None)(sight)
+    def weight(sight: Sight) -> float | None:
+        return sight.thing.weight if isinstance(sight, Item) else None
 
-    def least(measure: Callable[[Sight], float]) -> Callable[[Sight], float]:
-        return lambda sight: -measure(sight)
+    def least(measure: _Measure) -> _Measure:
+        return lambda sight: None if (value := measure(sight)) is None else -value
 
     return {
         "leftmost": left,
         "rightmost": least(left),
         "nearest": least(distance),
         "farthest": distance,
-        "biggest": size(None),
-        "smallest": least(size(None)),
+        "biggest": volume,
+        "smallest": least(volume),
         "heaviest": weight,
         "lightest": least(weight),
         "tallest": size(2),
