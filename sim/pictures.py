@@ -12,12 +12,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from sim.pictures_animation import animate
 from sim.pictures_floor import draw_floor
 from sim.pictures_png import to_image
 from sim.pictures_run import draw_run, summary
 from sim.pictures_svg import to_svg
 from sim.record import Record
 from sim.world import World
+
+__all__ = ["animate", "floor_svg", "png", "svg"]
 
 
 def floor_svg(world: World, people: bool = True) -> str:

@@ -112,12 +112,13 @@ def draw_floor(
     people: Sequence[Inhabitant] | None = None,
     ways: Iterable[Sequence[tuple[float, float]]] = (),
     *,
+    symbols: bool = True,
     top: float = 0.0,
     largest: tuple[float, float] = LARGEST,
 ) -> Floor:
     """The floor with these people, or with everybody where the simulation begins. Labels
-    keep off the `ways` (in metres) that will be drawn on it, as far as they can; `top` pixels are
-    left free for a title.
+    keep off the `ways` (in metres) that will be drawn on it, as far as they can. Without `symbols`
+    the people are not drawn, only kept clear of. `top` pixels are left free for a title.
 
     Raises `sim.maps.ImageError` if the image of the world's map can be read no more.
     """
@@ -144,7 +145,7 @@ def draw_floor(
             board.draw(box_about((one, two)).grown(3), 4.0)
     _draw_place_names(world, frame, scene, board)
     _draw_things(things, frame, scene)
-    for x, y, name, kind in inhabitants:
+    for x, y, name, kind in inhabitants if symbols else ():
         scene.layer("people").extend(person_shapes(frame, x, y, name, kind))
         label = label_spot(board, name, frame.spot(x, y), _head(frame), 10.5, INK)
         scene.layer("names").extend(label or [])
@@ -408,7 +409,11 @@ def _draw_place_names(world: World, frame: Frame, scene: Scene, board: Board) ->
     for place in named:
         if place.area:
             outline = frame.spots(place.area)
-            layer.extend(label_area(board, place.name, outline, ROOM_NAME) or [])
+            label = label_area(board, place.name, outline, ROOM_NAME)
+            if label is None and place.pose is not None:
+                spot = frame.spot(place.pose.x, place.pose.y)
+                label = label_spot(board, place.name, spot, 8, 11, ROOM_NAME)
+            layer.extend(label or [])
             if place.inside and world.place(place.inside):
                 board.draw(box_about(outline), 2.0)
         elif place.pose is not None:
