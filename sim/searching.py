@@ -85,11 +85,12 @@ def _travel_looking(
 ) -> Behaviour[None]:
     """Drive to a place; done at once when one is in view on the way."""
     way = travel(hospital, (pose[0], pose[1]), pose[2])
+    sought = fitting(hospital, thing)
     steps = 0
     with contextlib.closing(way):
         for _ in way:
             steps += 1
-            if steps % _LOOK_EVERY == 0 and in_view(hospital, thing):
+            if steps % _LOOK_EVERY == 0 and any(hospital.here(*spot_of(one)) for one in sought):
                 yield from come_to_rest(hospital)
                 return
             yield

@@ -25,6 +25,8 @@ _SCANS = 1.0
 _HEARING = 6.0
 """Metres."""
 _SCANNER = 1.5
+_SCANNER_ANGLE = 60.0
+"""The scanner reads so many metres far and so many degrees to either side."""
 _GESTURE = 2.0
 
 
@@ -162,18 +164,22 @@ def _code(hospital: Hospital) -> str | None:
     for human in _near(hospital):
         held += [hospital.items[number] for number in human.holding]
     before = [
-        item
+        (off, item.thing.code)
         for item in hospital.items
-        if item.present and item.holder is None and _before_scanner(hospital, item)
+        if item.present and item.holder is None and (off := _off_scanner(hospital, item)) < math.inf
     ]
-    before.sort(key=lambda item: math.dist(robot.position, (item.x, item.y)))
-    return next((item.thing.code for item in [*held, *before] if item.thing.code), None)
+    codes = [item.thing.code for item in held] + [code for _, code in sorted(before, key=_first)]
+    return next((code for code in codes if code), None)
 
 
-def _before_scanner(hospital: Hospital, item: Item) -> bool:
+def _off_scanner(hospital: Hospital, item: Item) -> float:
+    """How far a thing is from lying right before the scanner; infinite if out of its reach."""
     robot, spot = hospital.robot, (item.x, item.y)
-    return (
-        math.dist(robot.position, spot) <= _SCANNER
-        and abs(wrap(bearing(robot.position, spot) - robot.theta)) < 60
-        and hospital.here(*spot)
-    )
+    away = math.dist(robot.position, spot) / _SCANNER
+    aside = abs(wrap(bearing(robot.position, spot) - robot.theta)) / _SCANNER_ANGLE
+    readable = max(away, aside) <= 1 and hospital.here(*spot)
+    return aside + 0.3 * away if readable else math.inf
+
+
+def _first(found: tuple[float, str | None]) -> float:
+    return found[0]
