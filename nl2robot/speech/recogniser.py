@@ -13,7 +13,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Iterable, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -24,6 +24,7 @@ import vosk
 
 from nl2robot.models import ModelError, need
 from nl2robot.speech.audio import RATE, Audio, Samples
+from nl2robot.speech.vocabulary import spell_numbers
 
 vosk.SetLogLevel(-1)  # its C++ log goes to standard error
 
@@ -33,11 +34,12 @@ LOUDNESS = 0.6  # the peak that a recording is brought to; the model was trained
 MOST_GAIN = 30.0
 # Below this loudest moment (root mean square of 30 ms, 1 = full scale) there is nothing to hear.
 SILENCE = 0.001
-BLOCK = RATE // 4
+BLOCK = RATE // 4  # samples handed over at a time
+PUNCTUATION = '-–.,;:!?…"“”„«»()'
 
 # The second opinion. Of right commands 1 in 100 is doubted, of chatter 1 in 25 is not.
 ALIKE = 0.9  # free and limited texts this similar are the same words
-WORST_FIT = -0.05  # by how much (of its score) free decoding may fit better before it is believed
+WORST_FIT = -0.05
 
 
 @dataclass(frozen=True)
@@ -78,16 +80,16 @@ class _Decoded:
 class Recogniser:
     """A loaded speech model. May be used from several threads at once."""
 
-    def __init__(self, model: Path) -> None:
+    def __init__(self, model: Path, language: str) -> None:
         """`model` is the folder of a vosk model. Raises ModelError if it cannot be used."""
         try:
             self._model = vosk.Model(str(model))
         except Exception as error:  # vosk raises nothing more precise
             raise ModelError(
-                f"The speech model in {model} cannot be used. Delete that folder and run "
-                "`nl2robot models get` with its language to fetch it again."
+                f"The speech model in {model} cannot be used. "
+                f"Run `nl2robot models get {language} --again` to fetch it again."
             ) from error
-        self.path = model
+        self.language = language
 
     def knows(self, word: str) -> bool:
         """Whether the model can hear this word at all."""
@@ -96,62 +98,57 @@ class Recogniser:
     def spelling(self, word: str) -> tuple[str, ...] | None:
         """The words of the model that stand for `word` as people write it; None if there are none.
 
-        "Pharmacy" is pharmacy, "x-ray" may be xray, or x and ray.
+        "Pharmacy" is pharmacy, "x-ray" may be xray, or x and ray, "12" is twelve.
         """
-        word = word.lower().replace("’", "'").strip('.,;:!?…"“”()')
-        together = word.replace("-", "")
-        apart = tuple(part for part in word.replace("-", " ").replace("'", "' ").split() if part)
-        for spelling in ((word,), (together,), apart):
+        word = spell_numbers(word.lower().replace("’", "'"), self.language).strip(PUNCTUATION)
+        together = word.replace("-", "").split()
+        apart = word.replace("-", " ").replace("'", "' ").split()
+        for spelling in (word.split(), together, apart):
             if spelling and all(map(self.knows, spelling)):
-                return spelling
+                return tuple(spelling)
         return None
 
     def unknown_words(self, phrases: Iterable[str]) -> list[str]:
         """The words among these phrases that the model can never hear, sorted, as written."""
         words = {word for phrase in phrases for word in phrase.split()}
-        return sorted(word for word in words if word.strip("-.,;:!?…") and not self.spelling(word))
+        return sorted(word for word in words if word.strip(PUNCTUATION) and not self.spelling(word))
 
     def recognise(
-        self, audio: Audio, phrases: Sequence[str] | None = None, *, second_opinion: bool = True
+        self,
+        audio: Audio,
+        phrases: Sequence[str] | None = None,
+        *,
+        worst_fit: float = WORST_FIT,
     ) -> Heard:
         """What is said in `audio`.
 
         `phrases` is what may be said: single words, names, and, better, whole sample sentences, for
         the recogniser learns from them which word follows which. Words the model does not know are
-        left out (`unknown_words` tells which). None: anything may be said. Without a
-        `second_opinion` nothing is ever doubtful, and it takes a tenth of the time.
+        left out (`unknown_words` tells which). None: anything may be said, and nothing is doubtful.
+        `worst_fit` is by how much of its score free decoding may fit better before it is believed.
         """
         started = time.perf_counter()
-        heard = self._recognise(audio, phrases, second_opinion)
+        heard = self._recognise(audio, phrases, worst_fit)
         return replace(heard, seconds_taken=time.perf_counter() - started)
 
-    def _recognise(
-        self, audio: Audio, phrases: Sequence[str] | None, second_opinion: bool
-    ) -> Heard:
+    def _recognise(self, audio: Audio, phrases: Sequence[str] | None, worst_fit: float) -> Heard:
         if _is_silent(audio.samples):
             return _heard((), audio)
         sound = _prepared(audio.samples)
         if phrases is None:
             return _heard(self._decode(sound, None).words, audio)
         grammar, as_written = self._grammar(phrases)
-        # The two decoders run side by side: libvosk does not hold the interpreter's lock.
+        # The decoders run side by side: libvosk does not hold the interpreter's lock.
         with ThreadPoolExecutor(1, "second opinion") as pool:
-            freely = pool.submit(self._score, sound, None) if second_opinion else None
+            freely = pool.submit(self._score, sound, None)
             limited = self._decode(sound, grammar)
-            doubt = freely is not None and self._doubt(sound, grammar, limited, freely)
-        written = tuple(replace(w, text=as_written.get(w.text, w.text)) for w in limited.words)
+            scored = self._score(sound, grammar)
+            free = freely.result()
         return replace(
-            _heard(written, audio),
-            doubtful=doubt,
-            free_text=freely.result().text if freely else None,
+            _heard(tuple(_written(word, as_written) for word in limited.words), audio),
+            doubtful=not _alike(limited.text, free.text) and _fit(scored, free) < worst_fit,
+            free_text=free.text,
         )
-
-    def _doubt(
-        self, sound: bytes, grammar: str, limited: _Decoded, freely: Future[_Decoded]
-    ) -> bool:
-        scored = self._score(sound, grammar)
-        free = freely.result()
-        return not _alike(limited.text, free.text) and _fit(scored, free) < WORST_FIT
 
     def _grammar(self, phrases: Sequence[str]) -> tuple[str, dict[str, str]]:
         """vosk's JSON for these phrases; and model words that people write otherwise."""
@@ -160,7 +157,7 @@ class Recogniser:
         spellings: dict[str, tuple[str, ...] | None] = {}
         for phrase in phrases:
             run: list[str] = []
-            for word in phrase.split():
+            for word in filter(lambda word: word.strip(PUNCTUATION), phrase.split()):
                 if word not in spellings:
                     spellings[word] = self.spelling(word)
                 spelling = spellings[word]
@@ -222,7 +219,7 @@ class Recogniser:
 @lru_cache(maxsize=3)
 def load(code: str) -> Recogniser:
     """The recogniser of an installed language, loaded once. Raises ModelError if not installed."""
-    return Recogniser(need(code))
+    return Recogniser(need(code), code)
 
 
 def _prepared(samples: Samples) -> bytes:
@@ -253,6 +250,10 @@ def _heard(words: tuple[Word, ...], audio: Audio) -> Heard:
         seconds_of_audio=audio.seconds,
         seconds_taken=0.0,
     )
+
+
+def _written(word: Word, as_written: dict[str, str]) -> Word:
+    return replace(word, text=as_written.get(word.text, word.text))
 
 
 def _alike(limited: str, free: str) -> bool:
