@@ -365,6 +365,7 @@ def _open(url: str, token: str | None, timeout: float, address: str) -> websocke
             header={"Authorization": f"Bearer {token}"} if token else None,
             suppress_origin=True,
             enable_multithread=True,
+            skip_utf8_validation=True,  # slow, and decoding does the same
         )
     except websocket.WebSocketBadStatusException as refused:
         sentence = (refused.resp_body or b"").decode(errors="replace").strip()

@@ -92,8 +92,8 @@ class Dispatcher:
         with self._lock:
             robots = [job for job in self._jobs if job.robot]
         lost = [job for job in robots if job.owner is owner]
-        others_move = any(job.moves for job in robots if job.owner is not owner)
-        if any(job.moves for job in lost) and not others_move:
+        # A driver stops the whole robot; if others use it too, the flags must do.
+        if any(job.moves for job in lost) and len(lost) == len(robots):
             self._stopper.do(lambda: self._stop(lost, because, _ignore))
         else:
             self._stopper.do(lambda: _set_all(lost, because))

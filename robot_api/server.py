@@ -45,6 +45,10 @@ PING_SECONDS: Final = 5.0
 """How often a client is asked for a sign of life, and how long it has to answer."""
 
 _log = logging.getLogger("robot_api.server")
+# It says so of every connection that is refused with a sentence.
+logging.getLogger("uvicorn.error").addFilter(
+    lambda record: "without completing handshake" not in record.getMessage()
+)
 
 
 class CannotListen(Exception):
@@ -349,7 +353,7 @@ class _Client:
                     return
                 frame = message.get("text")
                 self._act(message["bytes"] if frame is None else frame)
-            await socket.close(1008, "Replies are not read.")
+            # Not closed with a goodbye, which would wait to be read like all the rest.
         finally:
             sender.cancel()
 

@@ -1,0 +1,77 @@
+"""Who may talk to a robot: nobody from another web page, nobody else without the token."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robot_api.access import is_loopback, new_token, refusal
+
+
+def status(
+    headers: dict[str, str],
+    *,
+    local: bool = True,
+    token: str | None = None,
+    given: str | None = None,
+) -> int:
+    query = {"token": given} if given else {}
+    refused = refusal(headers, query, local=local, token=token)
+    return refused.status if refused else 200
+
+
+@pytest.mark.parametrize("host", ["localhost:9090", "127.0.0.1:9090", "[::1]:9090", "LOCALHOST"])
+def test_this_machine_is_welcome_under_each_of_its_names(host: str) -> None:
+    assert status({"host": host}) == 200
+
+
+@pytest.mark.parametrize(
+    "host", ["evil.example:9090", "", "localhost.evil.example", "[::", "10.0.0.1"]
+)
+def test_a_name_that_was_made_to_point_here_is_refused(host: str) -> None:
+    assert status({"host": host}) == 403
+
+
+@pytest.mark.parametrize(
+    "origin",
+    [
+        "https://evil.example",
+        "null",
+        "http://localhost:3000",
+        "http://127.0.0.1:9090",
+        "",
+        "file://",
+    ],
+)
+def test_a_page_from_elsewhere_may_not_drive_the_robot(origin: str) -> None:
+    assert status({"host": "localhost:9090", "origin": origin}) == 403
+
+
+def test_the_servers_own_page_may() -> None:
+    assert status({"host": "localhost:9090", "origin": "http://localhost:9090"}) == 200
+    assert status({"host": "robot.ward:80", "origin": "http://robot.ward"}, local=False) == 200
+
+
+def test_from_another_machine_the_token_is_needed() -> None:
+    robot = {"host": "10.0.0.5:9090"}
+    assert status(robot, local=False, token="sesame") == 401
+    assert status(robot, local=False, token="sesame", given="wrong") == 401
+    assert status(robot, local=False, token="sesame", given="sesame") == 200
+    bearer = {**robot, "authorization": "Bearer sesame"}
+    assert status(bearer, local=False, token="sesame") == 200
+    assert status({**robot, "authorization": "Basic sesame"}, local=False, token="sesame") == 401
+
+
+def test_tokens_differ_and_loopback_is_told_from_the_rest() -> None:
+    assert new_token() != new_token()
+    assert is_loopback("127.0.0.1") and is_loopback("::1") and is_loopback("localhost")
+    assert not is_loopback("0.0.0.0") and not is_loopback("example.org")
+
+
+@given(host=st.text(), origin=st.none() | st.text(), authorization=st.text())
+def test_odd_headers_never_get_in_and_never_break_it(
+    host: str, origin: str | None, authorization: str
+) -> None:
+    headers = {"host": host, "authorization": authorization}
+    if origin is not None:
+        headers["origin"] = origin
+    assert status(headers, local=False, token="a secret that nobody guesses") in (401, 403)
