@@ -1,0 +1,234 @@
+"""The parser: the cheapest reading of a row of tokens by a network of rules.
+
+A memoised walk (a chart): for a rule and a first token it finds, once, every token where the rule
+may end, and keeps only the cheapest way to each (Viterbi), so that an ambiguous sentence costs no
+more than a clear one. Words of rules are free; open slots, words passed over, corrected spellings
+and rules marked as unlikely cost, so that the cheapest reading is the one that understands most.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from grammar.network import Network, Production
+from grammar.tokens import Token
+
+STEPS_ALLOWED: Final = 60_000
+"""More than any sensible sentence of 150 words needs; what goes on longer is given up."""
+
+CORRECTION: Final = 4.0
+"""What reading a misspelt word as a known one costs."""
+
+Match = tuple[int, float, Any]
+"""What a slot finds: the token after it, the cost, the value."""
+
+Slot = Callable[[int], list[Match]]
+"""Finds all matches of a slot that begin at a token."""
+
+
+@dataclass(frozen=True)
+class Corrected:
+    """A value that a slot found by reading misspelt words otherwise."""
+
+    value: Any
+    corrections: tuple[tuple[int, str], ...]
+
+
+class TooMuch(Exception):
+    """The sentence has more possible readings than can be looked through."""
+
+
+@dataclass(frozen=True, slots=True)
+class Leaf:
+    """What a slot matched."""
+
+    slot: str
+    value: Any
+    start: int
+    end: int
+
+
+@dataclass(slots=True)
+class Node:
+    """What a rule matched: tokens `start` to `end`, and what its slots and rules are bound to."""
+
+    production: Production
+    start: int
+    end: int
+    cost: float
+    parts: dict[str, Part] = field(default_factory=dict)
+    corrections: list[tuple[int, str]] = field(default_factory=list)
+    """Tokens that were read as another word, here or below."""
+
+    @property
+    def means(self) -> str:
+        return self.production.means or self.production.rule
+
+
+Part = Leaf | Node
+
+# A step on the way to a state, linked to the one before: (before, binding, callee, start, end,
+# value). callee -1 is a corrected word.
+_Way = tuple[Any, str | None, int, int, int, Any]
+_End = tuple[float, int, _Way | None]
+
+
+class Chart:
+    """The readings of one row of tokens."""
+
+    def __init__(
+        self,
+        network: Network,
+        tokens: tuple[Token, ...],
+        slots: Mapping[str, Slot],
+        *,
+        skips: Mapping[int, list[tuple[int, float]]],
+        corrections: Mapping[int, tuple[str, ...]],
+    ) -> None:
+        self.network = network
+        self.tokens = tokens
+        self.skips = skips
+        self.corrections = corrections
+        self._slots: list[Slot | None] = [slots.get(name) for name in network.names]
+        self._ends: list[dict[int, dict[int, _End]]] = [{} for _ in network.names]
+        self._matches: dict[tuple[int, int], list[Match]] = {}
+        self._steps = 0
+
+    def best(self, rule: str) -> Node | None:
+        """The cheapest reading of all tokens as this rule. Raises `TooMuch`."""
+        number = self.network.rule(rule)
+        end = self._spans(number, 0).get(len(self.tokens))
+        return None if end is None else self._node(0, len(self.tokens), end)
+
+    def longest(self, rule: str, start: int) -> Node | None:
+        """The longest reading from this token on; of the same length, the cheapest."""
+        ends = self._spans(self.network.rule(rule), start)
+        if not ends:
+            return None
+        last = max(ends)
+        return self._node(start, last, ends[last])
+
+    @property
+    def reached(self) -> int:
+        """The furthest token that any rule at the beginning could use."""
+        return max(
+            (end for rule in self._ends for ends in rule.values() for end in ends), default=0
+        )
+
+    # --- walking
+
+    def _spans(self, rule: int, start: int) -> dict[int, _End]:
+        memo = self._ends[rule]
+        known = memo.get(start)
+        if known is not None:
+            return known
+        result: dict[int, _End] = {}
+        memo[start] = result
+        network, tokens = self.network, self.tokens
+        states, first = network.states, network.first
+        count = len(tokens)
+        agenda: dict[int, dict[int, tuple[float, _Way | None]]] = {
+            start: {network.starts[rule]: (0.0, None)}
+        }
+        at = start
+        while agenda:
+            here = agenda.pop(at, None)
+            if here is None:
+                at += 1
+                continue
+            self._steps += len(here)
+            if self._steps > STEPS_ALLOWED:
+                raise TooMuch
+            for number, (cost, way) in here.items():
+                state = states[number]
+                if state.final is not None and at > start:
+                    total = cost + state.final[0]
+                    if at not in result or total < result[at][0]:
+                        result[at] = (total, state.final[1], way)
+            if at < count:
+                word = tokens[at].norm
+                spelled = self.corrections.get(at, ())
+                for end, extra in self.skips.get(at, ()):
+                    beyond = agenda.setdefault(end, {})
+                    for number, (cost, way) in here.items():
+                        old = beyond.get(number)
+                        if old is None or cost + extra < old[0]:
+                            beyond[number] = (cost + extra, way)
+                for number, (cost, way) in here.items():
+                    state = states[number]
+                    following = state.words.get(word)
+                    if following is not None:
+                        _reach(agenda, at + 1, following, cost, way)
+                    for other in spelled:
+                        following = state.words.get(other)
+                        if following is not None:
+                            step: _Way = (way, None, -1, at, at + 1, other)
+                            _reach(agenda, at + 1, following, cost + CORRECTION, step)
+                    for callee, binding, following in state.calls:
+                        if network.starts[callee] < 0:
+                            for end, extra, value in self._slot(callee, at):
+                                step = (way, binding, callee, at, end, value)
+                                _reach(agenda, end, following, cost + extra, step)
+                            continue
+                        words = first[callee]
+                        if (
+                            words is not None
+                            and word not in words
+                            and at not in self.skips
+                            and not any(other in words for other in spelled)
+                        ):
+                            continue
+                        for end, inner in self._spans(callee, at).items():
+                            step = (way, binding, callee, at, end, inner)
+                            _reach(agenda, end, following, cost + inner[0], step)
+            at += 1
+        return result
+
+    def _slot(self, callee: int, at: int) -> list[Match]:
+        key = (callee, at)
+        if key not in self._matches:
+            slot = self._slots[callee]
+            self._matches[key] = slot(at) if slot else []
+        return self._matches[key]
+
+    # --- reading off
+
+    def _node(self, start: int, end: int, found: _End) -> Node:
+        cost, production, way = found
+        node = Node(self.network.productions[production], start, end, cost)
+        steps: list[_Way] = []
+        while way is not None:
+            steps.append(way)
+            way = way[0]
+        for _, binding, callee, first, last, value in reversed(steps):
+            if callee < 0:
+                node.corrections.append((first, value))
+            elif self.network.starts[callee] < 0:
+                name = self.network.names[callee][1:-1]
+                if isinstance(value, Corrected):
+                    node.corrections += value.corrections
+                    value = value.value
+                node.parts[binding or name] = Leaf(name, value, first, last)
+            else:
+                inner = self._node(first, last, value)
+                node.corrections += inner.corrections
+                if inner.production.means is None and binding is None:
+                    node.parts.update(inner.parts)
+                else:
+                    node.parts[binding or inner.production.rule] = inner
+        return node
+
+
+def _reach(
+    agenda: dict[int, dict[int, tuple[float, _Way | None]]],
+    end: int,
+    state: int,
+    cost: float,
+    way: _Way | None,
+) -> None:
+    there = agenda.setdefault(end, {})
+    old = there.get(state)
+    if old is None or cost < old[0]:
+        there[state] = (cost, way)

@@ -1,0 +1,264 @@
+"""What is known while a sentence is turned into a plan, clause by clause from left to right.
+
+The discourse remembers what was spoken of last, so that "it", "there", "her" and "come back" mean
+something; `grammar.meanings` holds a small function for every meaning that the rules name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from grammar.chart import Leaf, Node
+from grammar.language import Language
+from grammar.lexicon import Lexicon, Name
+from grammar.plan import Ask, Call, Number, Recall, Remember, Sentence, Step, Text, Value
+from grammar.tokens import Token
+from robot_api.methods import METHODS
+
+START: Final = "start"
+"""The variable that holds the place where the command was given."""
+ANYONE: Final = "person"
+"""What the robot looks for when it is anybody's turn."""
+
+Steps = list[Step]
+
+
+class NotUnderstood(Exception):
+    """A part of the sentence means nothing here; `message` is for the person who said it."""
+
+    def __init__(self, message: str, suggestions: tuple[str, ...] = ()) -> None:
+        super().__init__(message)
+        self.message = message
+        self.suggestions = suggestions
+
+
+class Ambiguous(Exception):
+    """A part of the sentence may mean several things; `question` asks which one."""
+
+    def __init__(self, question: str, start: int, end: int, choices: tuple[str, ...]) -> None:
+        super().__init__(question)
+        self.question = question
+        self.start, self.end = start, end
+        """The tokens that may mean several things."""
+        self.choices = choices
+        """What could stand there instead."""
+
+
+@dataclass(frozen=True)
+class Thing:
+    """What a noun phrase speaks of: a thing, or a person by kind or name."""
+
+    value: Value
+    """As the robot is asked for it: "red cup"; a variable if it is not known before the run."""
+    place: Value | None = None
+    """The place that the phrase mentions: "the cup in the kitchen"."""
+    furniture: str | None = None
+    known: bool = False
+    """Whether the world knows it by name."""
+    plural: bool = False
+    person: bool = False
+    here: bool = False
+    """Whether it was pointed at ("this box") or is a pronoun: no search needed."""
+
+    @property
+    def text(self) -> str:
+        return self.value.value if isinstance(self.value, Text) else ""
+
+
+@dataclass(frozen=True)
+class Where:
+    """A place, a piece of furniture, or both: "on the table in the kitchen"."""
+
+    place: Value | None = None
+    furniture: str | None = None
+
+
+@dataclass
+class Discourse:
+    language: Language
+    lexicon: Lexicon
+    tokens: tuple[Token, ...]
+    text: str
+    done: Steps = field(default_factory=list)
+    """The steps so far of the sequence that is being made."""
+    needs_start: bool = False
+    thing: Thing | None = None
+    person: Thing | None = None
+    thing_last: bool = False
+    """Whether a thing was spoken of after the last person."""
+    place: Value | None = None
+    at: Value | None = None
+    """Where the robot is by now; None where the command was given."""
+    with_person: Value | None = None
+    holding: Value | None = None
+    answer: str | None = None
+    """The variable with the last answer."""
+    answer_options: tuple[str, ...] = ()
+    code: str | None = None
+    heard: str | None = None
+    variables: set[str] = field(default_factory=set)
+    assumptions: list[str] = field(default_factory=list)
+    """What was assumed without being said; each lowers the confidence."""
+
+    # --- parts of the parse
+
+    def build(self, part: Leaf | Node) -> Any:
+        """What a part of the parse means."""
+        from grammar.meanings import MEANINGS
+
+        if isinstance(part, Leaf):
+            return self._leaf(part)
+        meaning = MEANINGS.get(part.means)
+        if meaning is not None:
+            return meaning(self, part)
+        if part.means in METHODS:
+            return [self.call_of(part)]
+        if part.production.means is None:  # it stands for its only part, or for its words
+            inner = [each for each in part.parts.values() if isinstance(each, Node)]
+            return self.build(inner[0]) if inner else self.words(part.start, part.end)
+        raise LookupError(f"no meaning is called {part.means!r}")
+
+    def get(self, node: Node, name: str, default: Any = None) -> Any:
+        """What the part of this name means, or the fixed value of this name, or the default."""
+        part = node.parts.get(name)
+        if part is not None:
+            return self.build(part)
+        return node.production.fixed.get(name, default)
+
+    def _leaf(self, leaf: Leaf) -> Any:
+        if leaf.slot == "place":
+            return Text(self.one_of(leaf).name)
+        if isinstance(leaf.value, tuple):
+            first = leaf.value[0]
+            return first.name if isinstance(first, Name) else first
+        if leaf.value is None:
+            return self.words(leaf.start, leaf.end)
+        return leaf.value
+
+    def one_of(self, leaf: Leaf) -> Name:
+        """The name a slot matched. Raises `Ambiguous` if several go by it."""
+        names: tuple[Name, ...] = leaf.value
+        if len(names) == 1:
+            return names[0]
+        raise self.which(leaf.start, leaf.end, tuple(name.name for name in names))
+
+    def which(self, start: int, end: int, choices: tuple[str, ...]) -> Ambiguous:
+        """The question which of several was meant."""
+        question = self.language.phrase(
+            "which_one", what=self.words(start, end), choices=self.listed(choices)
+        )
+        return Ambiguous(question, start, end, choices)
+
+    def listed(self, names: tuple[str, ...]) -> str:
+        """ "a, b or c"."""
+        if len(names) < 2:
+            return "".join(names)
+        joiner = self.language.phrase("or")
+        return f"{', '.join(names[:-1])} {joiner} {names[-1]}"
+
+    def words(self, start: int, end: int) -> str:
+        """The original words of some tokens."""
+        if start >= end:
+            return ""
+        return self.text[self.tokens[start].start : self.tokens[end - 1].end]
+
+    def norms(self, start: int, end: int) -> list[str]:
+        return [token.norm for token in self.tokens[start:end]]
+
+    # --- making steps
+
+    def call_of(self, node: Node) -> Call:
+        """A rule named after a robot method: its slots are the parameters."""
+        method = METHODS[node.means]
+        names = {parameter.name for form in method.forms for parameter in form}
+        arguments = {
+            name: as_value(self.get(node, name))
+            for name in dict.fromkeys((*node.production.fixed, *node.parts))
+            if name in names or method.extra
+        }
+        return Call(method.name, arguments)
+
+    def start(self) -> Recall:
+        """The place where the command was given."""
+        self.needs_start = True
+        return Recall(START)
+
+    def sentence(self, phrase: str, /, **values: Value | str) -> Value:
+        """A phrase of the language with values put in: a text, or one made when it is spoken."""
+        return self.filled(self.language.phrases[phrase], **values)
+
+    def filled(self, pattern: str, /, **values: Value | str) -> Value:
+        parts: list[Value] = []
+        text = ""
+        rest = pattern
+        while rest:
+            before, brace, after = rest.partition("{")
+            text += before
+            if not brace:
+                break
+            name, _, rest = after.partition("}")
+            value = values[name]
+            if isinstance(value, str):
+                text += value
+            elif isinstance(value, Text):
+                text += value.value
+            else:
+                if text:
+                    parts.append(Text(text))
+                    text = ""
+                parts.append(value)
+        if not parts:
+            return Text(capital(text))
+        if text:
+            parts.append(Text(text))
+        return Sentence(tuple(parts))
+
+    def say(self, phrase: str, /, **values: Value | str) -> Call:
+        return Call("say", {"text": self.sentence(phrase, **values)})
+
+    def variable(self, name: str) -> str:
+        """A name for a new variable: `name`, or `name2` if that is taken."""
+        candidate, number = name, 1
+        while candidate in self.variables:
+            number += 1
+            candidate = f"{name}{number}"
+        self.variables.add(candidate)
+        return candidate
+
+    def went(self, place: Value) -> None:
+        """The robot is at this place now."""
+        self.at = self.place = place
+        self.with_person = None
+
+    def prologue(self) -> Steps:
+        if not self.needs_start:
+            return []
+        return [Remember(START, Ask("location"))]
+
+    def sequence(self, make: Callable[[], None]) -> Steps:
+        """The steps that `make` adds to `done`, as a sequence of their own."""
+        outer, self.done = self.done, []
+        try:
+            make()
+            return self.done
+        finally:
+            self.done = outer
+
+
+def as_value(value: Any) -> Value:
+    """Plain data as a value of a plan."""
+    if isinstance(value, str):
+        return Text(value)
+    if isinstance(value, int | float):
+        whole = int(value) if float(value).is_integer() else round(value, 4)
+        return Number(whole)
+    if isinstance(value, Thing):
+        return value.value
+    result: Value = value
+    return result
+
+
+def capital(text: str) -> str:
+    return text[:1].upper() + text[1:]

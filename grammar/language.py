@@ -1,0 +1,264 @@
+"""A language as data: reads `grammar/languages/<code>/*.yaml` and compiles its rules.
+
+Every file may hold any of these keys; those of all files are put together:
+
+    rules         templates by rule (`grammar.templates`), each entry with what it means
+    lists         named values with the words for them: slots such as {emotion}
+    spelling      contractions, endings, abbreviations, symbols
+    numbers       number words, scales, fractions
+    fillers       words that may stand anywhere and say nothing
+    closed        words that are no part of a thing's name ("the", "from", "and")
+    plurals       how plurals are made
+    kinds         words for kinds of places, where they differ from the world's
+    phrases       what the robot says or the application answers, by name
+    speech        how reported speech becomes direct speech
+    help          topics with example phrases
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import yaml
+
+from grammar.network import Network, Production, RuleError, compile_rules
+from grammar.templates import NOTHING, Choice, Sequence, Template, TemplateError, Word
+from grammar.templates import parse_template as _parse
+from grammar.tokens import Spelling, words_of
+
+_FOLDER: Final = Path(__file__).parent / "languages"
+_NOT_RULES: Final = frozenset({"explain"})
+
+parse_template = functools.cache(_parse)
+
+
+class UnknownLanguage(ValueError):
+    """There is no folder for this language."""
+
+
+@dataclass(frozen=True, eq=False)
+class Language:
+    code: str
+    rules: Mapping[str, tuple[Production, ...]]
+    network: Network
+    lists: Mapping[str, Mapping[str, tuple[tuple[str, ...], ...]]]
+    """list -> value -> the ways to say it, as normal forms"""
+    spelling: Spelling
+    numbers: Mapping[str, Any]
+    fillers: tuple[tuple[str, ...], ...]
+    closed: frozenset[str]
+    plurals: Mapping[str, Any]
+    kinds: Mapping[str, Any]
+    phrases: Mapping[str, str]
+    speech: Mapping[str, Any]
+    help: Mapping[str, tuple[str, ...]]
+    """topic -> example templates"""
+    words: frozenset[str]
+    """Normal forms of all words of rules and lists."""
+    spelled_words: frozenset[str]
+    """The same words as people write and speak them, for the recogniser."""
+
+    def tokens_of(self, text: str) -> tuple[str, ...]:
+        return words_of(text, self.spelling)
+
+    def phrase(self, name: str, /, **values: object) -> str:
+        """What the language says by this name, with the values put in."""
+        return self.phrases[name].format(**values)
+
+
+def languages() -> list[str]:
+    """The codes of the languages there are."""
+    return sorted(path.name for path in _FOLDER.iterdir() if any(path.glob("*.yaml")))
+
+
+@functools.cache
+def load_language(code: str) -> Language:
+    """The language of this code. Raises `UnknownLanguage`; `RuleError` where its data are wrong."""
+    folder = _FOLDER / code
+    files = sorted(path for path in folder.glob("*.yaml") if path.stem not in _NOT_RULES)
+    if not files:
+        raise UnknownLanguage(
+            f"There is no language {code!r}. There are: {', '.join(languages())}."
+        )
+    data: dict[str, Any] = {}
+    for path in files:
+        for key, value in _read(path).items():
+            _merge(data, key, value, path)
+    return _language(code, data)
+
+
+def _read(path: Path) -> dict[str, Any]:
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    loaded = yaml.load(path.read_text(encoding="utf-8"), Loader=loader)
+    if not isinstance(loaded, dict):
+        raise RuleError(f"{path.name} is not a mapping of rules, lists and the like")
+    return loaded
+
+
+def _merge(data: dict[str, Any], key: str, value: Any, path: Path) -> None:
+    if key not in data:
+        data[key] = value
+    elif key == "rules":
+        for rule, entries in value.items():
+            old = data[key].get(rule)
+            data[key][rule] = entries if old is None else [*_entries(old), *_entries(entries)]
+    elif isinstance(value, dict):
+        data[key].update(value)
+    elif isinstance(value, list):
+        data[key] = [*data[key], *value]
+    else:
+        raise RuleError(f"{path.name} gives {key!r} a second time")
+
+
+def _entries(value: Any) -> list[Any]:
+    return value if isinstance(value, list) else [value]
+
+
+def _language(code: str, data: Mapping[str, Any]) -> Language:
+    numbers = data.get("numbers", {})
+    spelling_data = data.get("spelling", {})
+    spelling = Spelling(
+        contractions=spelling_data.get("contractions", {}),
+        endings=spelling_data.get("endings", {}),
+        abbreviations=frozenset(spelling_data.get("abbreviations", ())),
+        numbers=_number_words(numbers),
+        symbols=spelling_data.get("symbols", {}),
+    )
+    verbatim = frozenset(spelling.endings.values())  # "'s" stands alone in rules only
+    normal = functools.cache(lambda text: (text,) if text in verbatim else words_of(text, spelling))
+    rules = {
+        name: tuple(_productions(name, _entries(entries)))
+        for name, entries in data.get("rules", {}).items()
+    }
+    network = compile_rules(rules, normal)
+    lists = {
+        name: {
+            str(value): tuple(
+                tuple(word for text in way for word in normal(text))
+                for template in _entries(ways)
+                for way in _ways(_template(template, name))
+            )
+            for value, ways in values.items()
+        }
+        for name, values in data.get("lists", {}).items()
+    }
+    words = {word for state in network.states for word in state.words}
+    words |= {
+        word
+        for values in lists.values()
+        for ways in values.values()
+        for way in ways
+        for word in way
+    }
+    spelled = {
+        text
+        for productions in rules.values()
+        for production in productions
+        for template in production.templates
+        for text in _texts(template)
+    }
+    spelled |= {
+        text
+        for values in data.get("lists", {}).values()
+        for ways in values.values()
+        for way in _entries(ways)
+        for text in _texts(_template(way, "lists"))
+    }
+    spelled |= set(spelling.numbers) | set(numbers.get("scales", {}))
+    return Language(
+        code=code,
+        rules=rules,
+        network=network,
+        lists=lists,
+        spelling=spelling,
+        numbers=numbers,
+        fillers=tuple(normal(filler) for filler in data.get("fillers", ())),
+        closed=frozenset(
+            word
+            for entry in data.get("closed", ())
+            for text in entry.split()
+            for word in normal(text)
+        ),
+        plurals=data.get("plurals", {}),
+        kinds=data.get("kinds", {}),
+        phrases=data.get("phrases", {}),
+        speech=data.get("speech", {}),
+        help={topic: tuple(examples) for topic, examples in data.get("help", {}).items()},
+        words=frozenset(words),
+        spelled_words=frozenset(spelled),
+    )
+
+
+def _number_words(numbers: Mapping[str, Any]) -> dict[str, float]:
+    """One-word numbers: those listed, and compounds such as German "fünfundzwanzig"."""
+    words = {str(word): float(value) for word, value in numbers.get("words", {}).items()}
+    pattern = numbers.get("compound")
+    if pattern:
+        units = {word: value for word, value in words.items() if 0 < value < 10}
+        tens = {word: value for word, value in words.items() if value >= 20 and value % 10 == 0}
+        for ten, much in tens.items():
+            for unit, more in units.items():
+                words.setdefault(pattern.format(unit=unit, ten=ten), much + more)
+    return words
+
+
+def _productions(rule: str, entries: list[Any]) -> Iterator[Production]:
+    plain: list[str] = []
+    for entry in entries:
+        if isinstance(entry, str):
+            plain.append(entry)
+            continue
+        says = [str(each) for each in _entries(entry["say"])]
+        unknown = set(entry) - {"say", "means", "cost", "with"}
+        if unknown:
+            raise RuleError(f"the rule <{rule}> has an entry with {', '.join(sorted(unknown))}")
+        yield Production(
+            rule,
+            entry.get("means"),
+            tuple(_template(say, rule) for say in says),
+            float(entry.get("cost", 0)),
+            entry.get("with", {}),
+            tuple(says),
+        )
+    if plain:
+        templates = tuple(_template(say, rule) for say in plain)
+        yield Production(rule, None, templates, 0.0, {}, tuple(plain))
+
+
+def _template(source: Any, rule: str) -> Template:
+    try:
+        return parse_template(str(source))
+    except TemplateError as error:
+        raise RuleError(f"<{rule}>: {error}") from error
+
+
+def _ways(template: Template) -> Iterator[tuple[str, ...]]:
+    """All word sequences of a template without references."""
+    match template:
+        case Word(text):
+            yield (text,)
+        case Choice(alternatives):
+            for alternative in alternatives:
+                yield from _ways(alternative)
+        case Sequence(parts):
+            if not parts:
+                yield ()
+                return
+            for first in _ways(parts[0]):
+                for rest in _ways(Sequence(parts[1:]) if len(parts) > 1 else NOTHING):
+                    yield (*first, *rest)
+        case _:
+            raise RuleError("a list holds words only, no references")
+
+
+def _texts(template: Template) -> Iterator[str]:
+    match template:
+        case Word(text):
+            yield text
+        case Choice(inner) | Sequence(inner):
+            for each in inner:
+                yield from _texts(each)

@@ -1,0 +1,83 @@
+"""What the world and the robot know by name, for the language to recognise.
+
+The application makes a `Lexicon` from a world and a robot's capabilities; the grammar knows nothing
+of either. Names keep the world's own spelling: that is what programs contain, whatever alias a
+person used.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Final
+
+from robot_api.methods import SUGGESTED_EMOTIONS, SUGGESTED_GESTURES
+
+
+@dataclass(frozen=True)
+class Name:
+    """Something that goes by a name."""
+
+    name: str
+    """As the world spells it; what a program contains."""
+    kind: str | None = None
+    """What it is: "office", "nurse", "tool". Of a place, the last word of its name if left out."""
+    aliases: tuple[str, ...] = ()
+    """Other names, in the language spoken."""
+    attributes: tuple[str, ...] = ()
+    """What a person may say of it: "red", "sitting"."""
+    inside: str | None = None
+    """The place that a piece of furniture stands in."""
+
+
+@dataclass(frozen=True)
+class Question:
+    """A predefined question and its answer."""
+
+    question: str
+    answer: str
+    aliases: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Lexicon:
+    """Everything that has a name. All parts may be empty."""
+
+    places: tuple[Name, ...] = ()
+    people: tuple[Name, ...] = ()
+    objects: tuple[Name, ...] = ()
+    furniture: tuple[Name, ...] = ()
+    contacts: tuple[str, ...] = ()
+    gestures: tuple[str, ...] = SUGGESTED_GESTURES
+    emotions: tuple[str, ...] = SUGGESTED_EMOTIONS
+    joints: tuple[str, ...] = ()
+    skills: tuple[str, ...] = ()
+    """The robot's own extra skills, for `do`."""
+    languages: tuple[str, ...] = ("en", "de", "fr")
+    questions: tuple[Question, ...] = ()
+    robot_name: str = ""
+    """What people may call it: "hey Cruzr"."""
+    _kinds: dict[str, tuple[Name, ...]] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
+
+    def __post_init__(self) -> None:
+        for place in self.places:
+            kind = kind_of(place)
+            if kind:
+                self._kinds[kind] = (*self._kinds.get(kind, ()), place)
+
+    @property
+    def place_kinds(self) -> dict[str, tuple[Name, ...]]:
+        """The places of each kind."""
+        return self._kinds
+
+
+def kind_of(place: Name) -> str | None:
+    """The kind of a place: the one it states, or the last word of its name."""
+    if place.kind:
+        return place.kind.lower()
+    words = place.name.lower().split()
+    return words[-1] if len(words) > 1 and not words[-1].isdigit() else None
+
+
+EMPTY: Final = Lexicon()

@@ -1,0 +1,18 @@
+"""The meanings that the rules of the languages name: a small function each.
+
+A meaning takes the discourse and the node of the parse and gives what the rule stands for: steps
+for a command, a `Condition`, a `Thing`, a `Value`. A rule that is named after a robot method needs
+none: its slots are the parameters.
+"""
+
+from __future__ import annotations
+
+import grammar.meanings.actions
+import grammar.meanings.conditions
+import grammar.meanings.control
+import grammar.meanings.nouns
+import grammar.meanings.questions
+import grammar.meanings.reports  # noqa: F401 (each enters its meanings)
+from grammar.meanings.registry import MEANINGS
+
+__all__ = ["MEANINGS"]

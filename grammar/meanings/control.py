@@ -1,0 +1,335 @@
+"""How commands follow, repeat and depend on each other."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from grammar.chart import Node
+from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, as_value
+from grammar.meanings.actions import not_found
+from grammar.meanings.nouns import kind_places
+from grammar.meanings.registry import meaning
+from grammar.plan import (
+    Ask,
+    Call,
+    Compare,
+    Condition,
+    ForEach,
+    Forever,
+    Holds,
+    If,
+    Items,
+    Not,
+    Number,
+    Recall,
+    Repeat,
+    RepeatUntil,
+    Step,
+    Text,
+    Value,
+    While,
+)
+from grammar.tidy import nodes
+
+NEEDS_IT: Final = frozenset({"grab", "put", "give", "guide", "follow", "describe"})
+"""Methods that say themselves when what was looked for is not there."""
+LOOK_EVERY: Final = 10
+"""Seconds between two looks at a condition that is waited for."""
+
+
+@meaning("steps")
+def steps(d: Discourse, node: Node) -> Steps:
+    """Clauses one after the other: `first`, then `rest`."""
+
+    def make() -> None:
+        clauses: list[tuple[str, int]] = []
+        each: Node | None = node
+        joint = "stop"
+        while each is not None:
+            before = len(d.done)
+            first = each.parts["first"]
+            assert isinstance(first, Node)
+            d.done.extend(d.build(first))
+            clauses.append((joint, len(d.done) - before))
+            joint = str(each.production.fixed.get("joint", "and"))
+            rest = each.parts.get("rest")
+            each = rest if isinstance(rest, Node) else None
+        d.done[:] = speak_codes(d, guard_finds(d, d.done))
+
+    return d.sequence(make)
+
+
+def guard_finds(d: Discourse, done: Steps) -> Steps:
+    """Where something is looked for, what follows holds only if it is found.
+
+    Steps that need the thing fail by themselves and say so; speaking to somebody who was not found
+    would not, so it goes under a condition."""
+    result: Steps = []
+    for number, step in enumerate(done):
+        if not (isinstance(step, Call) and step.method == "find"):
+            result.append(step)
+            continue
+        following = done[number + 1] if number + 1 < len(done) else None
+        if isinstance(following, Call) and following.method in NEEDS_IT:
+            result.append(step)
+            continue
+        found = Holds(Ask("find", step.arguments))
+        missing = not_found(d, found_thing(d, step))
+        body: Steps = []
+        for later in done[number + 1 :]:
+            if isinstance(later, Call) and (
+                later.method in ("goto", "find", "dock") or later.method in NEEDS_IT
+            ):
+                break
+            if not isinstance(later, Call):
+                break
+            body.append(later)
+        if body:
+            result.append(If(found, tuple(body), (missing,)))
+        else:
+            result.append(If(Not(found), (missing,)))
+        return [*result, *guard_finds(d, done[number + 1 + len(body) :])]
+    return result
+
+
+def speak_codes(d: Discourse, done: Steps) -> Steps:
+    """A code that is scanned for nothing else is read out."""
+    result: Steps = []
+    for number, step in enumerate(done):
+        result.append(step)
+        if isinstance(step, Call) and step.method == "scan" and step.save_as:
+            code = Recall(step.save_as)
+            if not mentions(done[number + 1 :], code):
+                result.append(d.say("code_is", value=code))
+    return result
+
+
+def found_thing(d: Discourse, step: Call) -> Thing:
+    value = step.arguments["thing"]
+    named = isinstance(value, Text) and any(value.value == each.name for each in d.lexicon.people)
+    return Thing(value, known=named, person=named)
+
+
+@meaning("reversed")
+def reversed_(d: Discourse, node: Node) -> Steps:
+    """ "before you go, say goodbye" and "go after you have said goodbye"."""
+    return [*d.build(node.parts["earlier"]), *d.build(node.parts["later"])]
+
+
+@meaning("corrected")
+def corrected(d: Discourse, node: Node) -> Steps:
+    """ "go to the kitchen, no, the lobby": only what stands last counts."""
+    result: Steps = d.build(node.parts["second"])
+    return result
+
+
+# --- conditions
+
+
+@meaning("if")
+def if_(d: Discourse, node: Node) -> Steps:
+    condition: Condition = d.get(node, "condition")
+    if node.production.fixed.get("unless"):
+        condition = Not(condition)
+    before = (d.at, d.holding, d.with_person)
+    then = d.build(node.parts["then"])
+    after_then = d.at
+    d.at, d.holding, d.with_person = before
+    otherwise: Steps = []
+    if "otherwise" in node.parts:
+        otherwise = d.build(node.parts["otherwise"])
+    if d.at != after_then:
+        d.at = None
+        d.with_person = None
+    return [*pending(d), If(condition, tuple(then), tuple(otherwise))]
+
+
+def pending(d: Discourse) -> Steps:
+    """Steps that a condition asked for, such as scanning before comparing."""
+    return []
+
+
+@meaning("when")
+def when(d: Discourse, node: Node) -> Steps:
+    """ "when somebody comes, ...": wait for it, then do it; "whenever": again and again."""
+    condition: Condition = d.get(node, "condition")
+    wait = wait_until(condition)
+    body = d.build(node.parts["then"])
+    if node.production.fixed.get("always"):
+        return [Forever((*wait, *body))]
+    return [*wait, *body]
+
+
+def wait_until(condition: Condition) -> Steps:
+    """Wait until a condition holds."""
+    if (
+        isinstance(condition, Holds)
+        and isinstance(condition.value, Ask)
+        and condition.value.method in ("sees", "wait_for")
+    ):
+        return [Call("wait_for", condition.value.arguments)]
+    return [While(negated(condition), (Call("wait", {"seconds": Number(LOOK_EVERY)}),))]
+
+
+_OPPOSITE: Final = {"<": ">=", "<=": ">", ">": "<=", ">=": "<", "==": "!=", "!=": "=="}
+
+
+def negated(condition: Condition) -> Condition:
+    if isinstance(condition, Not):
+        return condition.condition
+    if isinstance(condition, Compare) and condition.operator in _OPPOSITE:
+        return Compare(condition.left, _OPPOSITE[condition.operator], condition.right)
+    return Not(condition)
+
+
+@meaning("wait_until")
+def wait_until_(d: Discourse, node: Node) -> Steps:
+    return wait_until(d.get(node, "condition"))
+
+
+@meaning("until")
+def until(d: Discourse, node: Node) -> Steps:
+    condition_first = node.production.fixed.get("first", False)
+    if condition_first:
+        condition: Condition = d.get(node, "condition")
+        body = d.build(node.parts["steps"])
+    else:
+        body = d.build(node.parts["steps"])
+        condition = d.get(node, "condition")
+    if all(isinstance(step, Call) and step.method in ("wait",) for step in body):
+        return wait_until(condition)
+    return [RepeatUntil(condition, tuple(body))]
+
+
+@meaning("while")
+def while_(d: Discourse, node: Node) -> Steps:
+    condition: Condition = d.get(node, "condition")
+    body = d.build(node.parts["steps"])
+    return [While(condition, tuple(body))]
+
+
+# --- repeating
+
+
+@meaning("repeat")
+def repeat(d: Discourse, node: Node) -> Steps:
+    times = d.get(node, "times")
+    body = d.build(node.parts["steps"])
+    return [Repeat(as_value(times), tuple(body))]
+
+
+@meaning("forever")
+def forever(d: Discourse, node: Node) -> Steps:
+    return [Forever(tuple(d.build(node.parts["steps"])))]
+
+
+def all_before(d: Discourse) -> tuple[Step, ...]:
+    """The steps so far, which "do that ..." speaks of; they are taken out of the sequence."""
+    if not d.done:
+        raise NotUnderstood(d.language.phrase("repeat_what"))
+    before = tuple(guard_finds(d, d.done))
+    d.done.clear()
+    return before
+
+
+@meaning("do_that_times")
+def do_that_times(d: Discourse, node: Node) -> Steps:
+    """ "do that three times": all that was said before, so often in all."""
+    return [Repeat(as_value(d.get(node, "times")), all_before(d))]
+
+
+@meaning("do_that_again")
+def do_that_again(d: Discourse, node: Node) -> Steps:
+    """ "and again", "repeat that": once more."""
+    return [Repeat(as_value(d.get(node, "times", 2)), all_before(d))]
+
+
+@meaning("do_that_until")
+def do_that_until(d: Discourse, node: Node) -> Steps:
+    return [RepeatUntil(d.get(node, "condition"), all_before(d))]
+
+
+@meaning("do_that_while")
+def do_that_while(d: Discourse, node: Node) -> Steps:
+    return [While(d.get(node, "condition"), all_before(d))]
+
+
+@meaning("do_that_forever")
+def do_that_forever(d: Discourse, node: Node) -> Steps:
+    return [Forever(all_before(d))]
+
+
+@meaning("same_for")
+def same_for(d: Discourse, node: Node) -> Steps:
+    """ "do the same for Bob": the steps before, with Bob in the place of the person before."""
+    if d.person is None or not d.done:
+        raise NotUnderstood(d.language.phrase("repeat_what"))
+    old = d.person.value
+    person: Thing = d.get(node, "person_ref")
+    return [replaced(step, old, person.value) for step in d.done]
+
+
+def replaced(step: Any, old: Value, new: Value) -> Any:
+    """A step with one value put in the place of another."""
+    from grammar.plan import Plan, from_data, to_data
+
+    def swap(data: Any) -> Any:
+        if data == old_data:
+            return new_data
+        if isinstance(data, dict):
+            return {key: swap(value) for key, value in data.items()}
+        if isinstance(data, list):
+            return [swap(value) for value in data]
+        if isinstance(data, str) and isinstance(old, Text) and isinstance(new, Text):
+            return data.replace(old.value, new.value)
+        return data
+
+    old_data = to_data(Plan((Call("", {"": old}),)))["steps"][0]["arguments"][""]
+    new_data = to_data(Plan((Call("", {"": new}),)))["steps"][0]["arguments"][""]
+    return from_data({"steps": swap(to_data(Plan((step,)))["steps"])}).steps[0]
+
+
+# --- for each
+
+
+@meaning("for_each_place")
+def for_each_place(d: Discourse, node: Node) -> Steps:
+    """ "for every office, go there and ...", "in all wards, ..." ("in" means going there)."""
+    kind = d.get(node, "kinds")
+    listed: list[Value] | None = d.get(node, "place_list")
+    items: Value = Items((d.get(node, "place"), *listed)) if listed else kind_places(d, kind)
+    variable = d.variable("place")
+    here = Recall(variable)
+    going = Call("goto", {"place": here})
+    before = d.at
+    d.place = here
+    d.at = here if node.production.fixed.get("go") else None
+    body: Steps = []
+    if "steps" in node.parts:
+        body = d.build(node.parts["steps"])
+    first = body[0] if body else None
+    goes = isinstance(first, Call) and first.method in ("goto", "guide", "find")
+    if (node.production.fixed.get("go") and not goes) or (not goes and not mentions(body, here)):
+        body = [going, *body]
+    d.at = None if body else before
+    d.with_person = None
+    return [ForEach(variable, items, tuple(body))]
+
+
+def mentions(body: Steps, value: Recall) -> bool:
+    """Whether some steps use a variable."""
+    return any(node == value for node in nodes(body))
+
+
+@meaning("for_each_person")
+def for_each_person(d: Discourse, node: Node) -> Steps:
+    """ "for each of the next three visitors, ..." """
+    times = d.get(node, "times")
+    person: Thing | None = d.get(node, "person_ref")
+    who = person.value if person is not None else Text(ANYONE)
+    d.person = Thing(who, person=True, here=True)
+    wait = Call("wait_for", {"thing": who})
+    body = d.build(node.parts["steps"])
+    if times is None:
+        return [Forever((wait, *body))]
+    return [Repeat(as_value(times), (wait, *body))]

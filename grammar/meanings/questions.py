@@ -1,0 +1,221 @@
+"""Asking people: reported speech becomes a direct question, choices become its options."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from grammar.chart import Leaf, Node
+from grammar.discourse import Discourse, Steps, Thing, Where, capital
+from grammar.meanings.actions import meet, sentence_form, speak_to
+from grammar.meanings.nouns import is_me
+from grammar.meanings.registry import meaning
+from grammar.plan import Ask, Call, Items, Recall, Text, Value
+
+MOST_OPTIONS: Final = 20
+
+
+@meaning("ask")
+def ask(d: Discourse, node: Node) -> Steps:
+    """Ask somebody a question and remember the answer."""
+    person: Thing | None = d.get(node, "person_ref")
+    steps: Steps = []
+    if person is not None and not is_me(person):
+        if person.known or person.place is not None:
+            steps = meet(d, person)
+        d.person = person
+    question = node.parts["question"]
+    assert isinstance(question, Node)
+    text: str = d.build(question)
+    options = options_of(d, question)
+    arguments: dict[str, Value] = {"question": Text(text)}
+    name = remember_answer(d, options, "answer")
+    if options:
+        arguments["options"] = Items(tuple(Text(each) for each in options))
+    elif question.production.fixed.get("where") and len(d.lexicon.places) <= MOST_OPTIONS:
+        arguments["options"] = Ask("places")
+        d.place = Recall(name)
+    if person is not None and person.known:
+        arguments["person"] = person.value
+    return [*steps, Call("ask", arguments, save_as=name)]
+
+
+def remember_answer(d: Discourse, options: tuple[str, ...], name: str) -> str:
+    """Give the answer a variable; a choice of places is also where "there" is."""
+    places = {place.name for place in d.lexicon.places}
+    if options and all(option in places for option in options):
+        variable = d.variable("place")
+        d.place = Recall(variable)
+    else:
+        variable = d.variable(name)
+    d.answer = variable
+    d.answer_options = options
+    return variable
+
+
+@meaning("question")
+def question(d: Discourse, node: Node) -> str:
+    """A direct question made of a reported one by its form: "Do you {verb} {rest}?"."""
+    form: str = node.production.fixed["form"]
+    values: dict[str, str] = {}
+    for name, part in node.parts.items():
+        turned = turn_to_you(d, part.start, part.end)
+        values[name] = base_form(d, turned) if name == "verb" else turned
+    values.setdefault("rest", "")
+    text = " ".join(form.format_map(values).split())
+    return capital(text.replace(" ?", "?").replace(" ,", ","))
+
+
+def turn_to_you(d: Discourse, start: int, end: int) -> str:
+    """The original words with "they", "their", "her" ... turned to the person spoken to."""
+    you: dict[str, str] = d.language.speech.get("to_you", {})
+    pieces: list[str] = []
+    position = start
+    while position < end:
+        first = d.tokens[position]
+        last = position + 1
+        while last < end and d.tokens[last].start < first.end:
+            last += 1  # parts of one contraction
+        original = d.text[first.start : d.tokens[last - 1].end]
+        opened = " ".join(token.norm for token in d.tokens[position:last])
+        turned = you.get(first.norm)
+        if turned is not None:
+            original = opened.replace(first.norm, turned, 1)
+        if first.kind == "mark":
+            pieces.append(original if not pieces else "\b" + original)
+        else:
+            pieces.append(original)
+        position = last
+    return " ".join(pieces).replace(" \b", "").strip(" ,.?!")
+
+
+def base_form(d: Discourse, verb: str) -> str:
+    """ "wants" -> "want", "has" -> "have"."""
+    forms = d.language.speech.get("base_forms", {})
+    low = verb.lower()
+    if low in forms:
+        return str(forms[low])
+    for ending, base in d.language.speech.get("base_endings", ()):
+        if low.endswith(ending):
+            return verb[: len(verb) - len(ending)] + str(base)
+    return verb
+
+
+def options_of(d: Discourse, node: Node) -> tuple[str, ...]:
+    """The answers that a question offers: its choices, or yes and no."""
+    fixed = node.production.fixed
+    listed = node.parts.get("options")
+    if listed is not None:
+        return split_options(d, listed.start, listed.end)
+    joins = set(d.language.speech.get("or", ()))
+    rest = node.parts.get("rest")
+    if rest is not None and joins & set(d.norms(rest.start, rest.end)):
+        return split_options(d, rest.start, rest.end)
+    if fixed.get("yes_no"):
+        return (d.language.phrase("yes"), d.language.phrase("no"))
+    return ()
+
+
+def split_options(d: Discourse, start: int, end: int) -> tuple[str, ...]:
+    """ "to go to radiology or to the pharmacy" -> radiology, pharmacy.
+
+    What stands between the joining words is an option, without the little words before it; of the
+    first, only as many words at its end as the others have. Places go by their own names."""
+    joins = (
+        set(d.language.speech.get("or", ())) | set(d.language.speech.get("joins", ())) | {",", ":"}
+    )
+    groups: list[tuple[int, int]] = []
+    first = start
+    for position in range(start, end + 1):
+        if position == end or d.tokens[position].norm in joins:
+            if position > first:
+                groups.append((first, position))
+            first = position + 1
+    stripped = [_without_little_words(d, *group) for group in groups]
+    if not stripped:
+        return ()
+    longest = max(last - begin for begin, last in stripped[1:]) if stripped[1:] else 1
+    options: list[str] = []
+    for number, (begin, last) in enumerate(stripped):
+        place = _place_at_end(d, begin, last)
+        if place:
+            options.append(place)
+            continue
+        if number == 0 and len(stripped) > 1:
+            begin = max(begin, last - longest)
+            begin, last = _without_little_words(d, begin, last)
+        options.append(d.words(begin, last))
+    return tuple(dict.fromkeys(option for option in options if option))
+
+
+def _without_little_words(d: Discourse, start: int, end: int) -> tuple[int, int]:
+    while start < end - 1 and d.tokens[start].norm in d.language.closed:
+        start += 1
+    return start, end
+
+
+def _place_at_end(d: Discourse, start: int, end: int) -> str | None:
+    """The place whose name the last words are."""
+    from grammar.slots import names_of
+
+    trie = names_of(d.language, d.lexicon).tries.get("place")
+    for begin in range(start, end):
+        node = trie
+        for token in d.tokens[begin:end]:
+            node = node.branches.get(token.norm) if node else None
+        if node and node.values:
+            return str(node.values[0].name)
+    return None
+
+
+@meaning("ask_to")
+def ask_to(d: Discourse, node: Node) -> Steps:
+    """ "ask them to wait" -> "Please wait."."""
+    part = node.parts["text"]
+    text = turn_to_you(d, part.start, part.end)
+    request = d.sentence("please_do", what=text)
+    return speak_to(d, d.get(node, "person_ref"), [Call("say", {"text": request})])
+
+
+@meaning("say_that")
+def say_that(d: Discourse, node: Node) -> Steps:
+    """ "tell her that lunch is ready" -> "Lunch is ready."; to somebody, "they" becomes "you"."""
+    part = node.parts["text"]
+    if isinstance(part, Leaf) and part.slot == "quote":
+        text = str(part.value)
+    elif node.production.fixed.get("to_you"):
+        text = sentence_form(turn_to_you(d, part.start, part.end))
+    else:
+        text = sentence_form(d.words(part.start, part.end))
+    return speak_to(d, d.get(node, "person_ref"), [Call("say", {"text": Text(text)})])
+
+
+@meaning("answer")
+def answer(d: Discourse, node: Node) -> Steps:
+    """Answer somebody's question from the predefined ones."""
+    person: Thing | None = d.get(node, "person_ref")
+    known = node.parts.get("question_known")
+    arguments: dict[str, Value] = {}
+    if isinstance(known, Leaf):
+        arguments["question"] = Text(known.value[0].question)
+    steps = [Call("answer", arguments)]
+    if person is None or is_me(person):
+        spot: Where | None = d.get(node, "where")
+        if spot is not None and spot.place is not None:
+            d.went(spot.place)
+            return [Call("goto", {"place": spot.place}), *steps]
+        return [*steps]
+    return speak_to(d, person, [*steps])
+
+
+@meaning("listen")
+def listen(d: Discourse, node: Node) -> Steps:
+    d.heard = d.variable("heard")
+    d.answer = d.heard
+    d.answer_options = ()
+    return [Call("listen", {}, save_as=d.heard)]
+
+
+@meaning("quoted")
+def quoted(d: Discourse, node: Node) -> str:
+    text = str(d.get(node, "quote"))
+    return text if text[-1:] in ".?!" else f"{text}?"

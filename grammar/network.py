@@ -1,0 +1,265 @@
+"""All rules of a language, compiled into a network of states for `grammar.chart` to walk.
+
+Each rule becomes a deterministic automaton over words and references to other rules or slots: the
+templates of a rule share their common beginnings, so hundreds of templates cost no more to look
+through than the words that really stand there. References between rules may be recursive, but not
+at the left edge (`compile_rules` says which rule breaks that).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from grammar.templates import Choice, Part, Template, Word
+from grammar.templates import Sequence as TemplateSequence
+
+
+class RuleError(ValueError):
+    """The rules of a language contradict themselves; the message names the rule."""
+
+
+@dataclass(frozen=True)
+class Production:
+    """One entry of a rule: templates that mean the same."""
+
+    rule: str
+    means: str | None
+    """The meaning's name (`grammar.meanings`, or a robot method); None passes its parts on to
+    the rule that refers to it."""
+    templates: tuple[Template, ...]
+    cost: float = 0.0
+    fixed: Mapping[str, Any] = None  # type: ignore[assignment]
+    """Values that the meaning gets besides those of the slots."""
+    source: tuple[str, ...] = ()
+
+
+@dataclass(slots=True)
+class State:
+    words: dict[str, int]
+    calls: tuple[tuple[int, str | None, int], ...]
+    """(callee, binding, next state)"""
+    final: tuple[float, int] | None
+    """(cost, production) if a rule may end here."""
+
+
+@dataclass(frozen=True)
+class Network:
+    states: tuple[State, ...]
+    names: tuple[str, ...]
+    """Of the callees: rules, then slots in braces."""
+    starts: tuple[int, ...]
+    """The first state of each rule; -1 for a slot."""
+    first: tuple[frozenset[str] | None, ...]
+    """The words a rule can begin with; None where a slot makes that open."""
+    productions: tuple[Production, ...]
+
+    def rule(self, name: str) -> int:
+        return self.names.index(name)
+
+
+def compile_rules(
+    rules: Mapping[str, Sequence[Production]], words_of: Callable[[str], tuple[str, ...]]
+) -> Network:
+    """Compile the rules; `words_of` gives the normal forms of a template's word. Raises
+    `RuleError`."""
+    return _Compiler(rules, words_of).compile()
+
+
+class _Compiler:
+    def __init__(
+        self,
+        rules: Mapping[str, Sequence[Production]],
+        words_of: Callable[[str], tuple[str, ...]],
+    ) -> None:
+        self.rules = rules
+        self.words_of = words_of
+        self.numbers: dict[str, int] = {name: number for number, name in enumerate(rules)}
+        self.productions: list[Production] = []
+        self.states: list[State] = []
+        self.inlined: dict[str, Template | None] = {}
+        # the automaton of one rule before it is made deterministic
+        self.edges: list[list[tuple[Any, int]]] = []
+        self.empty: list[list[int]] = []
+
+    def compile(self) -> Network:
+        starts = [self._rule(name, productions) for name, productions in self.rules.items()]
+        starts += [-1] * (len(self.numbers) - len(starts))
+        self._refuse_left_recursion(starts)
+        first = self._first_words(starts)
+        return Network(
+            tuple(self.states), tuple(self.numbers), tuple(starts), first, tuple(self.productions)
+        )
+
+    # --- one rule
+
+    def _rule(self, name: str, productions: Sequence[Production]) -> int:
+        self.edges, self.empty = [[]], [[]]
+        finals: dict[int, tuple[float, int]] = {}
+        for production in productions:
+            number = len(self.productions)
+            self.productions.append(production)
+            end = self._node()
+            for template in production.templates:
+                last = self._add(template, 0, name)
+                self.empty[last].append(end)
+            finals[end] = (production.cost, number)
+        return self._deterministic(finals, name)
+
+    def _node(self) -> int:
+        self.edges.append([])
+        self.empty.append([])
+        return len(self.edges) - 1
+
+    def _add(self, template: Template, at: int, rule: str) -> int:
+        match template:
+            case Word(text):
+                for word in self.words_of(text):
+                    following = self._node()
+                    self.edges[at].append((word, following))
+                    at = following
+                return at
+            case TemplateSequence(parts):
+                for part in parts:
+                    at = self._add(part, at, rule)
+                return at
+            case Choice(alternatives):
+                end = self._node()
+                for alternative in alternatives:
+                    self.empty[self._add(alternative, at, rule)].append(end)
+                return end
+            case Part(name, binding, True) if binding is None and self._inline(name, rule):
+                inlined = self.inlined[name]
+                assert inlined is not None
+                return self._add(inlined, at, rule)
+            case Part(name, binding, is_rule):
+                following = self._node()
+                self.edges[at].append((self._callee(name, binding, is_rule, rule), following))
+                return following
+
+    def _callee(
+        self, name: str, binding: str | None, is_rule: bool, rule: str
+    ) -> tuple[int, str | None]:
+        if is_rule:
+            if name not in self.rules:
+                raise RuleError(f"the rule <{rule}> refers to <{name}>, which does not exist")
+            meaningful = any(production.means for production in self.rules[name])
+            return self.numbers[name], binding or (name if meaningful else None)
+        slot = "{" + name + "}"
+        return self.numbers.setdefault(slot, len(self.numbers)), binding or name
+
+    def _inline(self, name: str, rule: str) -> bool:
+        """Whether the rule only stands for some words, so that it can be put in place."""
+        if name not in self.rules:
+            raise RuleError(f"the rule <{rule}> refers to <{name}>, which does not exist")
+        if name not in self.inlined:
+            productions = self.rules[name]
+            simple = all(
+                not each.means and not each.cost and not each.fixed for each in productions
+            ) and not self._reaches(name, name, set())
+            self.inlined[name] = (
+                Choice(tuple(t for each in productions for t in each.templates)) if simple else None
+            )
+        return self.inlined[name] is not None
+
+    def _reaches(self, name: str, goal: str, seen: set[str]) -> bool:
+        if name in seen:
+            return False
+        seen.add(name)
+        for production in self.rules.get(name, ()):
+            for template in production.templates:
+                for part in parts_of(template):
+                    if part.is_rule and (part.name == goal or self._reaches(part.name, goal, seen)):
+                        return True
+        return False
+
+    def _deterministic(self, finals: dict[int, tuple[float, int]], name: str) -> int:
+        def closure(nodes: set[int]) -> frozenset[int]:
+            todo, found = list(nodes), set(nodes)
+            while todo:
+                for node in self.empty[todo.pop()]:
+                    if node not in found:
+                        found.add(node)
+                        todo.append(node)
+            return frozenset(found)
+
+        start = closure({0})
+        if any(node in finals for node in start):
+            raise RuleError(f"the rule <{name}> can be empty")
+        first = len(self.states)
+        known = {start: first}
+        self.states.append(State({}, (), None))
+        todo = [start]
+        while todo:
+            nodes = todo.pop()
+            moves: dict[Any, set[int]] = {}
+            for node in nodes:
+                for symbol, following in self.edges[node]:
+                    moves.setdefault(symbol, set()).add(following)
+            words: dict[str, int] = {}
+            calls: list[tuple[int, str | None, int]] = []
+            for symbol, targets in moves.items():
+                target = closure(targets)
+                if target not in known:
+                    known[target] = len(self.states)
+                    self.states.append(State({}, (), None))
+                    todo.append(target)
+                if isinstance(symbol, str):
+                    words[symbol] = known[target]
+                else:
+                    calls.append((*symbol, known[target]))
+            reached = [finals[node] for node in nodes if node in finals]
+            self.states[known[nodes]] = State(
+                words, tuple(calls), min(reached) if reached else None
+            )
+        return first
+
+    # --- all rules
+
+    def _refuse_left_recursion(self, starts: list[int]) -> None:
+        names = list(self.numbers)
+        done: set[int] = set()
+
+        def visit(rule: int, path: tuple[int, ...]) -> None:
+            if rule in path:
+                circle = " -> ".join(f"<{names[each]}>" for each in (*path, rule))
+                raise RuleError(f"a rule begins with itself: {circle}")
+            if rule in done or starts[rule] < 0:
+                return
+            for callee, _, _ in self.states[starts[rule]].calls:
+                visit(callee, (*path, rule))
+            done.add(rule)
+
+        for rule in range(len(starts)):
+            visit(rule, ())
+
+    def _first_words(self, starts: list[int]) -> tuple[frozenset[str] | None, ...]:
+        found: dict[int, frozenset[str] | None] = {}
+
+        def visit(rule: int) -> frozenset[str] | None:
+            if rule not in found:
+                if starts[rule] < 0:
+                    return None
+                state = self.states[starts[rule]]
+                words: frozenset[str] | None = frozenset(state.words)
+                for callee, _, _ in state.calls:
+                    more = visit(callee)
+                    words = None if more is None or words is None else words | more
+                found[rule] = words
+            return found[rule]
+
+        return tuple(visit(rule) for rule in range(len(starts)))
+
+
+def parts_of(template: Template) -> list[Part]:
+    """All references in a template."""
+    match template:
+        case Part():
+            return [template]
+        case TemplateSequence(parts):
+            return [each for part in parts for each in parts_of(part)]
+        case Choice(alternatives):
+            return [each for alternative in alternatives for each in parts_of(alternative)]
+        case _:
+            return []

@@ -1,0 +1,143 @@
+"""Sample sentences: the help ("what can I say?"), suggestions, and sentences for tests.
+
+All are made from the language's own data and the names of the lexicon, so they parse.
+"""
+
+from __future__ import annotations
+
+import functools
+import random
+import re
+from typing import Final
+
+from grammar.language import Language, load_language
+from grammar.lexicon import Lexicon
+from grammar.templates import Choice, Part, Sequence, Template, Word
+from grammar.wordforms import plural
+
+_SLOT: Final = re.compile(r"\{(\w+)\}")
+
+
+def samples(lexicon: Lexicon, language: str = "en") -> dict[str, list[str]]:
+    """Example phrases by topic for this world and robot; all of them are understood."""
+    return _samples(lexicon, load_language(language))
+
+
+@functools.lru_cache(maxsize=16)
+def _samples(lexicon: Lexicon, language: Language) -> dict[str, list[str]]:
+    result: dict[str, list[str]] = {}
+    for topic, examples in language.help.items():
+        phrases = [filled for each in examples if (filled := _filled(each, lexicon, language))]
+        if phrases:
+            result[topic] = phrases
+    return result
+
+
+def _filled(example: str, lexicon: Lexicon, language: Language) -> str | None:
+    """The example with names of the lexicon in its slots; None where there are none."""
+    used: dict[str, int] = {}
+
+    def fill(match: re.Match[str]) -> str:
+        slot = match.group(1)
+        names = _names(slot, lexicon)
+        number = used.get(slot, 0)
+        used[slot] = number + 1
+        if number >= len(names):
+            raise LookupError(slot)
+        return names[number]
+
+    try:
+        return _SLOT.sub(fill, example)
+    except LookupError:
+        return None
+
+
+def _names(slot: str, lexicon: Lexicon) -> list[str]:
+    return {
+        "place": [place.name for place in lexicon.places],
+        "person": [person.name for person in lexicon.people],
+        "object": list(dict.fromkeys(thing.name for thing in lexicon.objects)),
+        "contact": list(lexicon.contacts),
+        "kind": [kind for kind, places in lexicon.place_kinds.items() if len(places) > 1],
+        "joint": [joint.replace("_", " ") for joint in lexicon.joints],
+        "skill": list(lexicon.skills),
+    }.get(slot, [])
+
+
+def nearest_phrases(text: str, lexicon: Lexicon, language: Language) -> list[str]:
+    """One to three example phrases most like a text, the nearest first."""
+    from rapidfuzz import fuzz, process
+
+    phrases = [phrase for each in _samples(lexicon, language).values() for phrase in each]
+    found = process.extract(
+        text.lower(), phrases, scorer=fuzz.token_set_ratio, limit=3, score_cutoff=45
+    )
+    return [phrase for phrase, _, _ in found]
+
+
+def random_sentence(lexicon: Lexicon, language: str = "en", seed: int = 0) -> str:
+    """A sentence made at random from the rules; the same one for the same seed."""
+    pack = load_language(language)
+    return _Sampler(lexicon, pack, random.Random(seed)).sentence()
+
+
+class _Sampler:
+    """Walks the rules at random; ever shorter the deeper it is."""
+
+    def __init__(self, lexicon: Lexicon, language: Language, chance: random.Random) -> None:
+        self.lexicon = lexicon
+        self.language = language
+        self.chance = chance
+
+    def sentence(self) -> str:
+        return (
+            " ".join(self.rule("steps", 0)).replace(" ,", ",").replace(" .", ".").replace(" :", ":")
+        )
+
+    def rule(self, name: str, depth: int) -> list[str]:
+        productions = [each for each in self.language.rules[name] if each.cost < 2]
+        if depth > 3:
+            productions = sorted(productions, key=_size)[:2]
+        production = self.chance.choice(productions)
+        return self.template(self.chance.choice(production.templates), depth + 1)
+
+    def template(self, template: Template, depth: int) -> list[str]:
+        match template:
+            case Word(text):
+                return [text]
+            case Sequence(parts):
+                return [word for part in parts for word in self.template(part, depth)]
+            case Choice(alternatives):
+                empty = [each for each in alternatives if each == Sequence(())]
+                if empty and (depth > 2 or self.chance.random() < 0.7):
+                    return []
+                return self.template(self.chance.choice(alternatives), depth)
+            case Part(name, _, True):
+                return self.rule(name, depth)
+            case Part(name, _, _):
+                return self.slot(name).split()
+
+    def slot(self, name: str) -> str:
+        names = _names("kind" if name == "kinds" else name, self.lexicon)
+        if name == "kinds":
+            names = [plural(kind, self.language) for kind in names]
+        listed = self.language.lists.get(name)
+        if listed:
+            names = [*names, *(" ".join(way) for ways in listed.values() for way in ways)]
+        plain = {
+            "number": ["2", "10", "45"],
+            "count": ["2", "3", "5"],
+            "clock": ["9:30", "14:05"],
+            "url": ["https://example.org"],
+            "selector": ["#name"],
+            "quote": ['"good morning"'],
+            "text": ["lunch is ready", "good morning"],
+            "noun": ["banana", "green bottle"],
+            "word": ["like"],
+            "unknown": ["pharmacy"],
+        }
+        return self.chance.choice(names or plain.get(name) or ["robot"])
+
+
+def _size(production: object) -> int:
+    return len(str(production))

@@ -1,0 +1,349 @@
+"""What the slots of the rules match: names of the world, numbers, free text, any noun.
+
+A slot finds all its matches that begin at a token, with their costs. Names come from the lexicon
+and from the lists of the language; they are found along a trie, misspelt ones too.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from grammar.chart import CORRECTION, Corrected, Match, Slot
+from grammar.language import Language
+from grammar.lexicon import Lexicon, Name
+from grammar.tokens import COLON, COMMA, STOP, Token
+from grammar.wordforms import plural
+
+FREE_WORD: Final = 1.0
+"""Cost of a word that only an open slot understands."""
+SWALLOWED_COMMAND: Final = 25.0
+"""Cost of a text that goes on over what begins like another command."""
+UNKNOWN_NAME: Final = 30.0
+"""Cost of reading words as the name of something that is not known."""
+LONGEST_NOUN: Final = 5
+LONGEST_UNKNOWN: Final = 6
+
+
+@dataclass(slots=True)
+class Trie:
+    branches: dict[str, Trie] = field(default_factory=dict)
+    values: list[Any] = field(default_factory=list)
+
+    def add(self, words: Iterable[str], value: Any) -> None:
+        node = self
+        for word in words:
+            node = node.branches.setdefault(word, Trie())
+        if value not in node.values:
+            node.values.append(value)
+
+
+class Names:
+    """The names that a language and a lexicon give together: a trie for each slot."""
+
+    def __init__(self, language: Language, lexicon: Lexicon) -> None:
+        self.language = language
+        self.lexicon = lexicon
+        self.tries: dict[str, Trie] = {}
+        self.words: set[str] = set()
+        self._places()
+        for name in lexicon.people:
+            self._add_name("person", name)
+        for thing in lexicon.objects:
+            for form in self._forms(thing.name):
+                self._add("object", form, thing.name)
+            for alias in thing.aliases:
+                for form in self._forms(alias):
+                    self._add("object", form, thing.name)
+        for furniture in lexicon.furniture:
+            for text in (furniture.name, *furniture.aliases):
+                self._add("furniture", text, furniture.name)
+            if furniture.kind:
+                self._add("furniture", furniture.kind, furniture.kind)
+        for contact in lexicon.contacts:
+            self._add("contact", contact, contact)
+        for question in lexicon.questions:
+            for text in (question.question, *question.aliases):
+                self._add("question", text.rstrip("?"), question)
+        for slot, known in (
+            ("gesture", lexicon.gestures),
+            ("emotion", lexicon.emotions),
+            ("joint", lexicon.joints),
+            ("skill", lexicon.skills),
+        ):
+            for each in known:
+                self._add(slot, each.replace("_", " "), each)
+        if lexicon.robot_name:
+            self._add("robot_name", lexicon.robot_name, lexicon.robot_name)
+        for name_of_list, values in language.lists.items():
+            for value, ways in values.items():
+                for way in ways:
+                    self._add_words(name_of_list, way, value)
+
+    def _places(self) -> None:
+        for place in self.lexicon.places:
+            self._add_name("place", place)
+        for kind in self.lexicon.place_kinds:
+            entry = self.language.kinds.get(kind, {})
+            one = entry.get("one", [kind])
+            many = entry.get("many") or [plural(word, self.language) for word in one]
+            for word in one:
+                self._add("kind", word, kind)
+            for word in many:
+                self._add("kinds", word, kind)
+
+    def _add_name(self, slot: str, name: Name) -> None:
+        for text in (name.name, *name.aliases):
+            for variant in self._variants(text):
+                self._add(slot, variant, name)
+
+    def _variants(self, text: str) -> Iterable[str]:
+        """ "Alice's office" is also "the office of Alice", and written "Alices office"."""
+        yield text
+        mark = self.language.speech.get("possessive")
+        if mark and mark in text:
+            owner, _, owned = text.partition(mark)
+            for pattern in self.language.speech.get("possessive_forms", ()):
+                yield pattern.format(owner=owner, owned=owned.strip())
+
+    def _forms(self, text: str) -> tuple[str, ...]:
+        return tuple(dict.fromkeys((text, plural(text, self.language))))
+
+    def _add(self, slot: str, text: str, value: Any) -> None:
+        self._add_words(slot, self.language.tokens_of(text), value)
+
+    def _add_words(self, slot: str, words: tuple[str, ...], value: Any) -> None:
+        if words:
+            self.tries.setdefault(slot, Trie()).add(words, value)
+            self.words.update(words)
+
+
+@functools.lru_cache(maxsize=16)
+def names_of(language: Language, lexicon: Lexicon) -> Names:
+    """The names, made once for a language and a lexicon."""
+    return Names(language, lexicon)
+
+
+class Slots:
+    """The slots over the tokens of one sentence."""
+
+    def __init__(
+        self,
+        names: Names,
+        tokens: tuple[Token, ...],
+        corrections: Mapping[int, tuple[str, ...]],
+    ) -> None:
+        self.names = names
+        self.language = names.language
+        self.tokens = tokens
+        self.corrections = corrections
+        self._command_words = _command_words(self.language)
+        self._noun_joins = frozenset(self.language.speech.get("noun_joins", ()))
+        self._fillers = {word for filler in self.language.fillers for word in filler}
+
+    def all(self) -> dict[str, Slot]:
+        slots: dict[str, Slot] = {
+            "{" + name + "}": functools.partial(self._name, trie)
+            for name, trie in self.names.tries.items()
+        }
+        slots |= {
+            "{number}": self._number,
+            "{count}": self._count,
+            "{clock}": functools.partial(self._kind, "time"),
+            "{url}": functools.partial(self._kind, "url"),
+            "{selector}": functools.partial(self._kind, "selector"),
+            "{quote}": self._quote,
+            "{text}": self._text,
+            "{noun}": self._noun,
+            "{word}": self._word,
+            "{unknown}": self._unknown,
+        }
+        return slots
+
+    # --- names
+
+    def _name(self, trie: Trie, at: int) -> list[Match]:
+        matches: list[Match] = []
+        self._walk(trie, at, 0.0, (), matches)
+        return matches
+
+    def _walk(
+        self,
+        trie: Trie,
+        at: int,
+        cost: float,
+        corrected: tuple[tuple[int, str], ...],
+        matches: list[Match],
+    ) -> None:
+        if trie.values:
+            value: Any = tuple(trie.values)
+            matches.append((at, cost, Corrected(value, corrected) if corrected else value))
+        if at >= len(self.tokens):
+            return
+        branch = trie.branches.get(self.tokens[at].norm)
+        if branch:
+            self._walk(branch, at + 1, cost, corrected, matches)
+        for other in self.corrections.get(at, ()):
+            branch = trie.branches.get(other)
+            if branch:
+                self._walk(branch, at + 1, cost + CORRECTION, (*corrected, (at, other)), matches)
+
+    # --- numbers
+
+    def _number(self, at: int) -> list[Match]:
+        """ "2.5", "twenty five", "two hundred and ten", "two and a half", "half a", "a"."""
+        numbers = self.language.numbers
+        scales: Mapping[str, float] = numbers.get("scales", {})
+        joiners = set(numbers.get("and", ()))
+        if at < len(self.tokens) and self.tokens[at].norm in numbers.get("minus", ()):
+            return [(end, cost, -value) for end, cost, value in self._number(at + 1)]
+        matches: list[Match] = []
+        total, current, position, any_digit = 0.0, None, at, False
+        while position < len(self.tokens):
+            token = self.tokens[position]
+            if token.value is not None:
+                if (
+                    current is not None
+                    and not (current % 10 == 0 and current >= 20 and 0 < token.value < 10)
+                    and not (current % 100 == 0 and current >= 100 and token.value < 100)
+                ):
+                    break
+                if current is not None and self.tokens[position - 1].kind == "number":
+                    break
+                current = (current or 0.0) + token.value
+            elif token.norm in scales:
+                scale = scales[token.norm]
+                current = (1.0 if current is None else current) * scale
+                if scale >= 1000:
+                    total, current = total + current, None
+            elif token.norm in joiners and any_digit and position + 1 < len(self.tokens):
+                following = self.tokens[position + 1]
+                if following.value is None or (total + (current or 0)) < 100:
+                    break
+                position += 1
+                continue
+            else:
+                break
+            any_digit = True
+            position += 1
+            matches.append((position, 0.0, total + (current or 0.0)))
+        whole = matches[-1] if matches else None
+        for phrase, value in self._fractions():
+            if whole and self._reads((*phrase,), whole[0], after_number=True):
+                matches.append((whole[0] + len(phrase), 0.0, whole[2] + value))
+        for words, value in self._articles():
+            if self._reads(words, at):
+                matches.append((at + len(words), 0.2, value))
+        return matches
+
+    def _fractions(self) -> Iterable[tuple[tuple[str, ...], float]]:
+        for phrase, value in self.language.numbers.get("and_fractions", {}).items():
+            yield self.language.tokens_of(phrase), value
+
+    def _articles(self) -> Iterable[tuple[tuple[str, ...], float]]:
+        for phrase, value in self.language.numbers.get("phrases", {}).items():
+            yield self.language.tokens_of(phrase), value
+
+    def _reads(self, words: tuple[str, ...], at: int, after_number: bool = False) -> bool:
+        return all(
+            at + offset < len(self.tokens) and self.tokens[at + offset].norm == word
+            for offset, word in enumerate(words)
+        )
+
+    def _count(self, at: int) -> list[Match]:
+        """A whole number from 1 on."""
+        return [
+            (end, cost, int(value))
+            for end, cost, value in self._number(at)
+            if value >= 1 and value == int(value) and not (cost and end == at + 1)
+        ]
+
+    # --- single tokens
+
+    def _kind(self, kind: str, at: int) -> list[Match]:
+        if at < len(self.tokens) and self.tokens[at].kind == kind:
+            return [(at + 1, 0.0, self.tokens[at].norm)]
+        return []
+
+    def _quote(self, at: int) -> list[Match]:
+        if at < len(self.tokens) and self.tokens[at].kind == "quote" and self.tokens[at].inner:
+            return [(at + 1, 0.0, self.tokens[at].inner)]
+        return []
+
+    def _word(self, at: int) -> list[Match]:
+        if at < len(self.tokens) and self.tokens[at].kind == "word":
+            return [(at + 1, FREE_WORD, self.tokens[at].norm)]
+        return []
+
+    # --- open slots
+
+    def _text(self, at: int) -> list[Match]:
+        """Free text of any length; it costs more where it goes on over another command."""
+        matches: list[Match] = []
+        cost = 0.0
+        for position in range(at, len(self.tokens)):
+            token = self.tokens[position]
+            if token.kind == "mark":
+                if position == at:
+                    return []
+                if token.norm == STOP:
+                    cost += 4.0
+                continue
+            if position > at and self._begins_command(position):
+                cost += SWALLOWED_COMMAND
+            if token.norm in self._fillers:  # part of the text only if more text follows
+                matches.append((position + 1, cost + 0.3, None))
+                continue
+            cost += 0.0 if token.kind == "quote" else FREE_WORD
+            matches.append((position + 1, cost, None))
+        return matches
+
+    def _begins_command(self, at: int) -> bool:
+        if self.tokens[at].norm not in self._command_words:
+            return False
+        before = self.tokens[at - 1].norm
+        return before in (COMMA, STOP, COLON) or before in self.language.speech.get("joins", ())
+
+    def _noun(self, at: int) -> list[Match]:
+        """Any noun with its adjectives: words that are no function words."""
+        matches: list[Match] = []
+        for position in range(at, min(at + LONGEST_NOUN, len(self.tokens))):
+            token = self.tokens[position]
+            if token.norm in self._noun_joins and matches:
+                continue  # "glass of water"
+            if token.kind not in ("word", "quote") or token.norm in self.language.closed:
+                break
+            length = position + 1 - at
+            matches.append((position + 1, FREE_WORD * length, None))
+        return matches
+
+    def _unknown(self, at: int) -> list[Match]:
+        """The name of something nobody knows, so that it can be said which."""
+        matches: list[Match] = []
+        for position in range(at, min(at + LONGEST_UNKNOWN, len(self.tokens))):
+            token = self.tokens[position]
+            if token.kind == "mark" or token.norm in self.language.closed:
+                break
+            matches.append((position + 1, UNKNOWN_NAME + FREE_WORD * (position + 1 - at), None))
+        return matches
+
+
+@functools.cache
+def _command_words(language: Language) -> frozenset[str]:
+    """The words that a command can begin with."""
+    network = language.network
+    words: set[str] = set()
+
+    def visit(rule: int, seen: set[int]) -> None:
+        if rule in seen or network.starts[rule] < 0:
+            return
+        seen.add(rule)
+        state = network.states[network.starts[rule]]
+        words.update(state.words)
+        for callee, _, _ in state.calls:
+            visit(callee, seen)
+
+    visit(network.rule("command"), set())
+    return frozenset(words) - frozenset(language.speech.get("not_command_words", ()))

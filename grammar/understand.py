@@ -1,0 +1,314 @@
+"""From a sentence to a plan, or to an honest answer why not.
+
+    text -> tokens -> the cheapest reading by the rules -> its meaning: a plan
+
+A sentence is understood as a whole or not at all: every word is covered by a rule, by a slot, or is
+one of the words that say nothing. What is not understood is named, with the nearest phrases that
+would be.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass, field
+from typing import Final, Literal
+
+from grammar.chart import Chart, Leaf, Node, TooMuch
+from grammar.discourse import Ambiguous, Discourse, NotUnderstood
+from grammar.language import Language, load_language
+from grammar.lexicon import Lexicon
+from grammar.plan import Plan
+from grammar.slots import Names, Slots, names_of
+from grammar.tidy import without_unused
+from grammar.tokens import COMMA, Token, tokenise
+
+LONGEST_TEXT: Final = 2000
+"""Characters."""
+MOST_WORDS: Final = 150
+COMMA_PASSED_OVER: Final = 0.5
+FILLER_PASSED_OVER: Final = 0.1
+SHORTEST_CORRECTED: Final = 4
+"""Letters of a word that may be misspelt."""
+
+Status = Literal["ok", "clarify", "rejected"]
+
+
+@dataclass(frozen=True)
+class Context:
+    """What a conversation remembers between two sentences."""
+
+    plan: Plan | None = None
+    """The last plan."""
+    text: str = ""
+    """The last sentence."""
+    question: Clarification | None = None
+    """The question that waits for an answer."""
+
+
+@dataclass(frozen=True)
+class Clarification:
+    """A question back: which of several was meant."""
+
+    text: str
+    """The sentence it is about."""
+    start: int
+    end: int
+    """The characters that may mean several things."""
+    choices: tuple[str, ...]
+
+    def completed(self, choice: str) -> str:
+        """The sentence with the choice in place."""
+        return self.text[: self.start] + choice + self.text[self.end :]
+
+
+@dataclass(frozen=True)
+class Understanding:
+    utterance: str
+    status: Status
+    plan: Plan | None = None
+    confidence: float = 0.0
+    """From 0 to 1; below 1 where spellings were corrected or something was assumed."""
+    message: str | None = None
+    """Why it was not understood, or the question back."""
+    suggestions: list[str] = field(default_factory=list)
+    """Sentences that would be understood."""
+    reading: list[tuple[str, str]] = field(default_factory=list)
+    """Which words were read as what: (words, meaning), in their order."""
+    context: Context = field(default_factory=Context)
+    """What to pass with the next sentence of the conversation."""
+
+
+def understand(
+    text: str, lexicon: Lexicon, language: str = "en", context: Context | None = None
+) -> Understanding:
+    """Understand a sentence. Never raises for any text; `UnknownLanguage` for a language that
+    there is no folder for."""
+    pack = load_language(language)
+    context = context or Context()
+    if not text.strip():
+        return _rejected(text, pack.phrase("empty"), context)
+    if len(text) > LONGEST_TEXT or len(text.split()) > MOST_WORDS:
+        return _rejected(text, pack.phrase("too_long"), context)
+    if context.question is not None:
+        answered = _answered(text, context.question, pack)
+        if answered is not None:
+            return understand(answered, lexicon, language, Context(context.plan, context.text))
+    return _Reader(text, lexicon, pack, context).understand()
+
+
+def _answered(text: str, question: Clarification, language: Language) -> str | None:
+    """The sentence completed by the answer to the question back, if it is one."""
+    from rapidfuzz import fuzz
+
+    said = " ".join(language.tokens_of(text))
+    best = max(
+        question.choices,
+        key=lambda choice: fuzz.token_set_ratio(said, " ".join(language.tokens_of(choice))),
+    )
+    close = fuzz.token_set_ratio(said, " ".join(language.tokens_of(best)))
+    if close < 80:
+        yes = len(question.choices) == 1 and said == language.phrase("yes")
+        return question.completed(best) if yes else None
+    return question.completed(best)
+
+
+def _rejected(text: str, message: str, context: Context) -> Understanding:
+    return Understanding(text, "rejected", message=message, context=context)
+
+
+class _Reader:
+    """Reads one sentence."""
+
+    def __init__(self, text: str, lexicon: Lexicon, language: Language, context: Context) -> None:
+        self.text = text
+        self.lexicon = lexicon
+        self.language = language
+        self.context = context
+        self.names: Names = names_of(language, lexicon)
+        self.tokens = tokenise(text, language.spelling)
+        self.skips = self._skips()
+        self.corrections = self._corrections()
+
+    def understand(self) -> Understanding:
+        if not self.tokens:
+            return _rejected(self.text, self.language.phrase("empty"), self.context)
+        chart = self.chart()
+        try:
+            tree = chart.best("utterance")
+        except (TooMuch, RecursionError):
+            return _rejected(self.text, self.language.phrase("too_complicated"), self.context)
+        if tree is None:
+            return self._not_understood(chart)
+        discourse = Discourse(self.language, self.lexicon, self.tokens, self.text)
+        try:
+            steps = discourse.build(tree.parts["steps"])
+        except NotUnderstood as reason:
+            return self._refused(reason)
+        except Ambiguous as which:
+            return self._ask_back(which)
+        if not steps:
+            return self._not_understood(chart)
+        plan = without_unused(Plan((*discourse.prologue(), *steps), self.language.code))
+        confidence = max(0.1, 1.0 - 0.15 * len(tree.corrections) - 0.1 * len(discourse.assumptions))
+        return Understanding(
+            self.text,
+            "ok",
+            plan,
+            round(confidence, 2),
+            reading=self._reading(tree),
+            context=Context(plan, self.text),
+        )
+
+    def chart(self) -> Chart:
+        slots = Slots(self.names, self.tokens, self.corrections).all()
+        return Chart(
+            self.language.network,
+            self.tokens,
+            slots,
+            skips=self.skips,
+            corrections=self.corrections,
+        )
+
+    # --- before parsing
+
+    def _skips(self) -> dict[int, list[tuple[int, float]]]:
+        """Where words may be passed over: fillers, and commas that no rule asks for."""
+        skips: dict[int, list[tuple[int, float]]] = {}
+        words = [token.norm for token in self.tokens]
+        for at, token in enumerate(self.tokens):
+            if token.norm == COMMA:
+                skips.setdefault(at, []).append((at + 1, COMMA_PASSED_OVER))
+            for filler in _fillers_by_first(self.language).get(token.norm, ()):
+                if tuple(words[at : at + len(filler)]) == filler:
+                    skips.setdefault(at, []).append((at + len(filler), FILLER_PASSED_OVER))
+        return skips
+
+    def _corrections(self) -> dict[int, tuple[str, ...]]:
+        """What unknown words may be misspellings of."""
+        corrections: dict[int, tuple[str, ...]] = {}
+        known = self.language.words | self.names.words | self.language.closed
+        for at, token in enumerate(self.tokens):
+            if token.kind != "word" or token.norm in known or len(token.norm) < SHORTEST_CORRECTED:
+                continue
+            found = _misspelt(token.norm, self.language, self.lexicon)
+            if found:
+                corrections[at] = found
+        return corrections
+
+    # --- after parsing
+
+    def _refused(self, reason: NotUnderstood) -> Understanding:
+        suggestions = list(reason.suggestions)
+        message = reason.message
+        if suggestions:
+            choices = self.language.phrase("did_you_mean", choices=self._listed(suggestions))
+            message = f"{message} {choices}"
+        return Understanding(
+            self.text, "rejected", message=message, suggestions=suggestions, context=self.context
+        )
+
+    def _listed(self, names: list[str]) -> str:
+        if len(names) < 2:
+            return "".join(names)
+        return f"{', '.join(names[:-1])} {self.language.phrase('or')} {names[-1]}"
+
+    def _ask_back(self, which: Ambiguous) -> Understanding:
+        start = self.tokens[which.start].start
+        end = self.tokens[which.end - 1].end
+        question = Clarification(self.text, start, end, which.choices)
+        return Understanding(
+            self.text,
+            "clarify",
+            message=which.question,
+            suggestions=[question.completed(choice) for choice in which.choices],
+            context=Context(self.context.plan, self.context.text, question),
+        )
+
+    def _not_understood(self, chart: Chart) -> Understanding:
+        """Name the first words that no reading could use."""
+        from grammar.samples import nearest_phrases
+
+        suggestions = nearest_phrases(self.text, self.lexicon, self.language)
+        part = self._ununderstood_part(chart)
+        message = (
+            self.language.phrase("not_understood", part=part)
+            if part
+            else self.language.phrase("not_understood_at_all")
+        )
+        if suggestions:
+            examples = self._listed([f"“{each}”" for each in suggestions])
+            message = f"{message} {self.language.phrase('try_this', examples=examples)}"
+        return Understanding(
+            self.text, "rejected", message=message, suggestions=suggestions, context=self.context
+        )
+
+    def _ununderstood_part(self, chart: Chart) -> str:
+        try:
+            begun = chart.longest("utterance", 0)
+        except TooMuch:
+            begun = None
+        first = begun.end if begun is not None else 0
+        while first < len(self.tokens) and self.tokens[first].kind == "mark":
+            first += 1
+        if first == 0 or first >= len(self.tokens):
+            return ""
+        last = first
+        while last < len(self.tokens) and self.tokens[last].kind != "mark":
+            last += 1
+        return self.text[self.tokens[first].start : self.tokens[last - 1].end]
+
+    def _reading(self, tree: Node) -> list[tuple[str, str]]:
+        reading: list[tuple[str, str]] = []
+
+        def visit(node: Node) -> None:
+            if node.production.means and node.production.means != "steps":
+                reading.append((self._words(node.start, node.end), node.production.means))
+            for part in node.parts.values():
+                if isinstance(part, Node):
+                    visit(part)
+                elif isinstance(part, Leaf):
+                    reading.append((self._words(part.start, part.end), part.slot))
+
+        visit(tree)
+        for at, word in tree.corrections:
+            reading.append((self._words(at, at + 1), f"“{word}”"))
+        return reading
+
+    def _words(self, start: int, end: int) -> str:
+        return self.text[self.tokens[start].start : self.tokens[end - 1].end] if end > start else ""
+
+
+@functools.cache
+def _fillers_by_first(language: Language) -> dict[str, list[tuple[str, ...]]]:
+    fillers: dict[str, list[tuple[str, ...]]] = {}
+    for filler in language.fillers:
+        fillers.setdefault(filler[0], []).append(filler)
+    return fillers
+
+
+@functools.lru_cache(maxsize=2048)
+def _misspelt(word: str, language: Language, lexicon: Lexicon) -> tuple[str, ...]:
+    """Known words that are one small slip away: a letter left out, doubled, added or swapped with
+    its neighbour; in longer words also a wrong letter, in long ones two slips."""
+    from rapidfuzz.distance import OSA
+    from rapidfuzz.process import extract
+
+    known = sorted(
+        each
+        for each in language.words | names_of(language, lexicon).words
+        if len(each) >= SHORTEST_CORRECTED and each[0] == word[0]
+    )
+    most = 2 if len(word) >= 8 else 1
+    found = extract(word, known, scorer=OSA.distance, score_cutoff=most, limit=4)
+    near: list[str] = []
+    for other, distance, _ in found:
+        if found and distance > found[0][1]:
+            break
+        wrong_letter = len(other) == len(word) and sorted(other) != sorted(word)
+        if len(word) < 6 and wrong_letter:
+            continue
+        near.append(other)
+    return tuple(near[:3])
+
+
+__all__ = ["Clarification", "Context", "Status", "Token", "Understanding", "understand"]

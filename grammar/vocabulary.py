@@ -1,0 +1,30 @@
+"""All words that the grammar and the world can say, for the speech recogniser."""
+
+from __future__ import annotations
+
+import re
+
+from grammar.language import load_language
+from grammar.lexicon import Lexicon
+from grammar.slots import names_of
+from grammar.tokens import plain
+
+_WORD = re.compile(r"[^\W\d_]+(?:'[^\W\d_]+)*")
+
+
+def vocabulary(lexicon: Lexicon, language: str = "en") -> list[str]:
+    """The words, in lower case and in order, each once."""
+    pack = load_language(language)
+    texts: list[str] = [*pack.spelled_words, *pack.spelling.contractions]
+    texts += [word for filler in pack.fillers for word in filler]
+    texts += pack.closed
+    texts += pack.phrases.values()
+    for name in (*lexicon.places, *lexicon.people, *lexicon.objects, *lexicon.furniture):
+        texts += [name.name, *name.aliases, *name.attributes, name.kind or ""]
+    texts += [*lexicon.contacts, *lexicon.gestures, *lexicon.emotions, *lexicon.skills]
+    texts += [joint.replace("_", " ") for joint in lexicon.joints]
+    for question in lexicon.questions:
+        texts += [question.question, *question.aliases]
+    texts += names_of(pack, lexicon).words
+    words = {word for text in texts for word in _WORD.findall(plain(text))}
+    return sorted(words)
