@@ -108,6 +108,9 @@ def walk(steps: Iterable[p.Step]) -> Iterator[p.Step]:
                 pass
 
 
+Steps = tuple[p.Step, ...]
+
+
 # --- time ----------------------------------------------------------------------------------------
 
 
@@ -119,27 +122,14 @@ def _slow(name: str) -> bool:
     return method.moves or name in ("say", "wait", "wait_for") or "TimedOut" in method.errors
 
 
-def takes_time(part: tuple[p.Step, ...] | p.Step | p.Condition | p.Value) -> bool:
-    """Whether it is certain that the robot is busy for a moment when this is done once."""
+def takes_time(part: Steps | p.Condition | p.Value) -> bool:
+    """Whether it is certain that the robot is busy for a moment when this is done once, as the
+    body of a loop or its condition. Leaving that loop is as good."""
     match part:
         case tuple():
-            return any(takes_time(each) for each in part)
-        case p.Call() | p.Ask():
-            return _slow(part.method) or any(takes_time(each) for each in part.arguments.values())
-        case p.Remember() | p.Collect() | p.Holds():
+            return _steps_take_time(part, may_leave=True)
+        case p.Holds():
             return takes_time(part.value)
-        case p.If():
-            return takes_time(part.condition) or (
-                takes_time(part.then) and takes_time(part.otherwise)
-            )
-        case p.Try():
-            return takes_time(part.steps) and takes_time(part.otherwise)
-        case p.Repeat(times=p.Number(value=times)):
-            return times >= 1 and takes_time(part.steps)
-        case p.While():
-            return takes_time(part.condition)
-        case p.RepeatUntil() | p.Forever() | p.End():
-            return True
         case p.Compare():
             return takes_time(part.left) or takes_time(part.right)
         case p.Not():
@@ -147,17 +137,72 @@ def takes_time(part: tuple[p.Step, ...] | p.Step | p.Condition | p.Value) -> boo
         case p.Both() | p.Either():
             # Only the first is looked at in any case.
             return bool(part.conditions) and takes_time(part.conditions[0])
+        case p.Ask():
+            return _slow(part.method) or any(map(takes_time, part.arguments.values()))
         case p.Sentence():
-            return any(takes_time(each) for each in part.parts)
+            return any(map(takes_time, part.parts))
         case p.Items():
-            return any(takes_time(each) for each in part.items)
-        case p.Length() | p.Share() | p.Choice():
-            inner = (part.part, part.whole) if isinstance(part, p.Share) else ()
-            single = (
-                ()
-                if isinstance(part, p.Share)
-                else (part.of if isinstance(part, p.Length) else part.among,)
+            return any(map(takes_time, part.items))
+        case p.Length():
+            return takes_time(part.of)
+        case p.Share():
+            return takes_time(part.part) or takes_time(part.whole)
+        case p.Choice():
+            return takes_time(part.among)
+        case _:
+            return False
+
+
+def _steps_take_time(steps: Steps, may_leave: bool) -> bool:
+    """The same for steps; `may_leave`: whether an `End` among them leaves the loop asked about,
+    and not one within it."""
+    for step in steps:
+        if isinstance(step, p.End):
+            return may_leave
+        if _step_takes_time(step, may_leave):
+            return True
+        if not may_leave and _may_end(step):
+            return False
+    return False
+
+
+def _step_takes_time(step: p.Step, may_leave: bool) -> bool:
+    match step:
+        case p.Call():
+            return takes_time(p.Ask(step.method, step.arguments))
+        case p.Remember() | p.Collect():
+            return takes_time(step.value)
+        case p.If():
+            return takes_time(step.condition) or (
+                _steps_take_time(step.then, may_leave)
+                and _steps_take_time(step.otherwise, may_leave)
             )
-            return any(takes_time(each) for each in (*inner, *single))
+        case p.Try():
+            # What fails may fail at once.
+            return _steps_take_time(step.steps, may_leave) and _steps_take_time(
+                step.otherwise, may_leave
+            )
+        case p.Repeat(times=p.Number(value=times)):
+            return times >= 1 and _steps_take_time(step.steps, may_leave=False)
+        case p.While():
+            return takes_time(step.condition)
+        case p.RepeatUntil() | p.Forever():
+            # A pause is written into them where nothing else takes time.
+            return _steps_take_time(step.steps, may_leave=False) or not any(
+                map(_may_end, step.steps)
+            )
+        case _:
+            return False
+
+
+def _may_end(step: p.Step) -> bool:
+    """Whether the step can leave the loop that it is in."""
+    match step:
+        case p.End():
+            return True
+        case p.If():
+            return any(map(_may_end, (*step.then, *step.otherwise)))
+        case p.Try():
+            return any(map(_may_end, (*step.steps, *step.otherwise)))
         case _:
             return False

@@ -127,7 +127,7 @@ def _broken(head: str, document: Document, tail: str, indent: int) -> list[str]:
         case Prefix():
             return _broken(head + document.before, document.inner, document.after + tail, indent)
         case String() | Operators() | Compare():
-            lines = _broken_at_the_end(head, document, tail, indent)
+            lines = _broken_at_brackets(head, document, tail, indent)
             if lines and all(indent + len(line) <= WIDTH for line in lines):
                 return lines
             inner = _within(document, "", indent + INDENT)
@@ -136,16 +136,30 @@ def _broken(head: str, document: Document, tail: str, indent: int) -> list[str]:
             assert_never(document)
 
 
-def _broken_at_the_end(head: str, document: Document, tail: str, indent: int) -> list[str] | None:
-    """The lines if one operator's right side, which ends in brackets, is broken; None if it has no
-    such end."""
+def _broken_at_brackets(head: str, document: Document, tail: str, indent: int) -> list[str] | None:
+    """The lines if one operator's sides are broken at their brackets: the right one if what is
+    before its bracket fits on the line, else the left one; None if there are no such brackets."""
     match document:
         case Operators(operator, (left, right)) | Compare(left, operator, right):
-            return _broken_at_the_end(f"{head}{flat(left)} {operator} ", right, tail, indent)
+            start = f"{head}{flat(left)} {operator} "
+            lines = _broken_at_brackets(start, right, tail, indent)
+            if lines and indent + len(lines[0]) <= WIDTH:
+                return lines
+            if not isinstance(left, Call | Brackets):
+                return lines
+            first = _broken_at_brackets(head, left, "", indent)
+            if first is None:
+                return lines
+            *first, last = first
+            line = f"{last} {operator} {flat(right)}{tail}"
+            if indent + len(line) <= WIDTH:
+                return [*first, line]
+            rest = _broken_at_brackets(f"{last} {operator} ", right, tail, indent)
+            return [*first, *rest] if rest else None
         case Call(arguments=(_, *_)) | Brackets(items=(_, *_)):
             return _broken(head, document, tail, indent)
         case Prefix(after=""):
-            return _broken_at_the_end(head + document.before, document.inner, tail, indent)
+            return _broken_at_brackets(head + document.before, document.inner, tail, indent)
         case _:
             return None
 

@@ -302,8 +302,10 @@ class _Reader:
         )
 
     def loops(self, node: ast.AST) -> Iterator[Finding]:
-        if not isinstance(node, ast.While):
-            return
+        if not isinstance(node, ast.While) or any(
+            isinstance(step, ast.Break | ast.Return | ast.Raise) for step in node.body
+        ):
+            return  # no loop, or one that never goes round
         is_true = isinstance(node.test, ast.Constant) and bool(node.test.value)
         endless = is_true and not _leaves(node)
         if not self.calls_the_robot(node):

@@ -88,6 +88,8 @@ def _undefined(match: re.Match[str]) -> str:
 
 def _no_attribute(match: re.Match[str]) -> str:
     kind, name = match[1], match[2]
+    if kind == "Robot" and name in METHODS:
+        return f"This robot cannot be told to {name} in this way. Leave it out, or write {name}()."
     if kind == "Robot":
         return _no_method(name)
     if kind.startswith("bound method"):
