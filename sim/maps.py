@@ -3,12 +3,13 @@
 A pixel's darkness p is (255 - value) / 255, or value / 255 with `negate`. As map_server has it, a
 cell is occupied where p > occupied_thresh and free where p < free_thresh; what lies between is
 unknown. Here a cell that is not free is an obstacle: a robot does not drive where nobody measured.
-The walls are the outlines of the free floor, straightened by up to a pixel, so that a wall of many
-cells is a few segments.
+The walls are the outlines of the free floor, straightened by up to a pixel and a half, so that a
+wall of many cells is a few segments.
 """
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 import re
@@ -16,7 +17,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sim.world import GridMap, Point, Pose, Segment, map_corners
+from sim.world import GridMap, Point, Polygon, Pose, Segment, map_corners
 
 if TYPE_CHECKING:
     import numpy as np
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     Cells = npt.NDArray[np.bool_]
 
 MAX_BYTES = 100_000_000
-STRAIGHTEN = 1.0
+STRAIGHTEN = 1.5
 """By how many pixels an outline may be off the cells' edges."""
 ROOM_TO_START = 0.4
 """Metres of free floor that the robot needs around where it starts."""
@@ -73,17 +74,30 @@ def free_cells(grid: GridMap) -> Cells:
     return free
 
 
-def trace_walls(grid: GridMap) -> tuple[Segment, ...]:
-    """The outlines of the free floor as straight segments in metres."""
+@functools.lru_cache(maxsize=4)
+def outlines(grid: GridMap) -> tuple[Polygon, ...]:
+    """The outlines of the free floor in metres: anticlockwise around it, clockwise around what
+    stands in it."""
     import shapely
 
     place = _placing(grid)
-    segments: list[Segment] = []
+    found: list[Polygon] = []
     for outline in _outlines(free_cells(grid)):
         line = shapely.LineString([place(u, v) for u, v in outline])
-        corners = line.simplify(STRAIGHTEN * grid.resolution).coords
-        segments += [(*one, *two) for one, two in itertools.pairwise(corners)]
-    return tuple(segments)
+        straight = line.simplify(STRAIGHTEN * grid.resolution)
+        # What is so small that nothing would be left of it stays as it is: a table's leg.
+        corners = (straight if len(straight.coords) > 3 else line).coords
+        found.append(tuple(corners[:-1]))
+    return tuple(found)
+
+
+def trace_walls(grid: GridMap) -> tuple[Segment, ...]:
+    """The outlines of the free floor as straight segments in metres."""
+    return tuple(
+        (*one, *two)
+        for outline in outlines(grid)
+        for one, two in itertools.pairwise((*outline, outline[0]))
+    )
 
 
 def roomiest_pose(grid: GridMap) -> Pose | None:

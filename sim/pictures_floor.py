@@ -25,7 +25,7 @@ from sim.pictures_scene import (
     dashes,
     mixed,
 )
-from sim.world import Door, Furniture, Place, Pose, World, polygon_area, rectangle
+from sim.world import Door, Furniture, Place, Polygon, Pose, World, polygon_area, rectangle
 
 LARGEST = (1480.0, 1080.0)
 """Pixels that the floor's width and height may have."""
@@ -215,7 +215,11 @@ def _extent(world: World) -> tuple[float, float, float, float]:
 def _draw_rooms(world: World, frame: Frame, scene: Scene) -> None:
     rooms = scene.layer("rooms")
     if world.map is not None:
-        rooms.append(Area(frame.spots(_corners(world)), FLOOR))
+        from sim.maps import outlines
+
+        for outline in sorted(outlines(world.map), key=polygon_area, reverse=True):
+            fill = FLOOR if _anticlockwise(outline) else BACKGROUND
+            rooms.append(Area(frame.spots(outline), fill))
     places = sorted(
         (place for place in world.places if place.area), key=lambda p: -polygon_area(p.area)
     )
@@ -231,9 +235,9 @@ def _draw_rooms(world: World, frame: Frame, scene: Scene) -> None:
         rooms += [Line(dash, NO_ENTRY, 2) for dash in dashes(outline, 6, 5)]
 
 
-def _corners(world: World) -> Sequence[tuple[float, float]]:
-    x1, y1, x2, y2 = world.bounds
-    return ((x1, y1), (x2, y1), (x2, y2), (x1, y2))
+def _anticlockwise(polygon: Polygon) -> bool:
+    pairs = itertools.pairwise((*polygon, polygon[0]))
+    return sum(x1 * y2 - x2 * y1 for (x1, y1), (x2, y2) in pairs) > 0
 
 
 def _note(place: Place) -> str:

@@ -14,12 +14,19 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar
 
-from yaml.nodes import MappingNode, Node, ScalarNode
-
 from sim import world as w
 from sim.world import Place, Point, Segment, World, WorldError
 from sim.world_checks import Entries, cut_doors, kind_of, settle
-from sim.world_yaml import MAX_TEXT, Hopeless, NodeReader, compose, short
+from sim.world_yaml import (
+    MAX_TEXT,
+    Hopeless,
+    MappingNode,
+    Node,
+    NodeReader,
+    ScalarNode,
+    compose,
+    short,
+)
 
 MAX_WALLS = 20_000
 MAX_PIXELS = 8192
@@ -81,16 +88,14 @@ class _Reader(NodeReader):
         out."""
         if name not in fields:
             return []
-        read_entries = [
-            (self.line(node), read(node)) for node in self.items(fields[name], f'"{name}"')
-        ]
+        read_entries = [(node.line, read(node)) for node in self.items(fields[name], f'"{name}"')]
         return [(line, entry) for line, entry in read_entries if entry is not None]
 
     def name(self, fields: dict[str, Node], node: Node, what: str) -> str | None:
         if "name" in fields:
             return self.text(fields["name"], f"The name of {what}")
         if isinstance(node, MappingNode):
-            self.problem(self.line(node), f"{what.capitalize()} has no name. Give it one.")
+            self.problem(node.line, f"{what.capitalize()} has no name. Give it one.")
         return None
 
     def _common(self, fields: dict[str, Node], what: str) -> dict[str, Any]:
@@ -164,7 +169,7 @@ class _Reader(NodeReader):
             if end not in fields:
                 if isinstance(node, MappingNode):
                     self.problem(
-                        self.line(node),
+                        node.line,
                         f'A door has no "{end}". Give both ends of the opening: '
                         "from: [x, y], to: [x, y].",
                     )
@@ -190,7 +195,7 @@ class _Reader(NodeReader):
             for field in ("ask", "answer"):
                 if field not in fields:
                     self.problem(
-                        self.line(node),
+                        node.line,
                         f'A question has no "{field}". It needs "ask" and "answer".',
                     )
         if not {"ask", "answer"} <= set(fields):
@@ -241,13 +246,13 @@ class _Reader(NodeReader):
             try:
                 node = compose(path)
             except Hopeless as error:
-                self.problem(self.line(node), f"The map {name}: {error.problem.message}")
+                self.problem(node.line, f"The map {name}: {error.problem.message}")
                 return None
         fields = self.mapping(node, "a map")
         for field in ("image", "resolution", "origin"):
             if field not in fields and isinstance(node, MappingNode):
                 self.problem(
-                    self.line(node),
+                    node.line,
                     f'A map has no "{field}". It needs image, resolution and origin, as ROS\'s '
                     "map_server writes them.",
                 )
@@ -266,7 +271,7 @@ class _Reader(NodeReader):
         mode = self.text(fields["mode"], '"mode" of the map') if "mode" in fields else "trinary"
         if mode not in ("trinary", "scale", None):
             self.problem(
-                self.line(fields["mode"]),
+                fields["mode"].line,
                 'The map\'s mode is neither "trinary" nor "scale". Save the map in one of these.',
             )
         if image is None or resolution is None or not numbers or None in numbers:
@@ -276,11 +281,11 @@ class _Reader(NodeReader):
         try:
             size = image_size(path.parent / image)
         except ImageError as error:
-            self.problem(self.line(fields["image"]), str(error))
+            self.problem(fields["image"].line, str(error))
             return None
         if max(size) > MAX_PIXELS:
             self.problem(
-                self.line(fields["image"]),
+                fields["image"].line,
                 f"The map is {size[0]} x {size[1]} pixels, more than {MAX_PIXELS}. Scale it down.",
             )
             return None
@@ -306,7 +311,7 @@ class _Reader(NodeReader):
         units = self.text(fields["units"], '"units"') if "units" in fields else "m"
         if units is not None and units not in UNITS:
             self.problem(
-                self.line(fields["units"]),
+                fields["units"].line,
                 f'The unit "{short(units)}" is unknown.'
                 ' Use "m" for metres or "cm" for centimetres.',
             )
@@ -345,6 +350,6 @@ class _Reader(NodeReader):
             map=grid,
             file=str(path),
         )
-        start_line = self.line(fields["robot"]) if "robot" in fields else 1
+        start_line = fields["robot"].line if "robot" in fields else 1
         entries = Entries(places, people, objects, furniture, doors, contacts, (start_line, robot))
         return settle(self, bare, walls, entries)

@@ -10,11 +10,11 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import yaml
-from yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 from sim.world import Aliases, Point, Polygon, Pose, Problem, builtin_worlds, key, polygon_area
 
@@ -27,10 +27,39 @@ MAX_NAME = 200
 MAX_TEXT = 2000
 MAX_METRES = 1000.0
 MAX_PROBLEMS = 50
+MAX_DEPTH = 20
 
 _LANGUAGE = re.compile(r"[a-z]{2}(-[A-Z]{2})?")
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-_NULL = "tag:yaml.org,2002:null"
+_EMPTY = ("", "~", "null", "Null", "NULL")
+_TAGS = {
+    f"tag:yaml.org,2002:{kind}" for kind in ("str", "int", "float", "bool", "null", "seq", "map")
+}
+
+
+@dataclass(slots=True)
+class ScalarNode:
+    """A single value, as it is written."""
+
+    line: int
+    value: str
+    empty: bool = False
+    """Whether nothing is written there, or `null`."""
+
+
+@dataclass(slots=True)
+class SequenceNode:
+    line: int
+    value: list[Node] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class MappingNode:
+    line: int
+    value: list[tuple[Node, Node]] = field(default_factory=list)
+
+
+Node = ScalarNode | SequenceNode | MappingNode
 
 
 class Hopeless(Exception):
@@ -65,7 +94,7 @@ def compose(path: Path) -> Node:
             None, f"The file cannot be read: {reason}. Give the path of a world's YAML file."
         ) from None
     try:
-        root = yaml.compose(text, Loader=_LOADER)
+        root = _build(yaml.parse(text, Loader=_LOADER))
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         what = " ".join(part for part in (error.context, error.problem) if part)
@@ -74,13 +103,68 @@ def compose(path: Path) -> Node:
             f"This is not valid YAML: {what}. Look at the indentation, colons, quotes and "
             "brackets here and on the line before.",
         ) from None
-    except (yaml.YAMLError, RecursionError) as error:
-        raise Hopeless(
-            None, f"This is not valid YAML: {str(error) or 'nested too deep'}. Correct the file."
-        ) from None
+    except yaml.YAMLError as error:
+        what = str(error).splitlines()[0]
+        raise Hopeless(None, f"This is not valid YAML: {what}. Correct the file.") from None
     if root is None:
         raise Hopeless(None, 'The file is empty. A world has at least a "name" and "places".')
     return root
+
+
+def _build(events: Iterable[Any]) -> Node | None:
+    """The document of the events as nodes; None if there is none.
+
+    PyYAML's own composer calls itself for every level, and deep nesting makes it crash.
+    """
+    root: Node | None = None
+    anchors: dict[str, Node] = {}
+    # Around the present place, from the outermost: each list or mapping with what was read of it.
+    around: list[tuple[Node, list[Node]]] = []
+    for event in events:
+        line = event.start_mark.line + 1
+        if isinstance(event, yaml.NodeEvent):
+            node = _node(event, line, anchors)
+            if event.anchor is not None and not isinstance(event, yaml.AliasEvent):
+                anchors[event.anchor] = node
+            if isinstance(event, yaml.CollectionStartEvent):
+                around.append((node, []))
+                if len(around) > MAX_DEPTH:
+                    raise Hopeless(
+                        line, "Lists are nested too deep here. Look for a bracket too many."
+                    )
+                continue
+        elif isinstance(event, yaml.CollectionEndEvent):
+            node, items = around.pop()
+            if isinstance(node, MappingNode):
+                node.value = list(zip(items[::2], items[1::2], strict=True))
+            elif isinstance(node, SequenceNode):
+                node.value = items
+        elif isinstance(event, yaml.DocumentStartEvent) and root is not None:
+            raise Hopeless(line, "A second world begins here. Put it into a file of its own.")
+        else:
+            continue
+        if around:
+            around[-1][1].append(node)
+        else:
+            root = node
+    return root
+
+
+def _node(event: Any, line: int, anchors: Mapping[str, Node]) -> Node:
+    """The node that begins with this event, lists and mappings still empty."""
+    if isinstance(event, yaml.AliasEvent):
+        if event.anchor not in anchors:
+            raise Hopeless(
+                line,
+                f'"*{short(str(event.anchor))}" repeats what is named nowhere above. '
+                "Write out what is meant, in quotes if it begins with a star.",
+            )
+        return anchors[str(event.anchor)]
+    if event.tag is not None and event.tag not in _TAGS:
+        raise Hopeless(line, f'"{short(event.tag)}" has no meaning here. Remove it.')
+    if isinstance(event, yaml.ScalarEvent):
+        return ScalarNode(line, event.value, event.implicit[0] and event.value in _EMPTY)
+    return SequenceNode(line) if isinstance(event, yaml.SequenceStartEvent) else MappingNode(line)
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
@@ -117,15 +201,12 @@ class NodeReader:
         if len(self.problems) >= MAX_PROBLEMS:
             raise Hopeless(None, "There are more problems than these. Correct these first.")
 
-    def line(self, node: Node) -> int:
-        return int(node.start_mark.line) + 1
-
     def wrong(self, node: Node, what: str, expected: str) -> None:
         if isinstance(node, ScalarNode):
             found = f'"{short(str(node.value))}"' if node.value else "nothing"
         else:
             found = "a list" if isinstance(node, SequenceNode) else "fields with values"
-        self.problem(self.line(node), f"{what} is {found}. It should be {expected}.")
+        self.problem(node.line, f"{what} is {found}. It should be {expected}.")
 
     # --- values
 
@@ -133,7 +214,7 @@ class NodeReader:
         self._values += 1
         if self._values > MAX_VALUES:
             raise Hopeless(
-                self.line(node), f"The world has more than {MAX_VALUES} values. Make it smaller."
+                node.line, f"The world has more than {MAX_VALUES} values. Make it smaller."
             )
 
     def mapping(self, node: Node, what: str) -> dict[str, Node]:
@@ -149,32 +230,26 @@ class NodeReader:
             if name not in known:
                 hint = did_you_mean(name, known) or f" The fields are: {', '.join(known)}."
                 self.problem(
-                    self.line(name_node),
+                    name_node.line,
                     f'{what.capitalize()} has no field "{short(name)}".{hint}',
                 )
             elif name in fields:
-                self.problem(
-                    self.line(name_node), f'The field "{name}" is here twice. Keep one of them.'
-                )
-            elif not (isinstance(value, ScalarNode) and value.tag == _NULL):
+                self.problem(name_node.line, f'The field "{name}" is here twice. Keep one of them.')
+            elif not (isinstance(value, ScalarNode) and value.empty):
                 fields[name] = value
         return fields
 
     def text(self, node: Node, what: str, longest: int = MAX_NAME) -> str | None:
         self.count(node)
-        if not isinstance(node, ScalarNode) or node.tag == _NULL or not node.value.strip():
+        if not isinstance(node, ScalarNode) or node.empty or not node.value.strip():
             self.wrong(node, what, "a text")
             return None
         text = " ".join(str(node.value).split())
         if not text.isprintable():
-            self.problem(
-                self.line(node), f"{what} holds characters that cannot be shown. Remove them."
-            )
+            self.problem(node.line, f"{what} holds characters that cannot be shown. Remove them.")
             return None
         if len(text) > longest:
-            self.problem(
-                self.line(node), f"{what} is longer than {longest} characters. Shorten it."
-            )
+            self.problem(node.line, f"{what} is longer than {longest} characters. Shorten it.")
             return None
         return text
 
@@ -205,7 +280,7 @@ class NodeReader:
             return []
         if len(node.value) > most:
             self.problem(
-                self.line(node),
+                node.line,
                 f"{what} has {len(node.value)} entries, more than {most}. Make it shorter.",
             )
             return []
@@ -214,7 +289,7 @@ class NodeReader:
     def texts(self, node: Node, what: str, longest: int = MAX_NAME) -> tuple[str, ...]:
         """A list of texts; a text alone is a list of one."""
         if isinstance(node, ScalarNode):
-            node = SequenceNode(node.tag, [node], node.start_mark, node.end_mark)
+            node = SequenceNode(node.line, [node])
         texts = (self.text(item, f"An entry of {what}", longest) for item in self.items(node, what))
         return tuple(text for text in texts if text is not None)
 
@@ -228,8 +303,8 @@ class NodeReader:
 
     def point(self, pair: Sequence[Node], what: str) -> Point | None:
         x, y = pair
-        first = self.length(x, f"x of {what}", -MAX_METRES, MAX_METRES)
-        second = self.length(y, f"y of {what}", -MAX_METRES, MAX_METRES)
+        first = self.length(x, f"{what}: x", -MAX_METRES, MAX_METRES)
+        second = self.length(y, f"{what}: y", -MAX_METRES, MAX_METRES)
         return None if first is None or second is None else (first, second)
 
     def pose(self, node: Node, what: str) -> Pose | None:
@@ -237,11 +312,11 @@ class NodeReader:
         if not items:
             return None
         point = self.point(items[:2], what)
-        theta = self.number(items[2], f"The angle of {what}", -3600, 3600) if items[2:] else 0.0
+        theta = self.number(items[2], f"{what}: the angle", -3600, 3600) if items[2:] else 0.0
         if point is None or theta is None:
             return None
         pose = Pose(*point, theta)
-        self.poses.append((self.line(node), what, pose))
+        self.poses.append((node.line, what, pose))
         return pose
 
     def polygon(self, node: Node, what: str) -> Polygon:
@@ -264,7 +339,7 @@ class NodeReader:
             self.wrong(node, what, expected)
             return ()
         if polygon_area(polygon) < 1e-4:
-            self.problem(self.line(node), f"{what} has no extent. It should be {expected}.")
+            self.problem(node.line, f"{what} has no extent. It should be {expected}.")
             return ()
         return polygon
 
@@ -289,7 +364,7 @@ class NodeReader:
             code = str(language.value)
             if not _LANGUAGE.fullmatch(code):
                 self.problem(
-                    self.line(language),
+                    language.line,
                     f'"{short(code)}" is no language code. Use two letters: en, de, fr, ...',
                 )
                 continue
