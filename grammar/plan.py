@@ -229,6 +229,25 @@ class Plan(msgspec.Struct, frozen=True):
     language: str = "en"
 
 
+def calls(plan: Plan) -> list[Call | Ask]:
+    """Every robot call of a plan, in the order in which they are made, each once."""
+    found: list[Call | Ask] = []
+
+    def visit(node: Any) -> None:
+        if isinstance(node, tuple):
+            for item in node:
+                visit(item)
+        elif isinstance(node, msgspec.Struct):
+            for name in node.__struct_fields__:
+                child = getattr(node, name)
+                visit(tuple(child.values()) if isinstance(child, dict) else child)
+            if isinstance(node, Call | Ask):
+                found.append(node)
+
+    visit(plan.steps)
+    return found
+
+
 def to_data(plan: Plan) -> dict[str, Any]:
     """The plan as plain data for JSON."""
     data: dict[str, Any] = msgspec.to_builtins(plan)

@@ -17,6 +17,8 @@ from typing import Any
 
 import msgspec
 
+from nl2robot.errors import UserError
+
 _SCHEMA = """
 CREATE TABLE IF NOT EXISTS runs (
     id INTEGER PRIMARY KEY,
@@ -58,7 +60,7 @@ PRAGMA user_version = 1;
 """
 
 
-class LogError(Exception):
+class LogError(UserError):
     """The run log cannot be read or written."""
 
 

@@ -1,0 +1,62 @@
+"""`nl2robot chat`: a conversation in the terminal; each command is reviewed, approved and run."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+
+from nl2robot.commands.options import add_language, add_planner, add_robot
+from nl2robot.commands.run import open_session
+from nl2robot.errors import ExitStatus
+from nl2robot.session import Session
+from robot_api.errors import LostConnection, RobotError
+
+GREETING = """\
+Tell the robot what to do, in your own words. Nothing moves before you have approved it.
+help shows what you can say, Ctrl-C stops the robot, quit (or Ctrl-D) ends the conversation."""
+ENDINGS = {"quit", "exit", "bye", "goodbye"}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add_robot(parser)
+    add_language(parser)
+    add_planner(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    with contextlib.suppress(ImportError):
+        import readline  # noqa: F401  (arrow keys and history in input())
+    with open_session(options) as (session, _):
+        session.terminal.console.print(GREETING)
+        while (line := _next_line()) is not None:
+            words = line.strip()
+            if words.lower() in ENDINGS:
+                break
+            if words:
+                _answer(session, words)
+    session.terminal.console.print("Goodbye.")
+    return ExitStatus.OK
+
+
+def _next_line() -> str | None:
+    while True:
+        try:
+            return input("\nyou: ")
+        except EOFError:
+            return None
+        except KeyboardInterrupt:
+            print()  # nothing is running: Ctrl-C clears the line
+
+
+def _answer(session: Session, words: str) -> None:
+    if words.lower() in ("help", "?", "what can i say", "what can i say?"):
+        session.show_help()
+        return
+    try:
+        session.perform(words)
+    except KeyboardInterrupt:
+        session.terminal.console.print("\nRejected. Nothing was run.")
+    except LostConnection:
+        raise
+    except RobotError as error:
+        session.terminal.console.print(str(error), markup=False)

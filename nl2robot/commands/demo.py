@@ -1,0 +1,75 @@
+"""`nl2robot demo`: what `make run` shows. A typed and a spoken command in the simulated hospital.
+
+Asks nothing: this is the embedded simulator, and the two commands are known.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from nl2robot.commands.options import open_log, user_name
+from nl2robot.errors import ExitStatus, UserError
+from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
+from nl2robot.operator import Operator
+from nl2robot.session import Session
+from nl2robot.station import simulated_station
+from nl2robot.terminal import Terminal
+from sim.world import load_world
+
+TYPED = (
+    "wait for a visitor, ask whether they want to go to radiology or to the pharmacy,"
+    " take them there and come back; do that three times,"
+    " then say that three visitors have been shown the way"
+)
+RECORDING = Path(__file__).parents[1] / "data" / "recordings" / "pharmacy.wav"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--folder", default="runs", metavar="DIR", help="where the pictures go (default: runs)"
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    folder = Path(options.folder)
+    terminal = Terminal()
+    typed = _perform(terminal, TYPED, None, folder / "typed")
+    heard = _hear(terminal)
+    spoken = _perform(terminal, heard, heard, folder / "spoken") if heard else ExitStatus.OK
+    terminal.console.print(
+        '\nNow in your own words: [bold].venv/bin/nl2robot run "bring the red cup to Alice"[/]'
+    )
+    return typed or spoken
+
+
+def _perform(terminal: Terminal, words: str, heard: str | None, picture: Path) -> ExitStatus:
+    terminal.console.rule(f"[bold]{'Spoken' if heard else 'Typed'}:[/] {words}")
+    with simulated_station(load_world(DEFAULT_WORLD), open_log()) as station:
+        with station.connect() as robot:
+            session = Session(Operator(robot, user_name()), terminal, approve_all=True)
+            status = session.perform(words, heard)
+        if session.last_run is not None:
+            for ending in (".svg", ".png", ".webp"):
+                station.picture(session.last_run, picture.with_suffix(ending))
+            terminal.console.print(
+                f"Picture: {picture}.png (.svg; as a film {picture}.webp)", soft_wrap=True
+            )
+    return status
+
+
+def _hear(terminal: Terminal) -> str | None:
+    """What the recording says, or None (and why) where there is no speech model."""
+    from nl2robot.download import shown
+    from nl2robot.hearing import Ear
+    from nl2robot.models import get
+
+    try:
+        with shown() as progress:
+            model = get("en", progress)
+    except UserError as error:
+        terminal.console.print(f"\nThe spoken command is left out. {error}", markup=False)
+        return None
+    ear = Ear(model, Knowledge(load_world(DEFAULT_WORLD)), "en")
+    terminal.console.print(f"\nListening to {RECORDING.name} ...")
+    return ear.hear(RECORDING).text

@@ -1,0 +1,131 @@
+"""`nl2robot log`: past runs; one in detail; replayed in the simulator."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from nl2robot.commands.options import open_log
+from nl2robot.errors import ExitStatus, UserError
+from nl2robot.runlog import Run, RunLog
+from nl2robot.terminal import Terminal
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("run", nargs="?", type=int, help="the number of a run, to see all of it")
+    parser.add_argument("--last", type=int, default=20, metavar="N", help="how many (default: 20)")
+    parser.add_argument("--replay", action="store_true", help="run it again in the simulator")
+    parser.add_argument(
+        "--picture", metavar="FILE", help="with --replay: save its picture (.svg, .png, .webp)"
+    )
+    parser.add_argument("--json", action="store_true", help="one JSON object a run")
+
+
+def run(options: argparse.Namespace) -> int:
+    log = open_log()
+    terminal = Terminal()
+    if options.run is None:
+        if options.replay or options.picture:
+            raise UserError("Say which run to replay: nl2robot log NUMBER --replay.")
+        _list(log, terminal, options)
+        return ExitStatus.OK
+    row = log.run(options.run)
+    if row is None:
+        raise UserError(f"There is no run {options.run}. `nl2robot log` lists those there are.")
+    if options.json:
+        print(json.dumps(_whole(log, row), ensure_ascii=False))
+    elif options.replay:
+        return _replay(log, row, terminal, options.picture)
+    else:
+        _show(log, row, terminal)
+    return ExitStatus.OK
+
+
+def _list(log: RunLog, terminal: Terminal, options: argparse.Namespace) -> None:
+    runs = log.runs(options.last)
+    if options.json:
+        for row in runs:
+            print(json.dumps(_whole(log, row), ensure_ascii=False))
+        return
+    if not runs:
+        terminal.console.print('Nothing was run yet. Try: nl2robot run "say hello"')
+        return
+    table = terminal.table("run", "when", "who", "how", "what")
+    for row in reversed(runs):
+        what = row.utterance or row.program.splitlines()[0]
+        table.add_row(str(row.id), _when(row.started), row.approved_by, _how(row), what)
+    terminal.console.print(table, markup=False)
+
+
+def _show(log: RunLog, row: Run, terminal: Terminal) -> None:
+    about = {
+        "run": f"{row.id}, {_how(row)}",
+        "heard": row.heard,
+        "understood": row.utterance,
+        "approved": f"by {row.approved_by} at {_when(row.approved_at)}",
+        "robot": f"{row.robot} in {row.world}",
+        "message": row.message,
+        "picture": row.picture,
+        "program": f"SHA-256 {row.sha256[:16]}…",
+    }
+    for name, value in about.items():
+        if value:
+            terminal.console.print(f"{name + ':':<12}{value}", markup=False, soft_wrap=True)
+    terminal.show_program(row.program)
+    table = terminal.table("", "line", "call", "result", "seconds")
+    for call in log.calls(row.id):
+        given = ", ".join(f"{n}={v!r}" for n, v in json.loads(call.arguments).items())
+        result = call.error or ("" if call.result in (None, "null") else call.result)
+        seconds = "never came back" if call.seconds is None else f"{call.seconds:.2f}"
+        table.add_row(str(call.number), str(call.line), f"{call.method}({given})", result, seconds)
+    terminal.console.print(table, markup=False)
+    for text in log.output(row.id):
+        terminal.console.print(f"printed: {text.rstrip()}", markup=False)
+
+
+def _replay(log: RunLog, row: Run, terminal: Terminal, picture: str | None) -> int:
+    from nl2robot.replay import replay
+    from nl2robot.station import draw
+    from sim.simulation import Simulation
+    from sim.world import load_world
+
+    if row.seed is None or row.world is None:
+        raise UserError(f"Run {row.id} was not simulated, so it cannot be replayed.")
+    world = load_world(row.world)
+    simulation = Simulation(world, seed=row.seed)
+
+    def on_call(line: int, method: str, arguments: dict[str, Any]) -> None:
+        about = {"what": "call", "line": line, "method": method, "arguments": arguments}
+        terminal.show_event("program", about)
+
+    again = replay(row, log.calls(row.id), simulation, on_call)
+    terminal.show_end(again.status, again.message)
+    for difference in again.differences:
+        terminal.console.print(difference, style="yellow", markup=False)
+    if not again.differences:
+        terminal.console.print("Every call came out as it did the first time.")
+    if picture:
+        draw(simulation.record, world, Path(picture))
+        terminal.console.print(f"Picture: {picture}", soft_wrap=True)
+    return ExitStatus.OK if not again.differences else ExitStatus.FAILED
+
+
+def _whole(log: RunLog, row: Run) -> dict[str, Any]:
+    data: dict[str, Any] = msgspec.to_builtins(row)
+    data["plan"] = json.loads(row.plan) if row.plan else None
+    data["calls"] = msgspec.to_builtins(log.calls(row.id))
+    data["output"] = log.output(row.id)
+    return data
+
+
+def _how(row: Run) -> str:
+    return row.status or "interrupted"
+
+
+def _when(seconds: float) -> str:
+    return datetime.fromtimestamp(seconds).strftime("%Y-%m-%d %H:%M:%S")

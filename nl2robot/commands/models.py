@@ -1,0 +1,45 @@
+"""`nl2robot models`: speech models: list, get, verify."""
+
+from __future__ import annotations
+
+import argparse
+import json
+
+from nl2robot import models
+from nl2robot.download import shown
+from nl2robot.errors import ExitStatus, UserError
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("action", choices=("list", "get", "verify"), nargs="?", default="list")
+    parser.add_argument("language", nargs="?", metavar="LANG", help="such as en")
+    parser.add_argument("--again", action="store_true", help="get: even if it is installed")
+    parser.add_argument("--json", action="store_true", help="list: as JSON")
+
+
+def run(options: argparse.Namespace) -> int:
+    if options.action == "list":
+        return _list(options.json)
+    if options.language is None:
+        raise UserError(f"Say of which language, such as: nl2robot models {options.action} en")
+    if options.action == "get":
+        with shown() as progress:
+            path = models.get(options.language, progress, again=options.again)
+        print(f"The speech model is in {path}.")
+        return ExitStatus.OK
+    with shown() as progress:
+        problems = models.verify(options.language, progress)
+    print("\n".join(problems) or "The speech model is whole.")
+    return ExitStatus.FAILED if problems else ExitStatus.OK
+
+
+def _list(as_json: bool) -> int:
+    listed = models.list_models()
+    if as_json:
+        print(json.dumps([models.as_json(model) for model in listed], ensure_ascii=False))
+        return ExitStatus.OK
+    for model in listed:
+        print(f"{model.code}  {model.language:<8} {model.state:<10} {model.megabytes:>5.0f} MB")
+        if model.state != "installed":
+            print(f"    nl2robot models get {model.code}")
+    return ExitStatus.OK

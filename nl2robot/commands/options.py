@@ -1,0 +1,95 @@
+"""Options that several commands share, and what they stand for."""
+
+from __future__ import annotations
+
+import argparse
+import getpass
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from nl2robot.knowledge import DEFAULT_WORLD
+from nl2robot.paths import data_folder
+
+if TYPE_CHECKING:
+    from nl2robot.runlog import RunLog
+    from sim.world import World
+
+LANGUAGES = ("en",)
+
+
+def add_world(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--world",
+        default=DEFAULT_WORLD,
+        metavar="W",
+        help=f"a built-in world's name or a YAML file (default: {DEFAULT_WORLD})",
+    )
+
+
+def add_language(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--lang", default="en", choices=LANGUAGES, help="the language of the words (default: en)"
+    )
+
+
+def add_planner(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--planner",
+        default="auto",
+        choices=("auto", "grammar", "model"),
+        help="what turns words into a plan (default: auto)",
+    )
+
+
+def add_seed(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--seed", type=int, default=0, help="of the simulation: the same seed, the same course"
+    )
+
+
+def add_robot(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--robot",
+        default="sim",
+        metavar="sim|ws://HOST:PORT",
+        help="a simulated robot of its own, or a robot server (default: sim)",
+    )
+    parser.add_argument("--token", help="the token that the robot server printed at its start")
+    parser.add_argument(
+        "--speed",
+        type=float,
+        metavar="X",
+        help="simulated seconds a second (default: as fast as the machine allows)",
+    )
+    add_world(parser)
+    add_seed(parser)
+
+
+def world_of(options: argparse.Namespace) -> World:
+    from sim.world import load_world
+
+    return load_world(options.world)
+
+
+def open_log() -> RunLog:
+    """The run log in the user's data folder."""
+    from nl2robot.runlog import RunLog
+
+    return RunLog(data_folder() / "runs.sqlite")
+
+
+def pictures_folder() -> Path:
+    folder = data_folder() / "pictures"
+    folder.mkdir(exist_ok=True)
+    return folder
+
+
+def user_name() -> str:
+    """Who approves, for the log: $NL2ROBOT_USER, else the login name."""
+    if name := os.environ.get("NL2ROBOT_USER"):
+        return name
+    try:
+        return getpass.getuser()
+    except (KeyError, OSError):  # no login name in a bare container
+        return "unknown"

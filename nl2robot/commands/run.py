@@ -1,0 +1,92 @@
+"""`nl2robot run`: a sentence becomes a program, is shown, approved, and run."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from nl2robot.commands.options import (
+    add_language,
+    add_planner,
+    add_robot,
+    open_log,
+    pictures_folder,
+    user_name,
+    world_of,
+)
+from nl2robot.errors import UserError
+from nl2robot.operator import Operator
+from nl2robot.session import Session
+from nl2robot.station import Station, remote_station, simulated_station
+from nl2robot.terminal import Terminal
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("words", nargs="?", help="what the robot should do")
+    parser.add_argument("--program", metavar="FILE", help="run this program instead of words")
+    add_robot(parser)
+    parser.add_argument(
+        "--picture", metavar="FILE", help="save a picture of the run (.svg, .png, .webp, .gif)"
+    )
+    parser.add_argument("-y", "--yes", action="store_true", help="approve without being asked")
+    add_language(parser)
+    add_planner(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    if (options.words is None) == (options.program is None):
+        raise UserError('Say what to do: nl2robot run "go to the pharmacy", or --program FILE.')
+    program = _read(options.program) if options.program else None
+    with open_session(options, approve_all=options.yes) as (session, station):
+        if program is None:
+            status = session.perform(options.words)
+        else:
+            status = session.perform_program(program)
+        if options.picture and session.last_run is not None:
+            save_picture(session, station, Path(options.picture))
+        return status
+
+
+@contextmanager
+def open_session(
+    options: argparse.Namespace, *, approve_all: bool = False
+) -> Iterator[tuple[Session, Station]]:
+    """Open the robot that the options name and sit down at the terminal."""
+    log = open_log()
+    world = world_of(options)
+    opened = (
+        simulated_station(
+            world, log, seed=options.seed, speed=options.speed, pictures=pictures_folder()
+        )
+        if options.robot == "sim"
+        else remote_station(options.robot, world, log, token=options.token)
+    )
+    with opened as station, station.connect() as robot:
+        yield (
+            Session(
+                Operator(robot, user_name()),
+                Terminal(),
+                language=options.lang,
+                planner=options.planner,
+                approve_all=approve_all,
+            ),
+            station,
+        )
+
+
+def save_picture(session: Session, station: Station, file: Path) -> None:
+    """Save the picture of the session's last run and say where it is."""
+    assert session.last_run is not None
+    if station.picture(session.last_run, file):
+        session.terminal.console.print(f"Picture: {file}", soft_wrap=True)
+    else:
+        session.terminal.console.print("No picture: the run was not simulated here.")
+
+
+def _read(file: str) -> str:
+    try:
+        return Path(file).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise UserError(f"The program {file} cannot be read ({error}).") from error

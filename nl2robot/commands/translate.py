@@ -1,0 +1,39 @@
+"""`nl2robot translate`: words in, a program out; never moves anything."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from nl2robot.commands.options import add_language, add_planner, add_world, world_of
+from nl2robot.errors import ExitStatus
+from nl2robot.knowledge import Knowledge
+from nl2robot.translation import Translation, translate
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("words", help="the sentence, or - to read one from each line of the input")
+    parser.add_argument("--json", action="store_true", help="one JSON object per sentence")
+    add_world(parser)
+    add_language(parser)
+    add_planner(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    knowledge = Knowledge(world_of(options))
+    lines = (
+        (line.rstrip("\n") for line in sys.stdin) if options.words == "-" else iter([options.words])
+    )
+    for line in lines:
+        translation = translate(line, knowledge, options.lang, options.planner)
+        print(translation.to_json() if options.json else _readable(translation), flush=True)
+    return ExitStatus.OK
+
+
+def _readable(translation: Translation) -> str:
+    if translation.program is not None:
+        return f"{translation.program}\n# {translation.explanation}\n".replace("\n\n", "\n", 1)
+    lines = [translation.message or "This was not understood."]
+    if translation.suggestions:
+        lines += ["You could say:", *(f"  {phrase}" for phrase in translation.suggestions)]
+    return "\n".join(lines)

@@ -1,0 +1,61 @@
+"""From a recording to words: the recogniser, told what this world and this robot can be asked."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+
+from grammar.samples import samples
+from grammar.vocabulary import vocabulary
+from nl2robot.knowledge import Knowledge
+from nl2robot.speech.audio import read
+from nl2robot.speech.recogniser import Heard, Recogniser
+from nl2robot.translation import Planner, Translation, translate
+
+
+class Ear:
+    """Hears commands: whole sample sentences teach it which word follows which, the grammar's and
+    the world's words are what it can hear at all."""
+
+    def __init__(self, model: Path, knowledge: Knowledge, language: str = "en") -> None:
+        lexicon = knowledge.lexicon(language)
+        self.knowledge = knowledge
+        self.language = language
+        self._recogniser = Recogniser(model, language)
+        self._phrases = [
+            *(sentence for topic in samples(lexicon, language).values() for sentence in topic),
+            *vocabulary(lexicon, language),
+        ]
+
+    def hear(self, recording: Path) -> Heard:
+        """What a recording says. Raises `AudioError`."""
+        return self._recogniser.recognise(read(recording), self._phrases)
+
+    def deaf_to(self) -> list[str]:
+        """Names of this world that hold a word the model can never hear."""
+        world = self.knowledge.world
+        names = [item.name for items in (world.places, world.people) for item in items]
+        return [name for name in names if self._recogniser.unknown_words([name])]
+
+    def translate(self, heard: Heard, planner: Planner = "auto") -> Translation:
+        """The program for what was heard; nothing, and a question back, if that is in doubt."""
+        translation = translate(heard.text, self.knowledge, self.language, planner)
+        if not heard.text:
+            return msgspec.structs.replace(
+                translation, message="Nothing was heard. Please say it again, a little louder."
+            )
+        if not heard.doubtful or translation.program is None:
+            return translation
+        return msgspec.structs.replace(
+            translation,
+            status="clarify",
+            program=None,
+            plan=None,
+            source=None,
+            explanation="",
+            confidence=heard.confidence * 0.5,
+            message=f'It sounded like "{heard.text}", but perhaps it was'
+            f' "{heard.free_text}". Please say it again, or type it.',
+            suggestions=(heard.text,),
+        )

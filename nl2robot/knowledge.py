@@ -1,0 +1,63 @@
+"""What is known when a sentence is translated or a program reviewed: the world and the robot."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING
+
+from grammar.lexicon import Lexicon, Name, Question
+from sim.world import World
+
+if TYPE_CHECKING:
+    from robot_api.driver import Capabilities
+
+DEFAULT_WORLD = "city-hospital"
+
+
+class Knowledge:
+    """The names a sentence may use, and what the robot can do.
+
+    Without capabilities (`nl2robot translate`, which knows no robot) everything counts as possible.
+    """
+
+    def __init__(self, world: World, capabilities: Capabilities | None = None) -> None:
+        self.world = world
+        self.capabilities = capabilities
+        self.lexicon = cache(self._lexicon)
+        """The names of the world and the robot as they are said in a language ("en")."""
+
+    def _lexicon(self, language: str) -> Lexicon:
+        world, robot = self.world, self.capabilities
+
+        def said(aliases: dict[str, tuple[str, ...]]) -> tuple[str, ...]:
+            return aliases.get(language, ())
+
+        lexicon = Lexicon(
+            places=tuple(Name(p.name, p.kind, said(p.aliases)) for p in world.places),
+            people=tuple(Name(p.name, p.kind, said(p.aliases), p.is_) for p in world.people),
+            objects=tuple(Name(o.name, o.kind, said(o.aliases), o.is_) for o in world.objects),
+            furniture=tuple(
+                Name(f.name, f.kind, said(f.aliases), inside=f.at) for f in world.furniture
+            ),
+            contacts=tuple(contact.name for contact in world.contacts),
+            questions=tuple(
+                Question(q.ask[language][0], q.answer.get(language, ""), q.ask[language][1:])
+                for q in world.questions
+                if q.ask.get(language)
+            ),
+        )
+        if robot is None:
+            return lexicon
+        # A robot may declare less than people suggest; what it cannot do, the review refuses.
+        from dataclasses import replace
+
+        return replace(
+            lexicon,
+            gestures=tuple(dict.fromkeys((*robot.gestures, *lexicon.gestures))),
+            emotions=tuple(dict.fromkeys((*robot.emotions, *lexicon.emotions))),
+            contacts=tuple(dict.fromkeys((*robot.contacts, *lexicon.contacts))),
+            joints=tuple(robot.joints),
+            skills=tuple(robot.skills),
+            languages=robot.languages,
+            robot_name=robot.name,
+        )

@@ -1,0 +1,54 @@
+"""The review of a program before it may run: check, policy and dry run, in one report."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import msgspec
+from sandbox.check import Finding, check
+
+if TYPE_CHECKING:
+    from sim.simulation import Simulation
+
+from nl2robot.knowledge import Knowledge
+from nl2robot.policy import violations
+from nl2robot.rehearsal import DryRun, rehearse
+
+
+class Review(msgspec.Struct, frozen=True, kw_only=True):
+    """What a person should know before approving a program."""
+
+    program: str
+    sha256: str
+    """Of exactly this text; an approval holds for no other."""
+    findings: tuple[Finding, ...]
+    """In order of lines; one of severity "error" stands in the way of approval."""
+    dry_run: DryRun | None
+    """None if there was an error, or no simulated world to try it in."""
+
+    @property
+    def acceptable(self) -> bool:
+        return not any(finding.severity == "error" for finding in self.findings)
+
+
+def digest(program: str) -> str:
+    """The hash that an approval is bound to."""
+    return hashlib.sha256(program.encode()).hexdigest()
+
+
+def review(
+    program: str, knowledge: Knowledge, stage: Callable[[], Simulation] | None = None
+) -> Review:
+    """Check a program without moving anything. `stage` gives a copy of the simulated world,
+    in which the program is tried."""
+    from robot_api.stub import stub
+
+    findings = [*check(program, stub()), *violations(program, knowledge)]
+    findings.sort(key=lambda finding: (finding.line, finding.column))
+    acceptable = not any(finding.severity == "error" for finding in findings)
+    dry_run = rehearse(program, stage()) if acceptable and stage is not None else None
+    return Review(
+        program=program, sha256=digest(program), findings=tuple(findings), dry_run=dry_run
+    )

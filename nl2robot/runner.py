@@ -1,0 +1,348 @@
+"""The runner: approved programs, one at a time, on the robot.
+
+It lives at the server, so that a program goes on when the client that started it leaves, and so
+that the terminal, the web console and other clients see the same run. Every robot call of a program
+goes through the client `Robot` over the wire, as anybody's would.
+
+    translate -> check -> approve -> run -> (pause, step, resume, stop) -> over
+
+An approval is bound to the hash of exactly one program and is used up by one run.
+"""
+
+from __future__ import annotations
+
+import secrets
+import threading
+import time
+from collections import OrderedDict
+from collections.abc import Callable, Mapping
+from typing import Any, Literal
+
+import msgspec
+
+from nl2robot.knowledge import Knowledge
+from nl2robot.review import Review, digest, review
+from nl2robot.runlog import LogError, RunLog
+from robot_api.client import Robot
+from robot_api.errors import AccessDenied, NotPossible, RobotError, Stopped
+from sandbox.execution import Execution, Outcome
+from sim.simulation import Simulation
+
+State = Literal["running", "paused", "done", "failed", "stopped", "limit"]
+
+APPROVALS_KEPT = 100
+"""An approval that was not used is forgotten when so many newer ones were given."""
+
+
+class Approval(msgspec.Struct, frozen=True, kw_only=True):
+    """Somebody's word that exactly this program may run once."""
+
+    id: str
+    program: str
+    sha256: str
+    by: str
+    at: float
+    """Seconds since the epoch."""
+    utterance: str | None = None
+    heard: str | None = None
+    language: str | None = None
+    plan: str | None = None
+
+
+class Status(msgspec.Struct, frozen=True, kw_only=True):
+    """How a run stands; what `program.state` and `program.wait` answer."""
+
+    run: int
+    state: State
+    line: int | None
+    message: str | None
+    program: str
+    sha256: str
+    calls: int
+
+
+class _Activity:
+    """A run that is going on, or the last that was."""
+
+    def __init__(self, run: int, approval: Approval) -> None:
+        self.run = run
+        self.approval = approval
+        self.execution: Execution | None = None
+        self.state: State = "running"
+        self.line: int | None = None
+        self.message: str | None = None
+        self.calls = 0
+        self.over = threading.Event()
+        self.stop_because: str | None = None
+
+    def status(self) -> Status:
+        return Status(
+            run=self.run,
+            state=self.state,
+            line=self.line,
+            message=self.message,
+            program=self.approval.program,
+            sha256=self.approval.sha256,
+            calls=self.calls,
+        )
+
+
+class Runner:
+    """Reviews, approves and runs programs on one robot.
+
+    `connect` opens a client to the robot; `stage` gives a copy of the simulated world for dry runs,
+    or None where there is none; `publish(kind, data)` tells those who watch.
+    """
+
+    def __init__(
+        self,
+        *,
+        knowledge: Knowledge,
+        connect: Callable[[], Robot],
+        log: RunLog,
+        publish: Callable[[str, Mapping[str, Any]], None],
+        stage: Callable[[], Simulation] | None = None,
+        seed: int | None = None,
+    ) -> None:
+        self.knowledge = knowledge
+        self.log = log
+        self._connect = connect
+        self._publish = publish
+        self._stage = stage
+        self._seed = seed
+        self._lock = threading.Lock()
+        self._approvals: OrderedDict[str, Approval] = OrderedDict()
+        self._activity: _Activity | None = None
+
+    # --- before it runs
+
+    def check(self, program: str) -> Review:
+        """Review a program; nothing moves."""
+        return review(program, self.knowledge, self._stage)
+
+    def approve(
+        self,
+        program: str,
+        sha256: str,
+        by: str,
+        *,
+        utterance: str | None = None,
+        heard: str | None = None,
+        language: str | None = None,
+        plan: str | None = None,
+    ) -> Approval:
+        """Approve exactly this program. Raises `AccessDenied` if the hash is that of another text,
+        or if the review finds an error in it."""
+        if digest(program) != sha256:
+            raise AccessDenied(
+                "The program was changed after its review. Review it again, then approve it."
+            )
+        errors = [
+            finding
+            for finding in review(program, self.knowledge).findings
+            if finding.severity == "error"
+        ]
+        if errors:
+            raise AccessDenied(
+                f"The program cannot be approved: line {errors[0].line}: {errors[0].message}"
+            )
+        approval = Approval(
+            id=secrets.token_urlsafe(16),
+            program=program,
+            sha256=sha256,
+            by=by,
+            at=time.time(),
+            utterance=utterance,
+            heard=heard,
+            language=language,
+            plan=plan,
+        )
+        with self._lock:
+            self._approvals[approval.id] = approval
+            while len(self._approvals) > APPROVALS_KEPT:
+                self._approvals.popitem(last=False)
+        return approval
+
+    # --- while it runs
+
+    def run(self, approval_id: str) -> int:
+        """Start an approved program; returns the run's number at once. Raises `AccessDenied`
+        without an approval, `NotPossible` while another program runs."""
+        with self._lock:
+            approval = self._approvals.get(approval_id)
+            if approval is None:
+                raise AccessDenied(
+                    "This program has no approval that is still good. Review and approve it first."
+                )
+            if self._activity is not None and not self._activity.over.is_set():
+                raise NotPossible(
+                    "Another program is running. Wait until it is over, or stop it first."
+                )
+            del self._approvals[approval_id]
+            run = self._begin(approval)
+            activity = self._activity = _Activity(run, approval)
+        threading.Thread(
+            target=self._perform, args=(activity,), name=f"program {run}", daemon=True
+        ).start()
+        return run
+
+    def wait(self, run: int, timeout: float | None = None) -> Status:
+        """Wait until that run is over (or `timeout` seconds), then tell how it stands."""
+        activity = self._of(run)
+        activity.over.wait(timeout)
+        return activity.status()
+
+    def state(self) -> Status | None:
+        """How the present or last run stands; None if there was none since the server started."""
+        return self._activity.status() if self._activity else None
+
+    def pause(self) -> Status:
+        return self._control("paused", Execution.pause)
+
+    def step(self) -> Status:
+        """Do one more robot call, then pause again."""
+        return self._control("paused", Execution.step)
+
+    def resume(self) -> Status:
+        return self._control("running", Execution.resume)
+
+    def stop(self, because: str = "The program was stopped.") -> None:
+        """Stop the program that runs, if any. `robot.stop` does this and stops the robot."""
+        activity = self._activity
+        if activity is not None and not activity.over.is_set():
+            activity.stop_because = because
+            if activity.execution is not None:
+                activity.execution.stop()
+
+    # --- the run itself
+
+    def _begin(self, approval: Approval) -> int:
+        try:
+            return self.log.begin(
+                program=approval.program,
+                sha256=approval.sha256,
+                approved_by=approval.by,
+                approved_at=approval.at,
+                utterance=approval.utterance,
+                heard=approval.heard,
+                language=approval.language,
+                plan=approval.plan,
+                world=self.knowledge.world.name,
+                seed=self._seed,
+                robot=self.knowledge.capabilities.name if self.knowledge.capabilities else None,
+            )
+        except LogError as error:
+            raise NotPossible(str(error)) from error
+
+    def _perform(self, activity: _Activity) -> None:
+        outcome = Outcome(status="failed", message="The robot cannot be reached.", line=None)
+        try:
+            with self._connect() as robot:
+                outcome = self._execute(activity, robot)
+                if outcome.status != "done":
+                    robot.stop()
+        except (RobotError, Stopped) as error:
+            outcome = Outcome(
+                status="stopped" if isinstance(error, Stopped) else outcome.status,
+                message=outcome.message if outcome.line else str(error),
+                line=outcome.line,
+            )
+        finally:
+            self._end(activity, outcome)
+
+    def _execute(self, activity: _Activity, robot: Robot) -> Outcome:
+        def on_line(line: int) -> None:
+            activity.line = line
+            self._tell(activity, "line")
+
+        def call(method: str, arguments: dict[str, Any], line: int) -> Any:
+            activity.calls += 1
+            return self._logged_call(activity, robot, method, arguments, line)
+
+        def on_print(text: str) -> None:
+            self._logged(self.log.printed, activity.run, text)
+            self._tell(activity, "print", text=text)
+
+        execution = Execution(
+            activity.approval.program,
+            call,
+            seed=self._seed,
+            on_line=on_line,
+            on_print=on_print,
+        )
+        activity.execution = execution
+        self._tell(activity, "state")
+        if activity.stop_because is not None:  # stopped before it began
+            execution.stop()
+        return execution.run()
+
+    def _logged_call(
+        self, activity: _Activity, robot: Robot, method: str, arguments: dict[str, Any], line: int
+    ) -> Any:
+        number = activity.calls
+        written = msgspec.json.encode(arguments).decode()
+        self._logged(self.log.call_begins, activity.run, number, line, method, written)
+        about = {"number": number, "method": method, "arguments": arguments}
+        self._tell(activity, "call", **about)
+        began = time.perf_counter()
+        try:
+            result = getattr(robot, method)(**arguments)
+        except (RobotError, Stopped) as error:
+            seconds = time.perf_counter() - began
+            told = f"{type(error).__name__}: {error}"
+            self._logged(self.log.call_ends, activity.run, number, seconds, error=told)
+            self._tell(activity, "result", **about, error=told, seconds=seconds)
+            raise
+        seconds = time.perf_counter() - began
+        told = msgspec.json.encode(result).decode()
+        self._logged(self.log.call_ends, activity.run, number, seconds, result=told)
+        self._tell(activity, "result", **about, result=msgspec.to_builtins(result), seconds=seconds)
+        return result
+
+    def _logged(self, write: Callable[..., None], *values: Any, **more: Any) -> None:
+        try:
+            write(*values, **more)
+        except LogError as error:
+            # What is not logged is not done.
+            raise Stopped(str(error)) from error
+
+    def _end(self, activity: _Activity, outcome: Outcome) -> None:
+        activity.state = outcome.status
+        activity.message = outcome.message
+        if outcome.status == "stopped" and activity.stop_because:
+            activity.message = activity.stop_because
+        if outcome.line is not None:
+            activity.line = outcome.line
+        try:
+            self.log.end(activity.run, activity.state, activity.message)
+        except LogError as error:
+            activity.message = f"{activity.message or ''} {error}".strip()
+        activity.over.set()
+        self._tell(activity, "state")
+
+    # --- helpers
+
+    def _control(self, state: State, act: Callable[[Execution], None]) -> Status:
+        activity = self._activity
+        if activity is None or activity.over.is_set() or activity.execution is None:
+            raise NotPossible("No program is running.")
+        activity.state = state
+        act(activity.execution)
+        self._tell(activity, "state")
+        return activity.status()
+
+    def _of(self, run: int) -> _Activity:
+        activity = self._activity
+        if activity is None or activity.run != run:
+            raise NotPossible(f"Run {run} is not the present one. `nl2robot log {run}` shows it.")
+        return activity
+
+    def _tell(self, activity: _Activity, what: str, **more: Any) -> None:
+        data = {
+            "what": what,
+            "run": activity.run,
+            "state": activity.state,
+            "line": activity.line,
+            "message": activity.message,
+        }
+        self._publish("program", {**data, **more})

@@ -1,0 +1,171 @@
+"""The runner's methods on the wire: `program.translate` to `program.stop`."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections import OrderedDict
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import msgspec
+
+from grammar.samples import samples
+from grammar.understand import Context
+from nl2robot.runner import Runner
+from nl2robot.translation import translate
+from robot_api.driver import StopFlag
+from robot_api.methods import MAX_TEXT
+from robot_api.server import Context as CallContext
+from robot_api.server import Service
+
+LONGEST_PROGRAM = 65_536
+SECONDS_TO_END = 2.0
+"""How long a stopped run may take to be over."""
+TALKS_KEPT = 100
+"""Conversations whose context is kept; the one unused longest is forgotten first."""
+
+_STRING = {"type": "string", "maxLength": MAX_TEXT}
+_MAYBE = {"type": ["string", "null"], "maxLength": 4 * LONGEST_PROGRAM}
+_PROGRAM = {"type": "string", "maxLength": LONGEST_PROGRAM}
+_LANGUAGE = {"type": "string", "pattern": "^[a-z]{2}$"}
+_RUN = {"type": "integer", "minimum": 1}
+
+
+EVENTS: Mapping[str, str] = {
+    "program": "what (state | line | call | result | print), run, state, line, message, and of a"
+    " call number, method, arguments, of a result also result or error and seconds, of print text",
+}
+"""The events that the runner publishes."""
+
+
+def services(runner: Runner) -> dict[str, Service]:
+    """The methods to register with a `robot_api.server.Server`."""
+    talks: OrderedDict[str, Context] = OrderedDict()
+
+    def context_of(talk: str | None) -> Context | None:
+        if talk is None:
+            return None
+        context = talks.setdefault(talk, Context())
+        talks.move_to_end(talk)
+        while len(talks) > TALKS_KEPT:
+            talks.popitem(last=False)
+        return context
+
+    def translated(p: Mapping[str, Any]) -> Any:
+        return translate(
+            p["utterance"],
+            runner.knowledge,
+            p.get("language", "en"),
+            p.get("planner", "auto"),
+            context_of(p.get("talk")),
+        )
+
+    def approved(p: Mapping[str, Any]) -> Any:
+        return runner.approve(p["program"], p["sha256"], p["by"], **_rest(p, "program sha256 by"))
+
+    def waited(p: Mapping[str, Any], stop: StopFlag) -> Any:
+        """Until the run is over, the time is up or the call is cancelled. A stop of the robot sets
+        the flag as well; the run then has a moment to end."""
+        status = runner.wait(p["run"], 0)
+        began = time.monotonic()
+        enough = began + p.get("timeout", math.inf)
+        while status.state in ("running", "paused") and time.monotonic() < enough:
+            if stop.is_set():
+                enough = min(enough, time.monotonic() + SECONDS_TO_END)
+            status = runner.wait(p["run"], 0.05)
+        return status
+
+    def listed(p: Mapping[str, Any]) -> Any:
+        return runner.log.runs(p.get("last", 20))
+
+    return {
+        "program.translate": _service(
+            translated,
+            "Turn words into a program; moves nothing.",
+            {
+                "utterance": {"type": "string", "maxLength": 4 * MAX_TEXT},
+                "language": _LANGUAGE,
+                "planner": {"enum": ["auto", "grammar", "model"]},
+                "talk": {"type": ["string", "null"], "maxLength": 100},
+            },
+            "utterance",
+        ),
+        "program.phrases": _service(
+            lambda p: samples(runner.knowledge.lexicon(p.get("language", "en"))),
+            "List what can be said here, by topic.",
+            {"language": _LANGUAGE},
+        ),
+        "program.check": _service(
+            lambda p: runner.check(p["program"]),
+            "Review a program: types, what this robot lacks, a dry run; moves nothing.",
+            {"program": _PROGRAM},
+            "program",
+        ),
+        "program.approve": _service(
+            approved,
+            "Approve exactly the program with this SHA-256 for one run.",
+            {
+                "program": _PROGRAM,
+                "sha256": {"type": "string", "pattern": "^[0-9a-f]{64}$"},
+                "by": {"type": "string", "minLength": 1, "maxLength": 200},
+                "utterance": _MAYBE,
+                "heard": _MAYBE,
+                "language": {"type": ["string", "null"], "maxLength": 5},
+                "plan": _MAYBE,
+            },
+            "program sha256 by",
+        ),
+        "program.run": _service(
+            lambda p: runner.run(p["approval"]),
+            "Start an approved program; returns the run's number at once.",
+            {"approval": _STRING},
+            "approval",
+        ),
+        "program.wait": Service(
+            handler=lambda p, context: msgspec.to_builtins(waited(p, context.stop)),
+            params=_object({"run": _RUN, "timeout": {"type": "number", "minimum": 0}}, "run"),
+            doc="Wait until a run is over and tell how it ended.",
+        ),
+        "program.state": _service(
+            lambda p: runner.state(), "Tell how the present or last run stands."
+        ),
+        "program.pause": _service(
+            lambda p: runner.pause(), "Hold the program before its next robot call."
+        ),
+        "program.step": _service(lambda p: runner.step(), "Do one robot call, then hold again."),
+        "program.resume": _service(lambda p: runner.resume(), "Go on after a pause."),
+        "program.stop": _service(
+            lambda p: runner.stop(), "Stop the program; `robot.stop` stops the robot as well."
+        ),
+        "program.list": _service(
+            listed,
+            "List the newest runs of the log.",
+            {"last": {"type": "integer", "minimum": 1, "maximum": 1000}},
+        ),
+    }
+
+
+def _service(
+    handler: Callable[[Mapping[str, Any]], Any],
+    doc: str,
+    properties: dict[str, Any] | None = None,
+    required: str = "",
+) -> Service:
+    def handle(parameters: dict[str, Any], context: CallContext) -> Any:
+        return msgspec.to_builtins(handler(parameters))
+
+    return Service(handler=handle, params=_object(properties or {}, required), doc=doc)
+
+
+def _object(properties: dict[str, Any], required: str) -> dict[str, Any]:
+    return {
+        "type": "object",
+        "properties": properties,
+        "required": required.split(),
+        "additionalProperties": False,
+    }
+
+
+def _rest(parameters: Mapping[str, Any], taken: str) -> dict[str, Any]:
+    return {name: value for name, value in parameters.items() if name not in taken.split()}

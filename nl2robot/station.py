@@ -1,0 +1,213 @@
+"""A station: one robot with its server and its runner, on one port.
+
+`nl2robot serve` is a station that stays; `nl2robot run` opens one for itself when it is not given
+the address of another.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from nl2robot.errors import ExitStatus, UserError
+from nl2robot.knowledge import Knowledge
+from nl2robot.runlog import LogError, RunLog
+from nl2robot.runner import Runner
+from nl2robot.services import EVENTS, services
+from robot_api.client import Robot
+from robot_api.driver import Driver, Event
+from robot_api.server import Server
+from sim.record import Record
+from sim.simulation import Simulation
+from sim.world import World
+
+
+class Station:
+    """A robot server that also runs programs, here or elsewhere."""
+
+    def __init__(self, address: str, token: str | None = None) -> None:
+        self.address = address
+        """ "host:port" for clients."""
+        self.token = token
+
+    def connect(self) -> Robot:
+        """A new client of this station."""
+        return Robot(self.address, token=self.token)
+
+    def picture(self, run: int, file: Path) -> bool:
+        """Draw a run into a file (.svg, .png, .webp, .gif); False if it was not simulated here."""
+        return False
+
+
+class SimulatedStation(Station):
+    """A station on this machine whose robot is simulated: it knows what the runs looked like."""
+
+    def __init__(self, server: Server, simulation: Simulation) -> None:
+        super().__init__(server.address, server.token)
+        self.server = server
+        self.simulation = simulation
+        self._spans: dict[int, tuple[float, float]] = {}
+
+    def note(self, run: int, state: str) -> None:
+        """Remember at what simulated time a run began or ended."""
+        now = self.simulation.time
+        began = self._spans.get(run, (now, math.inf))[0]
+        self._spans[run] = (began, math.inf if state in ("running", "paused") else now)
+
+    def record(self, run: int) -> Record:
+        """The timeline of that run."""
+        return self.simulation.record.between(*self._spans[run])
+
+    def picture(self, run: int, file: Path) -> bool:
+        draw(self.record(run), self.simulation.world, file)
+        return True
+
+
+def draw(record: Record, world: World, file: Path) -> None:
+    """Draw a run; the file's ending says how."""
+    from sim import pictures
+
+    ending = file.suffix.lower()
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        if ending == ".svg":
+            file.write_text(pictures.svg(world, record), encoding="utf-8")
+        elif ending == ".png":
+            pictures.png(world, record, file)
+        elif ending in (".webp", ".gif"):
+            pictures.animate(world, record, file)
+        else:
+            raise UserError(
+                f"A picture cannot be saved as {file.name}. Choose a name that ends in"
+                " .svg, .png, .webp or .gif."
+            )
+    except OSError as error:
+        raise UserError(f"The picture {file} cannot be saved ({error.strerror}).") from error
+
+
+@contextmanager
+def simulated_station(
+    world: World,
+    log: RunLog,
+    *,
+    seed: int = 0,
+    speed: float | None = None,
+    host: str = "127.0.0.1",
+    port: int = 0,
+    token: str | None = None,
+    pictures: Path | None = None,
+) -> Iterator[SimulatedStation]:
+    """Open a station with a simulated robot.
+
+    `speed`: simulated seconds per second; None: as fast as the machine allows, whenever somebody
+    waits for the robot. `pictures`: a folder in which a picture of every run is kept.
+    """
+    from robot_api.drivers import simulated
+
+    simulation = Simulation(world, seed=seed, speed=speed)
+    driver = simulated(simulation)
+
+    def on_program(data: Mapping[str, Any]) -> None:
+        if data["what"] != "state":
+            return
+        run, state = data["run"], data["state"]
+        station.note(run, state)
+        if pictures is not None and state not in ("running", "paused"):
+            _keep_picture(station, log, run, pictures / f"run-{run}.svg")
+
+    with _open(
+        driver,
+        world,
+        log,
+        simulation.copy,
+        on_program,
+        seed=seed,
+        host=host,
+        port=port,
+        token=token,
+    ) as server:
+        station = SimulatedStation(server, simulation)
+        yield station
+
+
+def _keep_picture(station: SimulatedStation, log: RunLog, run: int, file: Path) -> None:
+    try:
+        station.picture(run, file)
+        log.picture(run, str(file))
+    except (UserError, LogError):
+        # A full disk: the run itself is over and logged, only its picture is missing.
+        return
+
+
+@contextmanager
+def remote_station(
+    address: str, world: World, log: RunLog, *, token: str | None = None
+) -> Iterator[Station]:
+    """The station at an address. A robot server that runs no programs gets a runner here; dry runs
+    then are simulated in `world`."""
+    from robot_api.remote import RemoteDriver
+
+    address = address.removeprefix("ws://").rstrip("/")
+    if not address:
+        raise UserError("The robot's address is missing. Write it as ws://HOST:9090.")
+    with Robot(address, token=token) as robot:
+        methods = {method["name"] for method in robot.request("rpc.discover", {})["methods"]}
+        if "program.run" in methods:
+            yield Station(address, token)
+            return
+        if "robot.capabilities" not in methods:
+            raise UserError(
+                f"There is a server at {address}, but it is no robot's.", ExitStatus.NO_ROBOT
+            )
+        driver = RemoteDriver(robot)
+        with _open(driver, world, log, lambda: Simulation(world), lambda data: None) as server:
+            yield Station(server.address, server.token)
+
+
+@contextmanager
+def _open(
+    driver: Driver,
+    world: World,
+    log: RunLog,
+    stage: Callable[[], Simulation],
+    on_program: Callable[[Mapping[str, Any]], None],
+    *,
+    seed: int | None = None,
+    host: str = "127.0.0.1",
+    port: int = 0,
+    token: str | None = None,
+) -> Iterator[Server]:
+    """A server with a runner on it. `on_program` is told of the runs' events before others are."""
+
+    def publish(kind: str, data: Mapping[str, Any]) -> None:
+        if kind == "program":
+            on_program(data)
+        server.publish(kind, data)
+
+    runner = Runner(
+        knowledge=Knowledge(world, driver.capabilities()),
+        connect=lambda: Robot(server.address, token=server.token),
+        log=log,
+        publish=publish,
+        stage=stage if world.has_geometry else None,
+        seed=seed,
+    )
+
+    def on_event(kind: str, data: Event) -> None:
+        if kind == "stopped":
+            runner.stop(str(data.get("because", "The robot was stopped.")))
+
+    server = Server(
+        driver, host=host, port=port, token=token, services=services(runner), events=EVENTS
+    )
+    unsubscribe = driver.subscribe(on_event)
+    try:
+        with server:
+            yield server
+            runner.stop("nl2robot was closed.")
+    finally:
+        unsubscribe()
+        driver.close()

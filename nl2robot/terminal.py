@@ -1,0 +1,176 @@
+"""The review in the terminal: show a program and what it would do, ask, show it run."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+from rich.console import Console
+from rich.markup import escape
+from rich.panel import Panel
+from rich.syntax import Syntax
+from rich.table import Table
+
+from nl2robot.errors import ExitStatus, UserError
+from nl2robot.rehearsal import DryRun
+from nl2robot.review import Review
+from nl2robot.translation import Translation
+
+Decision = Literal["approve", "edit", "reject"]
+
+
+class Terminal:
+    """What an operator sees and answers at a terminal."""
+
+    def __init__(self, console: Console | None = None) -> None:
+        self.console = console or Console(highlight=False)
+
+    @property
+    def somebody_is_there(self) -> bool:
+        return sys.stdin.isatty()
+
+    # --- before the run
+
+    def show_refusal(self, translation: Translation) -> None:
+        """Say why there is no program, and what could be said instead."""
+        self.console.print(escape(translation.message or "This was not understood."))
+        if translation.suggestions:
+            self.console.print("You could say:")
+            for phrase in translation.suggestions:
+                self.console.print(f"  [bold]{escape(phrase)}[/]")
+
+    def show_phrases(self, phrases: Mapping[str, Sequence[str]]) -> None:
+        for topic, sentences in phrases.items():
+            self.console.print(f"[bold]{escape(topic.capitalize())}[/]")
+            for sentence in sentences:
+                self.console.print(f"  {escape(sentence)}")
+
+    def show_program(self, program: str) -> None:
+        self.console.print(
+            Panel(
+                Syntax(program.rstrip("\n"), "python", line_numbers=True, word_wrap=True),
+                title="Program",
+                title_align="left",
+                border_style="dim",
+            )
+        )
+
+    def show_review(self, review: Review, explanation: str) -> None:
+        self.show_program(review.program)
+        if explanation:
+            self.console.print(f"[bold]In words:[/] {escape(explanation)}")
+        for finding in review.findings:
+            style, word = ("red", "Error") if finding.severity == "error" else ("yellow", "Note")
+            self.console.print(
+                f"[{style}]{word}, line {finding.line}:[/] {escape(finding.message)}"
+            )
+        if review.dry_run is not None:
+            self._show_dry_run(review.dry_run)
+
+    def _show_dry_run(self, dry_run: DryRun) -> None:
+        ends = {
+            "done": "It would take",
+            "failed": f"It would fail at line {dry_run.line} after",
+            "stopped": "It would stop itself after",
+            "limit": f"It would be ended at line {dry_run.line} after",
+            "unfinished": "It would still be going on after",
+        }[dry_run.status]
+        text = f"{ends} {_duration(dry_run.seconds)} and drive {dry_run.metres:g} m."
+        self.console.print(f"[bold]Dry run:[/] {text} {escape(dry_run.message or '')}".rstrip())
+        if dry_run.places:
+            self.console.print(f"  way: {escape(' → '.join(dry_run.places))}")
+        for words in dict.fromkeys(dry_run.says):
+            self.console.print(f"  says: {escape(words)}")
+
+    def decide(self, review: Review) -> Decision:
+        """Ask whether the program may run. What cannot be approved is not offered for it."""
+        choices: dict[str, Decision] = {"e": "edit", "r": "reject"}
+        question = "[e]dit or [r]eject?"
+        if review.acceptable:
+            choices = {"a": "approve", **choices}
+            question = "[a]pprove, [e]dit or [r]eject?"
+        while True:
+            answer = self.ask(f"{question} ").strip().lower()
+            if answer[:1] in choices:
+                return choices[answer[:1]]
+
+    def ask(self, question: str) -> str:
+        """Read a line. The end of the input counts as no answer, and no answer as a refusal."""
+        try:
+            return input(question)
+        except EOFError:
+            raise UserError(
+                "Nobody is there to answer. Add --yes to approve the program beforehand.",
+                ExitStatus.NOT_APPROVED,
+            ) from None
+
+    def edit(self, program: str) -> str:
+        """Let the operator change the program in $VISUAL or $EDITOR; returns the new text."""
+        editor = os.environ.get("VISUAL") or os.environ.get("EDITOR") or "nano"
+        with tempfile.TemporaryDirectory(prefix="nl2robot-") as folder:
+            file = Path(folder) / "program.py"
+            file.write_text(program, encoding="utf-8")
+            try:
+                status = subprocess.run([*shlex.split(editor), str(file)], check=False).returncode
+            except OSError as error:
+                raise UserError(
+                    f"The editor {editor!r} cannot be started ({error.strerror})."
+                    " Set $EDITOR to one that is installed."
+                ) from error
+            if status != 0:
+                self.console.print("The editor reported a failure; the program stays as it was.")
+                return program
+            return file.read_text(encoding="utf-8")
+
+    # --- during the run
+
+    def show_event(self, kind: str, data: Mapping[str, Any]) -> None:
+        """Show an event of the wire as it comes."""
+        if kind == "program" and data["what"] == "call":
+            arguments = ", ".join(
+                f"{name}={_short(value)}"
+                for name, value in data["arguments"].items()
+                if value is not None
+            )
+            call = f"{data['method']}({arguments})"
+            self.console.print(f"[dim]{data['line']:>4}[/] {escape(call)}")
+        elif kind == "program" and data["what"] == "result":
+            if data.get("error"):
+                self.console.print(f"     [red]{escape(str(data['error']))}[/]")
+            elif data.get("result") is not None:
+                self.console.print(f"     [green]→ {escape(_short(data['result']))}[/]")
+        elif kind == "program" and data["what"] == "print":
+            self.console.print(f"     {escape(data['text'].rstrip())}")
+
+    def show_end(self, state: str, message: str | None) -> None:
+        words = {
+            "done": "[green]Done.[/]",
+            "failed": "[red]The robot could not finish.[/]",
+            "stopped": "[yellow]Stopped.[/]",
+            "limit": "[red]The program was ended.[/]",
+        }
+        self.console.print(f"{words.get(state, state)} {escape(message or '')}".rstrip())
+
+    def table(self, *headings: str) -> Table:
+        table = Table(box=None, pad_edge=False, header_style="bold")
+        for heading in headings:
+            table.add_column(heading, overflow="fold")
+        return table
+
+
+def _short(value: Any, longest: int = 70) -> str:
+    if isinstance(value, dict) and "x" in value and "y" in value:
+        return str(value.get("place") or f"({value['x']:.2f}, {value['y']:.2f})")
+    text = repr(value) if isinstance(value, str) else str(value)
+    return text if len(text) <= longest else text[: longest - 1] + "…"
+
+
+def _duration(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes} min {rest} s" if minutes else f"{rest} s"

@@ -1,0 +1,79 @@
+"""From words to a program: what `nl2robot translate` answers.
+
+Kept light, because it must answer at once: it imports the grammar and the world's names only.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from typing import Any, Literal
+
+import msgspec
+from grammar.understand import Context, understand
+
+from grammar.plan import Plan, to_data
+from nl2robot.errors import UserError
+from nl2robot.knowledge import Knowledge
+
+Planner = Literal["auto", "grammar", "model"]
+
+
+class Translation(msgspec.Struct, frozen=True, kw_only=True):
+    """What became of an utterance; `to_json` gives the object of `translate --json`."""
+
+    utterance: str
+    status: Literal["ok", "clarify", "rejected"]
+    program: str | None
+    plan: dict[str, Any] | None
+    source: Literal["grammar", "model"] | None
+    """Which planner found the plan."""
+    confidence: float
+    explanation: str
+    """The program in plain words; empty if there is none."""
+    message: str | None
+    """Why there is no program, or the question back."""
+    suggestions: Sequence[str]
+    """Sentences that would be understood."""
+    ms: float
+    """Milliseconds it took."""
+
+    def to_json(self) -> str:
+        return msgspec.json.encode(self).decode()
+
+
+def translate(
+    utterance: str,
+    knowledge: Knowledge,
+    language: str = "en",
+    planner: Planner = "auto",
+    context: Context | None = None,
+) -> Translation:
+    """Understand an utterance and write it as a program. Never moves anything, never raises for
+    words that are not understood: the status says so."""
+    from grammar.explain import explain
+
+    from grammar.program import write_program
+
+    if planner == "model":
+        raise UserError(
+            "There is no model planner in this version."
+            " Leave --planner out, or say --planner grammar."
+        )
+    started = time.perf_counter()
+    understood = understand(utterance, knowledge.lexicon(language), language, context)
+    plan: Plan | None = understood.plan
+    program = write_program(plan) if plan else None
+    explanation = explain(plan, language) if plan else ""
+    return Translation(
+        utterance=utterance,
+        status=understood.status,
+        program=program,
+        plan=to_data(plan) if plan else None,
+        source="grammar" if plan else None,
+        confidence=understood.confidence,
+        explanation=explanation,
+        message=understood.message,
+        suggestions=understood.suggestions,
+        ms=round((time.perf_counter() - started) * 1000, 3),
+    )

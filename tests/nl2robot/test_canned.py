@@ -1,0 +1,110 @@
+"""A team keeps its own sentences in a file and learns when one of them changes."""
+
+import textwrap
+
+import pytest
+
+from nl2robot import canned
+from nl2robot.cli import main
+from nl2robot.errors import UserError
+
+
+def write(tmp_path, text: str, name: str = "ward.yaml"):
+    file = tmp_path / name
+    file.write_text(textwrap.dedent(text), encoding="utf-8")
+    return file
+
+
+def failures(file) -> list[tuple[int, tuple[str, ...]]]:
+    return [(r.test.line, r.failures) for r in canned.check(canned.load(file)) if r.failures]
+
+
+def test_sentences_that_do_what_they_should_pass(tmp_path) -> None:
+    file = write(
+        tmp_path,
+        """\
+        world: city-hospital
+        tests:
+          - say: go to the pharmacy and say "hello"
+            program: |
+              robot.goto("pharmacy")
+              robot.say("hello")
+            effects:
+              was at: [pharmacy]
+              said: [hello]
+              asked: []
+              holds: []
+          - say: wave, then go to the lobby
+            calls: [gesture, goto]
+          - say: what is the meaning of life
+            status: rejected
+        """,
+    )
+    assert failures(file) == []
+    assert main(["test", str(file)]) == 0
+
+
+def test_a_sentence_that_changed_is_told_with_its_line(tmp_path, capsys) -> None:
+    file = write(
+        tmp_path,
+        """\
+        tests:
+          - say: go to the pharmacy
+            calls: [goto]
+          - say: go to the pharmacy
+            program: robot.goto("lobby")
+          - say: go to the pharmacy
+            effects: {was at: [radiology]}
+          - say: go to the pharmacy
+            status: rejected
+        """,
+    )
+    assert [line for line, _ in failures(file)] == [4, 6, 8]
+    assert main(["test", str(file)]) == 1
+    told = capsys.readouterr().out
+    assert f"{file}:4: go to the pharmacy" in told
+    assert "1 passed, 3 failed" in told
+
+
+def test_plain_lines_have_to_be_understood(tmp_path) -> None:
+    file = write(
+        tmp_path,
+        """\
+        # our morning
+        go to the pharmacy
+        go to the lobby and wave => goto gesture
+
+        go to the attic
+        wave => say
+        """,
+        "morning.txt",
+    )
+    assert [line for line, _ in failures(file)] == [5, 6]
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("tests: [", 1),
+        ("tests:\n  - say: hello\n    colour: red\n", 2),
+        ("tests:\n  - say: hello\n  - say: 3\n", 3),
+        ("world: x\n", 1),
+        ("- say: hello\n", 1),
+        ("", 1),
+    ],
+)
+def test_a_mistake_in_the_file_is_told_with_its_line(tmp_path, text, line) -> None:
+    file = write(tmp_path, text)
+    with pytest.raises(UserError, match=rf"ward\.yaml:{line}: "):
+        canned.load(file)
+
+
+def test_a_missing_file_is_a_sentence(tmp_path, capsys) -> None:
+    assert main(["test", str(tmp_path / "nothing.yaml")]) == 2
+    assert "cannot be read" in capsys.readouterr().err
+
+
+def test_a_thousand_sentences_take_seconds(tmp_path) -> None:
+    lines = "\n".join(["go to the pharmacy and say hello", "wave to Alice"] * 500)
+    results = list(canned.check(canned.load(write(tmp_path, lines, "many.txt"))))
+    assert len(results) == 1000
