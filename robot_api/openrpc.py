@@ -100,9 +100,8 @@ def _methods_of_every_server() -> Iterable[dict[str, Any]]:
     names = {"type": "array", "items": {"type": "string"}}
     which = {"type": "object", "properties": {"events": names}, "required": ["events"]}
     call = {"type": "object", "properties": {"id": {}}, "required": ["id"]}
-    yield _method(
-        "robot.capabilities", "Tell what this robot can do.", {}, msgspec.json.schema(Capabilities)
-    )
+    capabilities = msgspec.json.schema(Capabilities)["$defs"][Capabilities.__name__]
+    yield _method("robot.capabilities", "Tell what this robot can do.", {}, capabilities)
     yield _method("rpc.discover", "Return this document.", {}, {"type": "object"})
     yield _method(
         protocol.CANCEL,
