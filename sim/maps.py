@@ -61,6 +61,8 @@ def image_size(path: Path) -> tuple[int, int]:
         rows, columns = _open(path).shape
         return columns, rows
     width, height, most = (int(number) for number in match.groups())
+    if not width or not height:
+        raise ImageError(f"The map's image {path.name} has no pixels. Save it again.")
     if not 0 < most < 65536 or length < match.end() + width * height * (1 + (most > 255)):
         raise ImageError(f"The map's image {path.name} is cut short. Save it again.")
     return width, height

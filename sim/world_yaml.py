@@ -170,7 +170,9 @@ def _node(event: Any, line: int, anchors: Mapping[str, Node]) -> Node:
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     import difflib
 
-    table = {key(name): name for name in known}
+    table: dict[str, str] = {}
+    for name in known:
+        table.setdefault(key(name), name)
     close = difflib.get_close_matches(key(word), list(table), n=1, cutoff=0.6)
     return f' Did you mean "{table[close[0]]}"?' if close else ""
 

@@ -1,0 +1,172 @@
+"""Maps that ROS's map_server wrote become walls a robot can be simulated between."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+from PIL import Image
+
+from sim.maps import outlines
+from sim.world import WorldError, load_world, polygon_area
+
+Grey = npt.NDArray[np.uint8]
+FREE, WALL, UNKNOWN = 254, 0, 205
+
+
+def room() -> Grey:
+    """A room of 8 x 4 m at 5 cm a pixel, with a pillar of 0.5 m, in unknown surroundings."""
+    cells = np.full((120, 200), UNKNOWN, np.uint8)
+    cells[20:100, 20:180] = WALL
+    cells[22:98, 22:178] = FREE
+    cells[60:70, 100:110] = WALL
+    return cells
+
+
+def write(folder: Path, cells: Grey, name: str = "floor.pgm", **fields: object) -> Path:
+    Image.fromarray(cells).save(folder / name)
+    values = {
+        "image": name,
+        "resolution": 0.05,
+        "origin": [-5.0, -3.0, 0.0],
+        "negate": 0,
+        "occupied_thresh": 0.65,
+        "free_thresh": 0.196,
+        **fields,
+    }
+    file = folder / "map.yaml"
+    file.write_text("".join(f"{field}: {value}\n" for field, value in values.items()))
+    return file
+
+
+def test_a_room_becomes_its_four_walls_and_its_pillar(tmp_path: Path) -> None:
+    world = load_world(write(tmp_path, room()))
+    assert world.bounds == pytest.approx((-5, -3, 5, 3))
+    assert world.map is not None
+    floor, pillar = sorted(outlines(world.map), key=polygon_area, reverse=True)
+    assert len(world.walls) == 8
+    assert set(floor) == {(-3.9, -1.9), (-3.9, 1.9), (3.9, -1.9), (3.9, 1.9)}
+    # Row 60 from the top is 3 m from the top edge, which is at y = 3.
+    assert set(pillar) == {(0.0, -0.5), (0.0, 0.0), (0.5, -0.5), (0.5, 0.0)}
+
+
+@pytest.mark.parametrize("kind", ["P2", "PNG", "colour", "16 bit"])
+def test_other_images_say_the_same(tmp_path: Path, kind: str) -> None:
+    cells = room()
+    expected = load_world(write(tmp_path, cells)).walls
+    file = write(tmp_path, cells, "floor.png")
+    if kind == "P2":
+        rows = "\n".join(" ".join(str(value) for value in row) for row in cells)
+        (tmp_path / "plain.pgm").write_text(f"P2\n# by hand\n200 120\n255\n{rows}\n")
+        file.write_text(file.read_text().replace("floor.png", "plain.pgm"))
+    elif kind == "colour":
+        Image.fromarray(cells).convert("RGBA").save(tmp_path / "floor.png")
+    elif kind == "16 bit":
+        Image.fromarray(cells.astype(np.uint16) * 257).save(tmp_path / "floor.png")
+    assert load_world(file).walls == expected
+
+
+def test_negate_turns_black_and_white_round(tmp_path: Path) -> None:
+    expected = load_world(write(tmp_path, room())).walls
+    assert load_world(write(tmp_path, 255 - room(), negate=1)).walls == expected
+
+
+def test_what_nobody_measured_is_no_way(tmp_path: Path) -> None:
+    cells = room()
+    cells[40:50, 40:50] = UNKNOWN
+    world = load_world(write(tmp_path, cells))
+    assert len(world.walls) == 12
+    everything = load_world(write(tmp_path, cells, free_thresh=0.5))
+    edge, both_sides, pillar = 4, 8, 4
+    assert len(everything.walls) == edge + both_sides + pillar, "the unknown counts as free"
+
+
+def test_slanted_walls_are_a_few_segments(tmp_path: Path) -> None:
+    rows, columns = np.mgrid[:120, :200]
+    cells = room()
+    cells[(abs(rows - 2 * columns / 3 + 10) < 2) & (columns > 60) & (columns < 90)] = WALL
+    assert len(load_world(write(tmp_path, cells)).walls) < 20
+
+
+def test_a_table_leg_of_one_pixel_stays_an_obstacle(tmp_path: Path) -> None:
+    cells = room()
+    cells[40, 40] = WALL
+    assert len(load_world(write(tmp_path, cells)).walls) == 12
+
+
+def test_a_turned_map(tmp_path: Path) -> None:
+    world = load_world(write(tmp_path, room(), origin=[1.0, 0.0, round(math.pi / 2, 6)]))
+    assert world.bounds == pytest.approx((-5, 0, 1, 10), abs=1e-3)
+    assert min(x for x, *_ in world.walls) == pytest.approx(-5 + 1.1, abs=1e-3)
+
+
+def test_where_the_robot_starts_on_a_bare_map(tmp_path: Path) -> None:
+    at_zero = load_world(write(tmp_path, room(), origin=[-2.0, -3.0, 0.0])).start
+    assert at_zero is not None
+    assert (at_zero.x, at_zero.y) == (0, 0), "where mapping began"
+    roomy = load_world(write(tmp_path, room(), origin=[100.0, 0.0, 0.0]))
+    assert roomy.start is not None
+    assert 101.1 < roomy.start.x < 108.9
+    nowhere = load_world(write(tmp_path, np.zeros((10, 10), np.uint8)))
+    assert nowhere.start is None
+    assert nowhere.walls == ()
+
+
+def test_a_world_on_a_map(tmp_path: Path) -> None:
+    write(tmp_path, room())
+    file = tmp_path / "world.yaml"
+    for reference in (
+        "map.yaml",
+        "{image: floor.pgm, resolution: 0.05, origin: [-5, -3, 0]}",
+    ):
+        file.write_text(
+            f"name: on a map\nmap: {reference}\nunits: cm\n"
+            "places: [{name: ward, pose: [200, -100, 90]}]\n"
+        )
+        world = load_world(file)
+        assert len(world.walls) == 8, "the map is in metres whatever the world's unit"
+        assert world.start is not None
+        assert (world.start.x, world.start.y) == (2.0, -1.0)
+
+
+def test_a_pose_off_the_map_is_refused(tmp_path: Path) -> None:
+    write(tmp_path, room())
+    file = tmp_path / "world.yaml"
+    file.write_text("map: map.yaml\nplaces: [{name: ward, pose: [50, 0]}]\n")
+    with pytest.raises(WorldError, match="outside the map"):
+        load_world(file)
+
+
+@pytest.mark.parametrize(
+    ("content", "part"),
+    [
+        (None, "cannot be read"),
+        (b"", "no PGM or PNG"),
+        (b"P5\n200 120\n255\nabc", "cut short"),
+        (b"P5\n99999 1\n255\n" + b"\0" * 99999, "more than 8192"),
+        (b"P5\n0 0\n255\n", "no pixels"),
+        (b"P2\n3 3\n255\n1 2", "no PGM or PNG"),
+        (b"\x89PNG\r\n\x1a\nnonsense", "no PGM or PNG"),
+        (b"hello", "no PGM or PNG"),
+    ],
+)
+def test_a_broken_image_is_refused_in_words(
+    tmp_path: Path, content: bytes | None, part: str
+) -> None:
+    file = write(tmp_path, room())
+    (tmp_path / "floor.pgm").unlink()
+    if content is not None:
+        (tmp_path / "floor.pgm").write_bytes(content)
+    with pytest.raises(WorldError, match=part) as caught:
+        load_world(file)
+    assert caught.value.problems[0].line == 1
+
+
+def test_a_wrong_field_of_a_map_is_told(tmp_path: Path) -> None:
+    with pytest.raises(WorldError, match=r"map.yaml:2: .*resolution.*should be a number"):
+        load_world(write(tmp_path, room(), resolution="fine"))
+    with pytest.raises(WorldError, match=r"neither .trinary. nor .scale"):
+        load_world(write(tmp_path, room(), mode="raw"))
