@@ -12,7 +12,7 @@ from __future__ import annotations
 import re
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -248,7 +248,7 @@ class _Check:
                 self.wrong("places", f"lists {name!r} of a kind, but not among all places")
         if not self.move or "goto" not in self.has.methods or not isinstance(known, list):
             return
-        for place in known[:2]:
+        for place in (*known[1:2], *known[:1]):  # so that it has to move for each
             if isinstance(self.try_to("goto", {"place": place}), RobotError):
                 continue
             location = self.try_to("location", {})
@@ -260,8 +260,7 @@ class _Check:
     def stops(self) -> None:
         """A stop brings every long call back at once, and is no exception a program can catch."""
         for name, arguments in self.long_calls():
-            self.check_stop(name, arguments, self.by_flag)
-            self.check_stop(name, arguments, self.by_driver)
+            self.check_stop(name, arguments)
         self.check_stopped_before()
         afterwards: tuple[tuple[str, dict[str, Any]], ...] = (
             ("stop", {}),
@@ -289,22 +288,17 @@ class _Check:
             if name in self.has.methods and (self.move or not METHODS[name].moves):
                 yield name, arguments
 
-    def by_flag(self, flag: StopFlag) -> None:
-        """As the server stops: the flag first, then the body."""
+    def stop(self, flag: StopFlag) -> None:
+        """As the server stops: the flags of the calls in flight first, then the body."""
         flag.set("The check stops this call.")
         self.driver.stop("The check stops the robot.")
 
-    def by_driver(self, flag: StopFlag) -> None:
-        self.driver.stop("The check stops the robot.")
-
-    def check_stop(
-        self, name: str, arguments: dict[str, Any], stop: Callable[[StopFlag], None]
-    ) -> None:
+    def check_stop(self, name: str, arguments: dict[str, Any]) -> None:
         attempt = _Attempt(self.driver, name, arguments)
         if attempt.returned(_UNDER_WAY):
             return  # too short a call to be stopped
         began = time.monotonic()
-        stop(attempt.flag)
+        self.stop(attempt.flag)
         if not attempt.returned(_GIVE_UP):
             self.wrong(name, f"did not come back within {_GIVE_UP:g} s after a stop")
             return
@@ -340,7 +334,7 @@ class _Check:
             shown = self.try_to("emotion", {"name": self.has.emotions[0]})
             if shown is not None:
                 self.wrong("emotion", f"did not work while the robot turned: {shown!r}")
-        self.by_flag(first.flag)
+        self.stop(first.flag)
         first.returned(_GIVE_UP)
 
     # --- events ----------------------------------------------------------------------------------

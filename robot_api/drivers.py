@@ -132,7 +132,7 @@ class ComposedDriver:
         publish: Callable[[str, dict[str, Any]], None] | None = None,
     ) -> None:
         self._parts = {part.name: part for part in parts}
-        core = self._parts[Core.name]
+        core = self._parts.get(Core.name)
         if not isinstance(core, Core):
             raise TypeError("A driver needs a Core among its parts.")
         self._core = core
@@ -189,7 +189,7 @@ class ComposedDriver:
             self._remember(Call(method, complete, error=error))
             raise
         if result is not None:
-            self._book.write(f"{method}: {result!r}")
+            self._book.write(f"{method}: {_short(result)}")
         self._remember(Call(method, complete, result))
         return result
 
@@ -285,7 +285,14 @@ class ComposedDriver:
 
 def _spelled(arguments: Mapping[str, Any]) -> str:
     """Arguments as a program would write them, without those that were left out."""
-    return ", ".join(f"{name}={value!r}" for name, value in arguments.items() if value is not None)
+    given = {name: value for name, value in arguments.items() if value is not None}
+    return ", ".join(f"{name}={_short(value)}" for name, value in given.items())
+
+
+def _short(value: Any) -> str:
+    """A value for a line of the log, where pages of HTML and other lines would be too long."""
+    text = repr(value)
+    return text if len(text) <= 200 else f"{text[:197]}..."
 
 
 # --- the emulator --------------------------------------------------------------------------------

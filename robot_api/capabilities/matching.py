@@ -143,9 +143,14 @@ def _option_words(text: str, language: Language) -> Words:
     return _canonical(_canonical(fold(text), language), language_data("en"))
 
 
+def _telling(words: Words, language: Language) -> Words:
+    """The words that say something."""
+    return tuple(word for word in words if word not in language.fillers)
+
+
 def _content(words: Words, language: Language) -> Words:
     """The words that say something; all of them if none does."""
-    return tuple(word for word in words if word not in language.fillers) or words
+    return _telling(words, language) or words
 
 
 def _said(text: str, dull: Collection[str]) -> Words:
@@ -239,6 +244,8 @@ def _mentioned(answer: Words, options: Sequence[_Option]) -> Collection[_Option]
 
 
 def _claim(option: _Option, answer: Words) -> _Claim | None:
+    if not option.content:
+        return None
     taken: set[int] = set()
     likeness = 0.0
     for word in option.content:
@@ -265,9 +272,7 @@ def _abbreviated(
     answer: Words, options: Sequence[_Option], language: Language
 ) -> Collection[_Option]:
     """The options that have all that the answer says: "intensive care" for the whole unit."""
-    said = _content(answer, language)
-    if all(word in language.fillers or word.startswith(_ORDINAL) for word in said):
-        said = tuple(word for word in said if word.startswith(_ORDINAL))
+    said = _telling(answer, language)
     scores = [(option, [_best_alike(word, option.content) for word in said]) for option in options]
     return _best(
         (option, sum(likeness) / len(likeness))
@@ -310,8 +315,10 @@ def _alike(one: str, other: str) -> float:
         (at for at, (a, b) in enumerate(zip(one, other, strict=False)) if a != b),
         min(len(one), len(other)),
     )
-    inflected = shared >= 5 and shared >= 0.65 * max(len(one), len(other))
-    return max(likeness, _ALIKE) if inflected else likeness
+    shorter, longer = sorted((len(one), len(other)))
+    inflected = shared >= 0.65 * longer  # "pharmacy", "pharmacies"
+    compound = shared == shorter  # "Röntgen", "Röntgenabteilung"
+    return max(likeness, _ALIKE) if shared >= 5 and (inflected or compound) else likeness
 
 
 def _has_digit(word: str) -> bool:
@@ -325,7 +332,7 @@ def _at_position(
     answer: Words, fitting: Sequence[_Option], options: Sequence[_Option], language: Language
 ) -> Collection[_Option]:
     """The option in the place of a bare "two", "number two" or "the second"."""
-    said = [word for word in _content(answer, language) if word not in language.position]
+    said = [word for word in _telling(answer, language) if word not in language.position]
     if len(said) != 1:
         return []
     number = said[0].removeprefix(_ORDINAL)
