@@ -16,7 +16,8 @@ from typing import Final, assert_never
 
 from grammar import plan as p
 from grammar.inference import Types, walk
-from grammar.speech import Speech, Words, fill, fitting, forms, gaps, speech
+from grammar.reading import Code, CodeStep, Function, read_program
+from grammar.speech import Speech, fill, fitting, forms, gaps, speech
 from robot_api.methods import METHODS
 
 ROLES: Final = {
@@ -46,6 +47,35 @@ def explain_steps(plan: p.Plan, language: str = "en") -> list[tuple[int, str]]:
 
 
 @dataclass(frozen=True)
+class LineTold:
+    """A line of a program in words."""
+
+    line: int
+    depth: int
+    text: str
+
+
+def explain_program(source: str, language: str = "en") -> list[LineTold]:
+    """A program in words, line by line, also one that was written by hand. Raises `SyntaxError`
+    if it is none."""
+    reading = read_program(source, language)
+    words = speech(language)
+    begun: set[int] = set()
+
+    def lines(told: Iterable[Told], depth: int, line: int) -> Iterator[LineTold]:
+        for each in told:
+            first = each.steps[0].step if each.steps else None
+            # "otherwise" has no line that the plan knows: it is put to the first step under it.
+            spot = first if each.continues and id(each.step) in begun else each.step
+            line = reading.lines.get(id(spot), line)
+            begun.add(id(each.step))
+            yield LineTold(line, depth, f"{each.text}:" if each.is_clause else each.text)
+            yield from lines(each.steps, depth + 1, line)
+
+    return list(lines(tell(reading.plan, words), 0, 1))
+
+
+@dataclass(frozen=True)
 class Told:
     """A step in words: something to do, or a clause ("three times") over other steps."""
 
@@ -54,6 +84,8 @@ class Told:
     is_clause: bool = False
     continues: bool = False
     """Whether it belongs to the one before it ("otherwise")."""
+    step: p.Step | None = field(default=None, compare=False)
+    """The step that it tells of."""
 
 
 def tell(plan: p.Plan, words: Speech) -> tuple[Told, ...]:
@@ -220,6 +252,9 @@ class _Teller:
             case _:
                 yield self.named(readable)
 
+    def quoted_code(self, source: str) -> str:
+        return fill(self.words.values["code"], {"code": " ".join(source.split())})
+
     def named(self, name: str) -> str:
         return fill(self.words.values["named"], {"name": name})
 
@@ -227,7 +262,8 @@ class _Teller:
 
     def told(self, steps: Iterable[p.Step]) -> Iterator[Told]:
         for step in steps:
-            yield from self.step(step)
+            for told in self.step(step):
+                yield told if told.step else replace(told, step=step)
 
     def step(self, step: p.Step) -> Iterator[Told]:
         say = self.words.steps
@@ -245,6 +281,8 @@ class _Teller:
                 yield Told(fill(say["collect"], values))
             case p.Increase():
                 yield Told(fill(say["increase"], {"name": self.recall(step.name)}))
+            case CodeStep(source=source):
+                yield Told(fill(say["code"], {"code": self.quoted_code(source)}))
             case p.End():
                 yield Told(say["end"])
             case p.If():
@@ -258,6 +296,8 @@ class _Teller:
             case p.RepeatUntil():
                 condition = self.condition(step.condition)
                 yield self.loop("repeat until", step.steps, condition=condition)
+            case Function(name=name):
+                yield self.clause("function", step.steps, False, name=self.quoted_code(name))
             case p.Forever():
                 yield self.loop("forever", step.steps)
             case p.Try():
@@ -284,7 +324,7 @@ class _Teller:
                     clause = self.clause("if", step.then, condition=self.condition(step.condition))
                     values = {"outer": self.words.clauses["otherwise"], "inner": clause.text}
                     text = fill(self.words.joining["clauses"], values)
-                    yield replace(clause, text=text, continues=True)
+                    yield replace(clause, text=text, continues=True, step=step)
                 case others:
                     yield self.clause("otherwise", others, continues=True)
                     break
@@ -393,6 +433,8 @@ class _Teller:
                 return str(int(number)) if whole else str(number)
             case p.Truth():
                 return say["true" if value.value else "false"]
+            case Code(name=source):
+                return self.quoted_code(source)
             case p.Recall():
                 return self.recall(value.name)
             case p.Items():
@@ -508,4 +550,4 @@ _OPPOSITES: Final = {
     "among": "not among",
 }
 
-__all__ = ["ROLES", "Told", "Words", "explain", "explain_steps", "listed", "sentences", "tell"]
+__all__ = ["LineTold", "explain", "explain_program", "explain_steps"]

@@ -8,8 +8,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from grammar import plan as p
-from grammar.explain import explain, explain_steps
+from grammar.explain import explain, explain_program, explain_steps
 from grammar.inference import walk
+from grammar.program import write_program
+from grammar.reading import read_program
 from grammar.speech import gaps, languages, speech
 from robot_api.methods import METHODS
 from tests.grammar.random_plans import plans
@@ -225,3 +227,73 @@ def test_everything_that_is_done_is_said(plan: p.Plan) -> None:
                         # A sentence may begin with it, which makes its first letter large.
                         assert value.value[1:] in in_a_list
                         assert value.value[1:] in in_sentences
+
+
+# --- edited programs -----------------------------------------------------------------------------
+
+
+def test_an_edited_program_is_explained_line_by_line() -> None:
+    source = (
+        "desk = robot.location()\n"
+        'robot.say("Coffee?")\n'
+        "for i in range(3):\n"
+        "    robot.goto(\n"
+        '        "pharmacy"\n'
+        "    )\n"
+        "    if not robot.sees('person'):\n"
+        "        break\n"
+        "x = [robot.battery()] * 2\n"
+        "def greet(name):\n"
+        '    robot.say(f"Hello {name}!")\n'
+        "greet(desk)\n"
+    )
+    assert [(told.line, told.depth, told.text) for told in explain_program(source)] == [
+        (1, 0, "note where I am"),
+        (2, 0, "say “Coffee?”"),
+        (3, 0, "three times:"),
+        (4, 1, "go to the pharmacy"),
+        (7, 1, "if I do not see a person:"),
+        (8, 2, "leave this loop"),
+        (9, 0, "remember `[robot.battery()] * 2` as “x”"),
+        (10, 0, "whenever `greet` is called:"),
+        (11, 1, "say “Hello [“name”]!”"),
+        (12, 0, "run `greet(desk)`"),
+    ]
+
+
+def test_who_gives_a_word_of_pythons_another_meaning_is_quoted() -> None:
+    [told] = [
+        each
+        for each in explain_program("def str(x):\n    robot.dock()\nrobot.say(str(1))\n")
+        if each.line == 3
+    ]
+    assert told.text == "say `str(1)`"
+    helper = "def percent(part, whole):\n    robot.dock()\nrobot.say(f'{percent(1, 2)}')\n"
+    assert "go back to the charging station" in [each.text for each in explain_program(helper)]
+
+
+def test_a_program_that_is_none() -> None:
+    with pytest.raises(SyntaxError):
+        explain_program("robot.say(")
+
+
+@MODEST
+@given(plans)
+def test_what_was_written_is_read_back(plan: p.Plan) -> None:
+    """Every call of the plan is found again, and told of in the explanation by lines."""
+    source = write_program(plan)
+    calls = [step for step in walk(read_program(source).plan.steps) if isinstance(step, p.Call)]
+    told = "\n".join(each.text for each in explain_program(source))
+    for step in walk(plan.steps):
+        if isinstance(step, p.Call):
+            assert any(call.method == step.method for call in calls)
+            assert spoken("en", step.method, told)
+
+
+@MODEST
+@given(plans)
+def test_no_line_is_told_of_twice_or_out_of_order(plan: p.Plan) -> None:
+    source = write_program(plan)
+    lines = [each.line for each in explain_program(source)]
+    assert lines == sorted(lines)
+    assert all(1 <= line <= len(source.splitlines()) + 1 for line in lines)
