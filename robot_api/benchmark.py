@@ -120,6 +120,7 @@ class _Watched:
         self.waiting.release()
         stop.wait(60)
         stop.check()
+        return None
 
     def stop(self, because: str) -> None:
         self.stopped_at = time.monotonic()
