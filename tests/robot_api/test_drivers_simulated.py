@@ -44,6 +44,26 @@ class Diary:
         return [data for what, data in self.events if what == kind]
 
 
+class Errand:
+    """A call in a thread of its own."""
+
+    def __init__(self, driver: SimulatedDriver, method: str, **arguments: Any) -> None:
+        self._error: BaseException | None = None
+        self._thread = threading.Thread(target=self._run, args=(driver, method, arguments))
+        self._thread.start()
+
+    def _run(self, driver: SimulatedDriver, method: str, arguments: dict[str, Any]) -> None:
+        try:
+            driver.call(method, arguments, StopFlag())
+        except BaseException as error:  # noqa: BLE001 - the test looks at it
+            self._error = error
+
+    def end(self) -> BaseException | None:
+        self._thread.join(10)
+        assert not self._thread.is_alive()
+        return self._error
+
+
 @pytest.fixture
 def robot() -> Iterator[SimulatedDriver]:
     driver = simulated(Simulation(load_world("ward"), seed=1))
@@ -239,32 +259,14 @@ def test_a_dry_run_changes_nothing(robot: SimulatedDriver) -> None:
 
 
 def test_dry_runs_while_the_robot_drives(live_robot: SimulatedDriver) -> None:
-    """They share a chart of the floor, which once crashed when two threads looked at it."""
-    stop = StopFlag()
-
-    def patrol() -> None:
-        with pytest.raises(Stopped):
-            while True:
-                for x in (5, 6, 7):
-                    live_robot.simulation.copy().run(
-                        live_robot.simulation.wait(0), threading.Event()
-                    )
-                    rehearsal = live_robot.copy()
-                    rehearsal.call("goto", {"x": x, "y": 1.5}, stop)
-                    rehearsal.close()
-
-    patrols = [threading.Thread(target=patrol) for _ in range(2)]
-    for thread in patrols:
-        thread.start()
+    drive = Errand(live_robot, "goto", place="ward b")
     for place in ("ward a", "ward b") * 3:
         rehearsal = live_robot.copy()
         do(rehearsal, "goto", place=place)
         assert do(rehearsal, "location").place == place
         rehearsal.close()
-    stop.set()
-    for thread in patrols:
-        thread.join(10)
-        assert not thread.is_alive()
+    live_robot.stop("It is only an exercise.")
+    assert isinstance(drive.end(), Stopped)
 
 
 def test_an_emergency_stop_on_the_way(live_robot: SimulatedDriver) -> None:
@@ -273,24 +275,14 @@ def test_an_emergency_stop_on_the_way(live_robot: SimulatedDriver) -> None:
     live_robot.subscribe(
         lambda kind, data: driving.set() if kind == "pose" and data["speed"] > 0.2 else None
     )
-    ends: list[BaseException] = []
-
-    def drive() -> None:
-        try:
-            do(live_robot, "goto", place="ward b")
-        except BaseException as error:  # noqa: BLE001 - looked at below
-            ends.append(error)
-
-    thread = threading.Thread(target=drive)
-    thread.start()
+    drive = Errand(live_robot, "goto", place="ward b")
     assert driving.wait(10)
     with pytest.raises(NotPossible, match="busy with 'goto'"):
         do(live_robot, "move", metres=1)
     do(live_robot, "emotion", name="happy")
     live_robot.stop("Somebody pressed the red button.")
     assert live_robot.simulation.robot.speed == 0
-    thread.join(10)
-    (end,) = ends
+    end = drive.end()
     assert isinstance(end, Stopped) and not isinstance(end, Exception)
     assert str(end) == "Somebody pressed the red button."
     assert diary.of("stopped") == [{"because": "Somebody pressed the red button."}]
