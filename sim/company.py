@@ -56,8 +56,7 @@ def guide(
                 waiting.check()
                 yield
         finally:
-            human.stand_still()
-            human.attend(hospital)
+            human.stay(hospital)
             hospital.trail = []
 
 
@@ -107,8 +106,7 @@ def follow(hospital: Hospital, person: str, to: str | None) -> Behaviour[None]:
         try:
             yield from _go_after(hospital, human)
         finally:
-            if human.errand is Errand.LEAD:
-                human.errand = Errand.WALK
+            human.stay(hospital)
         if target is not None and not _is_at(hospital, human, target):
             raise Blocked(
                 f"{human.name} stopped on the way to {target.name}. "

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from sim.errors import Blocked, NotPossible
 from sim.hospital import PERSON_RADIUS, Hospital
 from sim.navigation import Disc, Route, Spot
-from sim.people import Human
+from sim.people import Errand, Human
 from sim.physics import STEP
 from sim.robot import SLOW_DOWN, TOP_SPEED, TOP_TURN, TURN_CHANGE, bearing, wrap
 from sim.runner import Behaviour
@@ -27,9 +27,11 @@ _KEEP = 0.08
 _KEEP_AROUND = 0.15
 _DOOR_IN_VIEW = 2.0
 _DOOR_REMEMBERED = 120.0
+_HELD, _HELD_BY_WALKER = 1.0, 3.0
+"""Seconds that it waits for somebody who stands, or who walks, before it looks for a way around."""
 _PATIENCE = 12.0
 """Seconds that the robot waits where there is no way around."""
-_MOST_DETOURS = 40
+_MOST_DETOURS = 20
 
 
 # --- whole behaviours ----------------------------------------------------------------------------
@@ -168,7 +170,7 @@ def travel(
     around: Human | None = None
     while True:
         route = _plan(hospital, goal, around)
-        trouble = yield from _track(hospital, route, patience, limit)
+        trouble = yield from _track(hospital, route, around, patience, limit)
         if trouble is None:
             break
         patience.detour(goal)
@@ -275,9 +277,11 @@ class _Patience:
 
     def renew(self) -> None:
         self._spot, self._since = self._hospital.robot.position, self._hospital.time
+        self._detours = 0
 
     def detour(self, goal: Spot) -> None:
-        self._detours += 1
+        """Count one; raises `Blocked` where many lead nowhere."""
+        self._detours = self._detours + 1 if self.waited else 1
         if self._detours > _MOST_DETOURS:
             raise Blocked(
                 f"The robot does not get through to {self._hospital.name_of_spot(*goal)}: "
@@ -299,7 +303,7 @@ def _wait_for_person(
             next_try += 1.0
             if _around(hospital, goal, human) is not None:
                 return
-            if patience.waited > 3.0 and not human.walking:
+            if patience.waited > 3.0 and human.errand in (Errand.NONE, Errand.COME_ALONG):
                 human.make_way(hospital)
         if patience.waited > _PATIENCE:
             place = hospital.name_of_spot(*human.position)
@@ -348,16 +352,19 @@ _Trouble = Human | _ClosedDoor | _Stuck
 def _track(
     hospital: Hospital,
     route: Route,
+    around: Human | None,
     patience: _Patience,
     limit: Callable[[], float] | None,
 ) -> Behaviour[_Trouble | None]:
-    """Drive along a route; returns None at its end, or what is in the way."""
+    """Drive along a route, which was planned around somebody; returns None at its end, or what is
+    in the way."""
     robot, points = hospital.robot, route.points
     rest = _lengths_from_end(points)
     leg = 1
     allowed = TOP_SPEED
     pushed = 0  # steps without getting anywhere though the wheels turn
     looks = 0
+    held_since = hospital.time
     while leg < len(points):
         check_battery(hospital)
         here = robot.position
@@ -373,16 +380,13 @@ def _track(
             if door is not None:
                 return door
             allowed, human = _people_ahead(hospital, points, leg)
-            if human is not None:
-                robot.waits_for = human.name
-                patient = patience.waited if _still(human) else patience.waited - 2.0
-                if _still(human) and looks == 0:
-                    # The way was planned around those who stand here; there is no other.
-                    patient = max(patient, 1.0)
-                if patient >= 1.0 or (_still(human) and allowed > 0.3 and looks > 0):
-                    return human
-            else:
-                robot.waits_for = None
+            robot.waits_for = human.name if human is not None else None
+            if human is None or robot.speed > 0.05:
+                held_since = hospital.time
+            elif hospital.time - held_since > (_HELD if _still(human) else _HELD_BY_WALKER):
+                return human
+            if human is not None and human is not around and _still(human) and allowed > 0.3:
+                return human  # seen in time to go around without a stop
         looks += 1
         ahead = _point_ahead(points, leg, here, 0.3 + 0.2 * robot.speed)
         off = wrap(bearing(here, ahead) - robot.theta)

@@ -16,7 +16,7 @@ from typing import Any
 
 from sim.errors import NotPossible, UnknownPlace
 from sim.navigation import Chart, Disc, Spot
-from sim.people import Human
+from sim.people import Home, Human
 from sim.physics import STEP, Physics
 from sim.placing import Item, free_spot, people_at_start, things_at_start
 from sim.record import Happening, Record, Sample
@@ -62,7 +62,8 @@ class Hospital:
         self.items: list[Item] = things_at_start(world, self.chart)
         self.people: list[Human] = []
         for person, placing in people_at_start(world, self.chart):
-            self.add_person(person, placing.x, placing.y, placing.theta, placing.posture)
+            human = self.add_person(person, placing.x, placing.y, placing.theta, placing.posture)
+            human.home = Home(placing.x, placing.y, placing.theta, placing.posture)
         self.known_closed: dict[str, float] = {}
         """Doors that the robot has found closed, and when."""
         self.trail: list[Spot] = []

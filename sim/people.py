@@ -24,10 +24,14 @@ _THINK_EVERY = 4  # steps
 _TURN = 12.0
 """Degrees between two thoughts: 180 a second."""
 _REACHED = 0.15
+_AT_HOME = 0.4
+_VISIT = 90.0
+"""Seconds that somebody stays where they were led before they go home."""
 _BEHIND = 1.1
 """How near to the robot somebody comes along: metres between the middles."""
 _ROOM = 0.25
 """Metres that people leave between themselves and the robot."""
+_SLIP = 0.06
 _PATIENCE = 1.5
 """Seconds that somebody who walks waits for the robot to get out of the way."""
 
@@ -42,6 +46,16 @@ class Errand(enum.Enum):
     """Walks a route and waits for the robot, which follows them."""
 
 
+@dataclass(frozen=True)
+class Home:
+    """Where somebody is when nobody wants anything of them, and how."""
+
+    x: float
+    y: float
+    theta: float
+    posture: str
+
+
 @dataclass
 class Human:
     """Somebody at this moment."""
@@ -51,6 +65,8 @@ class Human:
     body: Body
     theta: float
     posture: str
+    home: Home | None = None
+    """Where they go back to; None for somebody who came in from outside."""
     errand: Errand = Errand.NONE
     route: tuple[Spot, ...] = ()
     """Where they still have to go, the next spot first."""
@@ -156,11 +172,16 @@ class Human:
             self._go_on(hospital)
         elif hospital.time < self.looks_until:
             self._look_at(hospital.robot.position)
-        elif self.person.walks and hospital.time >= self.busy_until:
+        elif hospital.time >= self.busy_until:
             self._set_out(hospital)
 
     def _set_out(self, hospital: Hospital) -> None:
-        """On to the next of the places they walk between."""
+        """On to the next of the places they walk between, or back home."""
+        if not self.person.walks:
+            if self.home is not None and self.distance((self.home.x, self.home.y)) > _AT_HOME:
+                self.busy_until = hospital.time + 10.0
+                self.walk_to(hospital, (self.home.x, self.home.y))
+            return
         self.busy_until = hospital.time + hospital.random.uniform(5.0, 20.0)
         self.stop = (self.stop + 1) % len(self.person.walks)
         name = self.person.walks[self.stop]
@@ -184,16 +205,35 @@ class Human:
         near_robot = self.comes and self.distance(hospital.robot.position) < 1.3
         if not self.route or near_robot:
             self.stand_still()
-            self.busy_until = hospital.time + hospital.random.uniform(8.0, 25.0)
-            self.looks_until = hospital.time + 2.0
+            self._settle(hospital)
             return
         if self._robot_in_way(hospital, self.route[0]):
             self._wait_for_robot(hospital)
             return
         self.waits_since = None
-        self._walk_towards(self.route[0], self.pace)
+        self._walk_towards(hospital, self.route[0], self.pace)
+
+    def _settle(self, hospital: Hospital) -> None:
+        """They have arrived."""
+        home = self.home
+        if home is not None and self.distance((home.x, home.y)) < _AT_HOME:
+            self.theta, self.posture = home.theta, home.posture
+        else:
+            self.looks_until = hospital.time + 2.0
+        self.busy_until = hospital.time + hospital.random.uniform(8.0, 25.0)
+
+    def stay(self, hospital: Hospital) -> None:
+        """Stand still where somebody has brought them, for a while."""
+        self.stand_still()
+        self.attend(hospital)
+        self.busy_until = hospital.time + _VISIT
 
     def _go_after_robot(self, hospital: Hospital) -> None:
+        if self.route:  # out of the robot's way first
+            self._walk_towards(hospital, self.route[0], self.pace)
+            if self.distance(self.route[0]) < _REACHED:
+                self.route = self.route[1:]
+            return
         gap = self.distance(hospital.robot.position)
         trail, here = hospital.trail, self.position
         # The last crumb within reach is the one to go on from.
@@ -203,21 +243,31 @@ class Human:
             self._pause(hospital)
             return
         slower = min(1.0, (gap - _BEHIND) / 0.5 + 0.2)
-        self._walk_towards(trail[self.crumb], self.pace * slower)
+        self._walk_towards(hospital, trail[self.crumb], self.pace * slower)
 
     def _pause(self, hospital: Hospital) -> None:
         self.body.drive(0.0, 0.0)
         self._look_at(hospital.robot.position)
 
-    def _walk_towards(self, spot: Spot, speed: float) -> None:
+    def _walk_towards(self, hospital: Hospital, spot: Spot, speed: float) -> None:
         x, y = self.position
         away = math.dist((x, y), spot)
         if away < 1e-6:
             self.body.drive(0.0, 0.0)
             return
         speed = min(speed, away * 15)
-        self.body.drive(speed * (spot[0] - x) / away, speed * (spot[1] - y) / away)
+        vx, vy = speed * (spot[0] - x) / away, speed * (spot[1] - y) / away
         self.theta = bearing((x, y), spot)
+        # Close to the robot they slip past without bumping into it.
+        robot = hospital.robot
+        rx, ry = robot.position
+        apart = max(math.dist((x, y), (rx, ry)), 1e-6)
+        ux, uy = (rx - x) / apart, (ry - y) / apart
+        closing = vx * ux + vy * uy
+        allowed = 2 * (apart - robot.body.radius - self.body.radius - _SLIP)
+        if closing > allowed and apart < 1.0:
+            vx, vy = vx - (closing - allowed) * ux, vy - (closing - allowed) * uy
+        self.body.drive(vx, vy)
 
     def _look_at(self, spot: Spot) -> None:
         if self.posture == "lying":
@@ -261,6 +311,9 @@ class Human:
             return False
         robot = hospital.robot.position
         x, y = self.position
+        first = hospital.chart.nearest_free(x, y)
+        if first is None:
+            return False
         away = math.radians(bearing(robot, (x, y)))
         for reach in (1.2, 1.8, 2.6):
             for side in (90, -90, 60, -60, 30, -30, 0):
@@ -268,12 +321,13 @@ class Human:
                 spot = (x + reach * math.cos(angle), y + reach * math.sin(angle))
                 if (
                     math.dist(spot, robot) > 1.0
-                    and hospital.chart.clear(self.position, spot)
-                    and not _in_closed_door(hospital, self.position, spot)
+                    and hospital.chart.clear(first, spot)
+                    and not _in_closed_door(hospital, first, spot)
                 ):
-                    later = self.route[-1:] if self.errand is Errand.WALK else ()
-                    self.errand, self.route = Errand.WALK, (spot, *later)
-                    self.walking = True
+                    later = () if self.errand is Errand.COME_ALONG else self.route[-1:]
+                    self.route = (first, spot, *later)
+                    if self.errand is Errand.NONE:
+                        self.errand, self.walking = Errand.WALK, True
                     self.waits_since = None
                     return True
         return False

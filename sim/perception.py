@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from sim.errors import NotFound
 from sim.people import Human
-from sim.placing import Item
+from sim.placing import ROBOT, Item
 from sim.robot import bearing, wrap
 from sim.words import words
 from sim.world import Aliases, Furniture, contains, key
@@ -135,7 +135,7 @@ def fitting(hospital: Hospital, thing: str) -> list[Sight]:
     """All that a phrase fits, wherever it is; a superlative is not applied."""
     phrase = parse(thing)
     sights: list[Sight] = [*hospital.people]
-    sights += [item for item in hospital.items if item.present and item.holder != "the robot"]
+    sights += [item for item in hospital.items if item.present and item.holder != ROBOT]
     found = [sight for sight in sights if fits(hospital, sight, phrase)]
     if found:
         return found

@@ -110,6 +110,11 @@ class Simulation:
         """What has happened so far."""
         return self._hospital.record
 
+    def new_record(self) -> Record:
+        """End the record and begin another; returns the one that ended."""
+        with self._runner.turn:
+            return self._hospital.new_record()
+
     def subscribe(self, listener: Listener) -> Callable[[], None]:
         """Call `listener(kind, data)` for every event (see `robot_api.driver.EVENTS`), from
         whichever thread lets time pass; returns what ends it."""

@@ -49,6 +49,18 @@ def test_somebody_lying_gets_up_to_come_along(small_ward, living) -> None:
     assert small_ward.place_at(*person(ward.simulation, "Henry").position).name == "corridor"
 
 
+def test_whoever_was_led_away_goes_home_after_a_while(small_ward, living) -> None:
+    ward = living(small_ward)
+    henry = person(ward.simulation, "Henry")
+    bed = henry.position
+    ward.goes_to("ward b")
+    ward.does(ward.simulation.guide("Henry", *ward.simulation.locate("ward a")))
+    assert henry.posture == "standing" and math.dist(henry.position, bed) > 3
+    ward.goes_to("charger")
+    ward.does(ward.simulation.wait(150))
+    assert math.dist(henry.position, bed) < 0.5 and henry.posture == "lying"
+
+
 def test_somebody_who_is_not_here_cannot_be_led(small_ward, living) -> None:
     ward = living(small_ward)
     with pytest.raises(NotFound, match="Henry"):
