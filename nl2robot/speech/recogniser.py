@@ -1,9 +1,12 @@
 """What was said: a recording and what may be said -> words, and whether to believe them.
 
-A recogniser that may hear anything gets one command in three right word for word; one that knows
-the phrases of the grammar and the world gets most of them right. But then everything it hears, it
-hears as such phrases. So the same sound is also decoded freely, side by side, and compared: where
-free words fit the sound much better and are other words, the result is marked `doubtful`.
+A recogniser that may hear anything mishears what is rare elsewhere and common here; one that knows
+the phrases of the grammar and the world hears those, but it hears nothing else: whatever is said
+comes back as such phrases. So the same sound is decoded both ways, side by side. Both give a score
+for how well their words fit the sound, and so
+
+- where free words fit much better and are other words, the result is marked `doubtful`;
+- all readings of both are kept, the best fitting first, for the grammar to choose from (`choose`).
 
 The figures in docs/voice.md were measured with the constants in this file.
 """
@@ -12,7 +15,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -22,6 +25,7 @@ from typing import Any
 import numpy as np
 import vosk
 
+from nl2robot.errors import UserError
 from nl2robot.models import ModelError, need
 from nl2robot.speech.audio import RATE, Audio, Samples
 from nl2robot.speech.vocabulary import spell_numbers
@@ -37,9 +41,14 @@ SILENCE = 0.001
 BLOCK = RATE // 4  # samples handed over at a time
 PUNCTUATION = '-–.,;:!?…"“”„«»()'
 
-# The second opinion. Of right commands 1 in 100 is doubted, of chatter 1 in 25 is not.
-ALIKE = 0.9  # free and limited texts this similar are the same words
-WORST_FIT = -0.05
+# The second opinion: when a text is believed that free decoding does not agree with.
+ALIKE = 0.9  # texts this similar are the same words
+WORST_FIT = -0.05  # how much of its score a text may be behind free decoding
+READINGS = 10  # of each decoder
+
+
+class SpeechError(UserError):
+    """Nothing can be heard as things are."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +62,17 @@ class Word:
 
 
 @dataclass(frozen=True)
+class Reading:
+    """One way to read a sound."""
+
+    text: str
+    # How well it fits the sound: the share of its score by which it is ahead of the best free
+    # reading (0). A worse fit than about -0.05 is hardly ever what was said.
+    fit: float
+    doubtful: bool
+
+
+@dataclass(frozen=True)
 class Heard:
     """What a recording says."""
 
@@ -63,18 +83,44 @@ class Heard:
     # sounds like when anything may be said. Then ask again rather than act.
     doubtful: bool
     free_text: str | None
+    readings: tuple[Reading, ...]  # of a limited vocabulary and freely, the best fitting first
     seconds_of_audio: float
     seconds_taken: float
 
 
-@dataclass(frozen=True)
-class _Decoded:
-    words: tuple[Word, ...]
-    score: float = 0.0  # log likelihood of sound and words together; only differences mean anything
+def choose(heard: Heard, understood: Callable[[str], bool]) -> Heard:
+    """What was heard, with the text that makes sense: the best of its readings, if any, that is
+    not doubtful and is `understood`. Of a reading chosen so, the times of its words are not known.
+    """
+    if not heard.doubtful and understood(heard.text):
+        return heard
+    for reading in heard.readings:
+        if not reading.doubtful and reading.text != heard.text and understood(reading.text):
+            return replace(
+                heard,
+                text=reading.text,
+                confidence=max(0.0, min(1.0, 1 + reading.fit)),
+                words=(),
+                doubtful=False,
+            )
+    return heard
 
-    @property
-    def text(self) -> str:
-        return " ".join(word.text for word in self.words)
+
+@dataclass(frozen=True)
+class _Grammar:
+    """What may be said, for vosk."""
+
+    json: str
+    as_written: dict[str, str]  # words of the model that people write otherwise
+
+    def written(self, text: str) -> str:
+        return " ".join(self.as_written.get(word, word) for word in text.split())
+
+
+@dataclass(frozen=True)
+class _Scored:
+    text: str
+    score: float  # log likelihood of sound and words together; only differences mean anything
 
 
 class Recogniser:
@@ -126,6 +172,7 @@ class Recogniser:
         the recogniser learns from them which word follows which. Words the model does not know are
         left out (`unknown_words` tells which). None: anything may be said, and nothing is doubtful.
         `worst_fit` is by how much of its score free decoding may fit better before it is believed.
+        Raises SpeechError if the model knows none of the words.
         """
         started = time.perf_counter()
         heard = self._recognise(audio, phrases, worst_fit)
@@ -136,22 +183,22 @@ class Recogniser:
             return _heard((), audio)
         sound = _prepared(audio.samples)
         if phrases is None:
-            return _heard(self._decode(sound, None).words, audio)
-        grammar, as_written = self._grammar(phrases)
+            return _heard(self._words(sound, None), audio)
+        grammar = self._grammar(phrases)
         # The decoders run side by side: libvosk does not hold the interpreter's lock.
         with ThreadPoolExecutor(1, "second opinion") as pool:
-            freely = pool.submit(self._score, sound, None)
-            limited = self._decode(sound, grammar)
-            scored = self._score(sound, grammar)
+            freely = pool.submit(self._scored, sound, None)
+            words = self._words(sound, grammar)
+            limited = self._scored(sound, grammar)
             free = freely.result()
         return replace(
-            _heard(tuple(_written(word, as_written) for word in limited.words), audio),
-            doubtful=not _alike(limited.text, free.text) and _fit(scored, free) < worst_fit,
-            free_text=free.text,
+            _heard(words, audio),
+            doubtful=_reading(limited[0], free[0], worst_fit).doubtful,
+            free_text=free[0].text,
+            readings=_readings(limited, free, worst_fit),
         )
 
-    def _grammar(self, phrases: Sequence[str]) -> tuple[str, dict[str, str]]:
-        """vosk's JSON for these phrases; and model words that people write otherwise."""
+    def _grammar(self, phrases: Sequence[str]) -> _Grammar:
         spoken: dict[str, None] = {}  # an ordered set
         as_written: dict[str, str] = {}
         spellings: dict[str, tuple[str, ...] | None] = {}
@@ -170,41 +217,44 @@ class Recogniser:
                     as_written.setdefault(spelling[0], word.lower())
             spoken[" ".join(run)] = None
         spoken.pop("", None)
-        return json.dumps(list(spoken), ensure_ascii=False), as_written
-
-    def _decode(self, sound: bytes, grammar: str | None) -> _Decoded:
-        """The words with their times and confidences."""
-        results = self._run(sound, grammar, alternatives=0)
-        return _Decoded(
-            tuple(
-                Word(
-                    word["word"],
-                    max(0.0, word["start"] - PADDING),
-                    max(0.0, word["end"] - PADDING),
-                    word["conf"],
-                )
-                for result in results
-                for word in result.get("result", ())
+        if not spoken:  # libvosk would crash
+            raise SpeechError(
+                "The speech model knows none of the words that may be said here. "
+                "Use other words, or another language."
             )
+        return _Grammar(json.dumps(list(spoken), ensure_ascii=False), as_written)
+
+    def _words(self, sound: bytes, grammar: _Grammar | None) -> tuple[Word, ...]:
+        """The words with their times and confidences."""
+        return tuple(
+            Word(
+                grammar.written(word["word"]) if grammar else word["word"],
+                max(0.0, word["start"] - PADDING),
+                max(0.0, word["end"] - PADDING),
+                word["conf"],
+            )
+            for result in self._run(sound, grammar, alternatives=0)
+            for word in result.get("result", ())
         )
 
-    def _score(self, sound: bytes, grammar: str | None) -> _Decoded:
-        """The words with their score; vosk gives either scores or confidences."""
-        best = [
-            result["alternatives"][0]
-            for result in self._run(sound, grammar, alternatives=1)
-            if result.get("alternatives")
-        ]
-        words = tuple(
-            Word(word["word"], word["start"], word["end"], 0.0)
-            for alternative in best
-            for word in alternative.get("result", ())
-        )
-        return _Decoded(words, sum(alternative["confidence"] for alternative in best))
+    def _scored(self, sound: bytes, grammar: _Grammar | None) -> list[_Scored]:
+        """The likeliest texts with their scores, at least one; vosk gives scores or confidences."""
+        texts = [_Scored("", 0.0)]
+        for result in self._run(sound, grammar, alternatives=READINGS):
+            # A pause divides the speech: every text so far goes on in each of these ways.
+            texts = [
+                _Scored(f"{text.text} {way['text']}".strip(), text.score + way["confidence"])
+                for text in texts
+                for way in result.get("alternatives") or [{"text": "", "confidence": 0.0}]
+            ]
+            texts = sorted(texts, key=lambda text: -text.score)[:READINGS]
+        return [_Scored(grammar.written(t.text), t.score) for t in texts] if grammar else texts
 
-    def _run(self, sound: bytes, grammar: str | None, alternatives: int) -> list[dict[str, Any]]:
-        arguments = (self._model, RATE) if grammar is None else (self._model, RATE, grammar)
-        kaldi = vosk.KaldiRecognizer(*arguments)
+    def _run(
+        self, sound: bytes, grammar: _Grammar | None, alternatives: int
+    ) -> list[dict[str, Any]]:
+        limits = () if grammar is None else (grammar.json,)
+        kaldi = vosk.KaldiRecognizer(self._model, RATE, *limits)
         kaldi.SetWords(True)
         kaldi.SetMaxAlternatives(alternatives)
         results = []
@@ -242,27 +292,32 @@ def _is_silent(samples: Samples) -> bool:
 
 def _heard(words: tuple[Word, ...], audio: Audio) -> Heard:
     return Heard(
-        text=_Decoded(words).text,
+        text=" ".join(word.text for word in words),
         confidence=sum(word.confidence for word in words) / len(words) if words else 0.0,
         words=words,
         doubtful=False,
         free_text=None,
+        readings=(),
         seconds_of_audio=audio.seconds,
         seconds_taken=0.0,
     )
 
 
-def _written(word: Word, as_written: dict[str, str]) -> Word:
-    return replace(word, text=as_written.get(word.text, word.text))
+def _readings(
+    limited: Sequence[_Scored], free: Sequence[_Scored], worst_fit: float
+) -> tuple[Reading, ...]:
+    best: dict[str, Reading] = {}
+    for text in (*limited, *free):
+        reading = _reading(text, free[0], worst_fit)
+        if text.text and (text.text not in best or reading.fit > best[text.text].fit):
+            best[text.text] = reading
+    return tuple(sorted(best.values(), key=lambda reading: -reading.fit))
 
 
-def _alike(limited: str, free: str) -> bool:
+def _reading(text: _Scored, free: _Scored, worst_fit: float) -> Reading:
     from rapidfuzz import fuzz
 
+    fit = (text.score - free.score) / max(1.0, abs(free.score))
     # Without blanks, for "good bye" and "goodbye" are the same.
-    return fuzz.ratio(limited.replace(" ", ""), free.replace(" ", "")) / 100 >= ALIKE
-
-
-def _fit(limited: _Decoded, free: _Decoded) -> float:
-    """How much better the limited words fit the sound than free ones, as a share of the score."""
-    return (limited.score - free.score) / max(1.0, abs(free.score))
+    alike = fuzz.ratio(text.text.replace(" ", ""), free.text.replace(" ", "")) / 100 >= ALIKE
+    return Reading(text.text, fit, doubtful=fit < worst_fit and not alike)
