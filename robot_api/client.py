@@ -74,7 +74,7 @@ class Robot(Calls):
         timeout: float = 10.0,
     ) -> None:
         self.address = address
-        self._url = _url(address)
+        self._url = websocket_url(address)
         self._token = token
         self._timeout = timeout
         self._ids = itertools.count(1)
@@ -383,7 +383,8 @@ def _open(url: str, token: str | None, timeout: float, address: str) -> websocke
     return opened
 
 
-def _url(address: str) -> str:
+def websocket_url(address: str) -> str:
+    """The WebSocket address that "host:port", "host" or an address with its scheme stands for."""
     if address.startswith(("ws://", "wss://")):
         return address
     host, _, port = address.rpartition(":")

