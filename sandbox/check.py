@@ -16,9 +16,9 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 from robot_api.methods import METHODS
-from sandbox.interpreter import diagnose
+from sandbox.interpreter import Unavailable, diagnose
 from sandbox.limits import MAX_PROGRAM
-from sandbox.sentences import near, problem, type_problem
+from sandbox.sentences import UNAVAILABLE, near, problem, type_problem
 
 MODULES: Final = ("re", "math", "random")
 """What a program may import."""
@@ -113,7 +113,12 @@ def _depth(tree: ast.AST) -> tuple[int, int]:
 
 
 def _type_findings(program: str, stub: str) -> Iterator[Finding]:
-    for each in diagnose(program, stub):
+    try:
+        diagnostics = diagnose(program, stub)
+    except Unavailable:
+        yield Finding(1, 1, "error", "unavailable", UNAVAILABLE)
+        return
+    for each in diagnostics:
         if each.code == "unsupported":
             kind, _, text = each.message.partition(": ")
             message = problem(kind, text)

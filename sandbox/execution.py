@@ -19,7 +19,8 @@ from typing import Any, Final, Literal
 
 from robot_api.errors import InvalidCall, RobotError, Stopped
 from robot_api.methods import METHODS
-from robot_api.schema import read_arguments
+from robot_api.schema import read_arguments, read_result
+from sandbox.check import check, syntax_finding
 from sandbox.interpreter import (
     Asked,
     Ended,
@@ -29,9 +30,10 @@ from sandbox.interpreter import (
     LimitReached,
     ProgramError,
     Slept,
+    Unavailable,
 )
 from sandbox.limits import MAX_PROGRAM, Limits
-from sandbox.sentences import problem
+from sandbox.sentences import UNAVAILABLE, problem
 
 __all__ = ["CallRecord", "Execution", "Limits", "Outcome"]
 
@@ -163,8 +165,15 @@ class Execution:
                 event = interpreter.start(self._program)
                 while not isinstance(event, Ended):
                     event = self._handle(interpreter, event)
-        except (Stopped, Killed) as error:
-            return self._ended("stopped", self._stopped or str(error), self._line)
+        except Stopped as error:
+            return self._ended("stopped", self._stopped or error.because, self._line)
+        except Killed:
+            if self._stopped is not None:
+                return self._ended("stopped", self._stopped, self._line)
+            message = "The program's process was ended by something else. Run it once more."
+            return self._ended("failed", message, self._line, "killed")
+        except Unavailable:
+            return self._ended("failed", UNAVAILABLE, None, "unavailable")
         except LimitReached as error:
             return self._ended("limit", _LIMITS[error.what], self._line, error.what)
         except ProgramError as error:
@@ -180,11 +189,12 @@ class Execution:
         if len(self._program.encode(errors="replace")) > MAX_PROGRAM:
             message = f"The program is longer than {MAX_PROGRAM // 1000} kB. Make it shorter."
             return self._ended("limit", message, None, "memory")
-        from sandbox.check import check, syntax_finding
-
-        findings = [] if self._stub is None else check(self._program, self._stub)
-        syntax = syntax_finding(self._program)
-        for finding in [syntax] if syntax else findings:
+        if self._stub is None:
+            syntax = syntax_finding(self._program)
+            findings = [syntax] if syntax else []
+        else:
+            findings = check(self._program, self._stub)
+        for finding in findings:
             if finding.severity == "error":
                 return self._ended("failed", finding.message, finding.line, finding.code)
         return None
@@ -216,6 +226,7 @@ class Execution:
         try:
             arguments = read_arguments(asked.method, asked.positional, asked.named)
             result = self._call(asked.method, arguments, asked.line)
+            result = read_result(METHODS[asked.method], result)
         except RobotError as error:
             name, message = type(error).__name__, str(error)
             self._record(asked, arguments, begun, error=name, message=message)

@@ -26,6 +26,7 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Any, Final, Literal, Self
 
+import msgspec
 import pydantic_monty as monty
 
 from robot_api.values import Clock, Location
@@ -81,6 +82,10 @@ class LimitReached(Exception):
 
 class Killed(Exception):
     """The process of the program is gone, by `kill` or by a fault."""
+
+
+class Unavailable(Exception):
+    """The interpreter does not start on this machine."""
 
 
 @dataclass(frozen=True)
@@ -182,7 +187,7 @@ def _inward(value: Any) -> Any:
         return monty.ClassInstance(value, eager_attrs=("x", "y", "theta", "place"))
     if isinstance(value, Clock):
         return monty.ClassInstance(value, eager_attrs=("time", "weekday", "date"))
-    return value
+    return msgspec.to_builtins(value)
 
 
 def _outward(value: Any, depth: int = 20) -> Any:
@@ -236,8 +241,16 @@ class Interpreter:
         self._line = 1
 
     def __enter__(self) -> Self:
+        try:
+            self._pool.__enter__()
+            self._check_out()
+        except (monty.MontyError, RuntimeError, OSError) as error:
+            self.__exit__(None, None, None)
+            raise Unavailable(str(error)) from error
+        return self
+
+    def _check_out(self) -> None:
         limits = self._limits
-        self._pool.__enter__()
         self._session = self._pool.checkout(
             limits={
                 "max_turn_duration_secs": limits.computing,
@@ -259,7 +272,6 @@ class Interpreter:
             self._process = _Process(pid)
             if self._killed:
                 self._process.kill()
-        return self
 
     def __exit__(
         self,
@@ -425,7 +437,15 @@ class _Process:
 
 
 def diagnose(program: str, stub: str, seconds: float = 5.0) -> list[Diagnostic]:
-    """What Monty's parser and type checker say of a program; nothing of it is run."""
+    """What Monty's parser and type checker say of a program; nothing of it is run. Raises
+    `Unavailable`."""
+    try:
+        return _diagnosed(program, stub, seconds)
+    except (monty.MontyError, RuntimeError, OSError) as error:
+        raise Unavailable(str(error)) from error
+
+
+def _diagnosed(program: str, stub: str, seconds: float) -> list[Diagnostic]:
     # The name is looked up before anything else happens, and never found.
     guard = "program_starts_here"
     with (
@@ -452,7 +472,9 @@ def diagnose(program: str, stub: str, seconds: float = 5.0) -> list[Diagnostic]:
                 for each in json.loads(error.display())
                 if each["severity"] == "error"
             ]
-        except monty.MontyCrashedError:
+        except monty.MontyCrashedError as error:
+            if not error.timed_out:
+                raise
             message = "CheckError: The program is too involved to be checked. Make it simpler"
             return [Diagnostic(1, 1, "unsupported", message)]
         except monty.MontyError as error:

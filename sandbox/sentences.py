@@ -13,6 +13,10 @@ from typing import Final
 
 from robot_api.methods import METHODS
 
+UNAVAILABLE: Final = (
+    "The sandbox that programs run in does not start on this machine. Install nl2robot anew."
+)
+
 _KINDS: Final = {
     "str": "a text",
     "int": "a whole number",

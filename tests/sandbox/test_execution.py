@@ -16,6 +16,7 @@ import pytest
 from robot_api.errors import Stopped, TimedOut
 from robot_api.stub import stub
 from robot_api.values import Location
+from sandbox.check import check
 from sandbox.execution import Execution
 from sandbox.limits import Limits
 from tests.sandbox.ward import Ward, children
@@ -80,6 +81,18 @@ def test_a_location_can_be_remembered_spoken_and_gone_to() -> None:
         "True",
     ]
     assert ward.gone_to == [{"place": Location(1.5, 2.0, 90.0, "ward")}]
+
+
+def test_results_may_come_as_data_from_the_wire() -> None:
+    def wire(method: str, arguments: dict[str, object], line: int) -> object:
+        if method == "location":
+            return {"x": 1.0, "y": 2.0, "theta": 0.0, "place": None}
+        return ["Alice", "Bob"] if method == "people" else None
+
+    printed: list[str] = []
+    program = "print(robot.location(), robot.people())"
+    assert Execution(program, wire, on_print=printed.append).run().status == "done"
+    assert printed == ["1.00, 2.00 ['Alice', 'Bob']\n"]
 
 
 def test_modules_that_may_be_imported() -> None:
@@ -201,6 +214,28 @@ def test_a_fault_where_the_output_goes_is_not_hidden() -> None:
 
     with pytest.raises(BrokenPipeError):
         Execution('print("x")\nwhile True:\n    pass', Ward(), on_print=closed).run()
+
+
+@linux
+def test_a_process_that_something_else_ends_is_a_failure() -> None:
+    before = children()
+
+    def killer(method: str, arguments: dict[str, object], line: int) -> None:
+        for pid in children() - before:
+            os.kill(pid, signal.SIGKILL)
+
+    outcome = Execution("robot.wait(1)\nrobot.wait(2)", killer).run()
+    assert (outcome.status, outcome.error, outcome.line) == ("failed", "killed", 1)
+
+
+@pytest.mark.parametrize("binary", ["/nowhere/monty", "/bin/false"])
+def test_a_sandbox_that_does_not_start(binary: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MONTY_BIN", binary)
+    outcome = Ward().run("robot.wait(1)")
+    assert outcome.status == "failed"
+    assert "process" in outcome.message or "Install nl2robot anew." in outcome.message
+    [finding] = check("robot.wait(1)", stub())
+    assert finding.code == "unavailable"
 
 
 # --- limits --------------------------------------------------------------------------------------
