@@ -11,6 +11,7 @@ from nl2robot.review import Review
 from nl2robot.runner import Approval, Status
 from nl2robot.translation import Translation
 from robot_api.client import Robot
+from robot_api.errors import Stopped
 
 T = TypeVar("T")
 
@@ -63,7 +64,11 @@ class Operator:
 
     def wait(self, run: int) -> Status:
         """Wait until the run is over."""
-        return self._request("program.wait", {"run": run}, Status)
+        try:
+            return self._request("program.wait", {"run": run}, Status)
+        except Stopped:
+            # A stop of the robot breaks off every call, this one too; the run is about to be over.
+            return self._request("program.wait", {"run": run}, Status)
 
     def stop(self) -> None:
         """Stop the robot and the program."""

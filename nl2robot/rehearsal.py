@@ -12,7 +12,7 @@ from robot_api.driver import StopFlag
 if TYPE_CHECKING:
     from sim.simulation import Simulation
 
-REAL_SECONDS = 5.0
+REAL_SECONDS = 3.0
 """How long a person waits for a dry run before it is cut short."""
 MANY_CALLS = 1000
 """A program that calls more often is not followed to its end."""

@@ -72,8 +72,11 @@ class _Activity:
         self.line: int | None = None
         self.message: str | None = None
         self.calls = 0
+        self.outcome: Outcome | None = None
+        """How the program ended; the run is over only when that is logged."""
         self.over = threading.Event()
         self.stop_because: str | None = None
+        """Set when it is to be stopped, maybe before it has begun."""
 
     def status(self) -> Status:
         return Status(
@@ -209,10 +212,10 @@ class Runner:
     def stop(self, because: str = "The program was stopped.") -> None:
         """Stop the program that runs, if any. `robot.stop` does this and stops the robot."""
         activity = self._activity
-        if activity is not None and not activity.over.is_set():
+        if activity is not None and activity.outcome is None:
             activity.stop_because = because
             if activity.execution is not None:
-                activity.execution.stop()
+                activity.execution.stop(because)
 
     # --- the run itself
 
@@ -235,20 +238,16 @@ class Runner:
             raise NotPossible(str(error)) from error
 
     def _perform(self, activity: _Activity) -> None:
-        outcome = Outcome(status="failed", message="The robot cannot be reached.", line=None)
         try:
             with self._connect() as robot:
-                outcome = self._execute(activity, robot)
-                if outcome.status != "done":
+                activity.outcome = self._execute(activity, robot)
+                if activity.outcome.status != "done":
                     robot.stop()
-        except (RobotError, Stopped) as error:
-            outcome = Outcome(
-                status="stopped" if isinstance(error, Stopped) else outcome.status,
-                message=outcome.message if outcome.line else str(error),
-                line=outcome.line,
-            )
+        except RobotError as error:  # the robot cannot be reached
+            if activity.outcome is None:
+                activity.outcome = Outcome(status="failed", message=str(error))
         finally:
-            self._end(activity, outcome)
+            self._end(activity)
 
     def _execute(self, activity: _Activity, robot: Robot) -> Outcome:
         def on_line(line: int) -> None:
@@ -273,7 +272,7 @@ class Runner:
         activity.execution = execution
         self._tell(activity, "state")
         if activity.stop_because is not None:  # stopped before it began
-            execution.stop()
+            execution.stop(activity.stop_because)
         return execution.run()
 
     def _logged_call(
@@ -306,19 +305,21 @@ class Runner:
             # What is not logged is not done.
             raise Stopped(str(error)) from error
 
-    def _end(self, activity: _Activity, outcome: Outcome) -> None:
+    def _end(self, activity: _Activity) -> None:
+        outcome = activity.outcome or Outcome(
+            status="failed", message="The run ended through a fault of this software."
+        )
         activity.state = outcome.status
         activity.message = outcome.message
-        if outcome.status == "stopped" and activity.stop_because:
-            activity.message = activity.stop_because
         if outcome.line is not None:
             activity.line = outcome.line
         try:
             self.log.end(activity.run, activity.state, activity.message)
         except LogError as error:
             activity.message = f"{activity.message or ''} {error}".strip()
-        activity.over.set()
+        # Those who watch hear of the end before those who wait are told.
         self._tell(activity, "state")
+        activity.over.set()
 
     # --- helpers
 

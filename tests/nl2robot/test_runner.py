@@ -1,0 +1,209 @@
+"""Nothing runs that was not approved; what runs is in view, and stops at once."""
+
+import queue
+import time
+
+import pytest
+
+from nl2robot.runlog import LogError
+from robot_api.errors import AccessDenied, NotPossible
+
+ROUND = 'robot.goto("ward a")\nrobot.say("Good night.")\nrobot.goto("ward b")\n'
+ENDLESS = 'while True:\n    robot.goto("ward a")\n    robot.goto("ward b")\n'
+
+
+def start(operator, program: str) -> int:
+    return operator.run(operator.approve(operator.check(program)))
+
+
+class Watch:
+    """The events of a run as they come."""
+
+    def __init__(self, operator) -> None:
+        self.events = queue.SimpleQueue()
+        self.seen = []
+        operator.watch(lambda kind, data: self.events.put((kind, data)), "program", "speech")
+
+    def until(self, fits, seconds: float = 20.0):
+        ends = time.monotonic() + seconds
+        while True:
+            kind, data = self.events.get(timeout=max(0.01, ends - time.monotonic()))
+            self.seen.append((kind, data))
+            if fits(kind, data):
+                return data
+
+
+def what(name: str, **expected):
+    def fits(kind, data) -> bool:
+        return (
+            kind == "program"
+            and data["what"] == name
+            and all(data.get(key) == value for key, value in expected.items())
+        )
+
+    return fits
+
+
+def test_an_approved_round_is_made_and_logged(operator, log, station) -> None:
+    status = operator.wait(start(operator, ROUND))
+    assert status.state == "done"
+    [row] = log.runs()
+    assert (row.approved_by, row.status, row.world) == ("Nurse Kim", "done", "ward")
+    assert [(c.method, c.line, c.error) for c in log.calls(row.id)] == [
+        ("goto", 1, None),
+        ("say", 2, None),
+        ("goto", 3, None),
+    ]
+    assert station.simulation.robot.place == "ward b"
+
+
+def test_nothing_runs_without_an_approval(operator, station) -> None:
+    before = station.simulation.robot
+    with pytest.raises(AccessDenied, match="no approval"):
+        operator.robot.request("program.run", {"approval": "made up"})
+    assert station.simulation.robot == before
+
+
+def test_an_edit_voids_the_approval(operator) -> None:
+    review = operator.check(ROUND)
+    with pytest.raises(AccessDenied, match="changed after its review"):
+        operator.robot.request(
+            "program.approve",
+            {"program": ROUND + "robot.dock()\n", "sha256": review.sha256, "by": "Nurse Kim"},
+        )
+
+
+def test_an_approval_is_good_for_one_run(operator) -> None:
+    approval = operator.approve(operator.check('robot.say("Once.")\n'))
+    operator.wait(operator.run(approval))
+    with pytest.raises(AccessDenied):
+        operator.run(approval)
+
+
+@pytest.mark.parametrize(
+    ("program", "told"),
+    [
+        ("robot.fly()\n", "fly"),
+        ('robot.goto("moon")\n', "moon"),
+        ("import os\n", "os"),
+        ("robot.goto(\n", "line 1"),
+    ],
+)
+def test_what_the_review_refuses_cannot_be_approved(operator, program, told) -> None:
+    review = operator.check(program)
+    assert not review.acceptable
+    assert review.dry_run is None
+    with pytest.raises(AccessDenied, match="cannot be approved") as refusal:
+        operator.approve(review)
+    assert told in str(refusal.value)
+
+
+def test_the_dry_run_tells_what_would_happen_and_moves_nothing(operator, station) -> None:
+    before = station.simulation.robot
+    dry_run = operator.check(ROUND).dry_run
+    assert dry_run.status == "done"
+    assert dry_run.says == ("Good night.",)
+    assert dry_run.metres > 2
+    assert {"ward a", "ward b"} <= set(dry_run.places)
+    assert station.simulation.robot == before
+
+
+def test_a_dry_run_of_an_endless_round_comes_back(operator) -> None:
+    dry_run = operator.check(ENDLESS).dry_run
+    assert dry_run.status == "unfinished"
+
+
+def test_every_line_and_result_is_told_as_it_comes(operator) -> None:
+    watch = Watch(operator)
+    run = start(operator, 'print(robot.battery() > 5)\nrobot.say("Hello.")\n')
+    watch.until(what("state", state="done", run=run))
+    told = [(d["what"], d["line"]) for kind, d in watch.seen if kind == "program"]
+    assert told.index(("line", 1)) < told.index(("result", 1)) < told.index(("line", 2))
+    assert ("print", 1) in told
+    assert any(kind == "speech" and d["text"] == "Hello." for kind, d in watch.seen)
+
+
+def test_stop_ends_an_endless_round_at_once(slow_operator, slow_station, log) -> None:
+    watch = Watch(slow_operator)
+    run = start(slow_operator, ENDLESS)
+    watch.until(what("call", method="goto"))
+    slow_operator.stop()
+    status = slow_operator.wait(run)
+    assert status.state == "stopped"
+    assert slow_station.simulation.robot.speed == 0
+    assert log.run(run).status == "stopped"
+
+
+def test_a_stop_by_anybody_ends_the_program(slow_operator, slow_station) -> None:
+    watch = Watch(slow_operator)
+    run = start(slow_operator, "while True:\n    try:\n        robot.wait(60)\n"
+                               "    except Exception:\n        pass\n")  # fmt: skip
+    watch.until(what("call", method="wait"))
+    with slow_station.connect() as somebody_else:
+        somebody_else.stop()
+    assert slow_operator.wait(run).state == "stopped"
+
+
+def test_pause_step_and_resume(slow_operator) -> None:
+    watch = Watch(slow_operator)
+    request = slow_operator.robot.request
+    run = start(
+        slow_operator, 'for word in ["one", "two", "three", "four"]:\n    robot.say(word)\n'
+    )
+    watch.until(what("call", number=1))
+    request("program.pause")
+    watch.until(what("result", number=1))
+    request("program.step")
+    watch.until(what("result", number=2))
+    assert request("program.state")["state"] == "paused"
+    request("program.resume")
+    watch.until(what("state", state="done", run=run))
+    assert [d["number"] for k, d in watch.seen if what("call")(k, d)] == [1, 2, 3, 4]
+
+
+def test_one_program_at_a_time(slow_operator) -> None:
+    run = start(slow_operator, ENDLESS)
+    with pytest.raises(NotPossible, match="Another program is running"):
+        start(slow_operator, ROUND)
+    slow_operator.stop()
+    slow_operator.wait(run)
+    assert slow_operator.wait(start(slow_operator, ROUND)).state == "done"
+
+
+def test_an_approved_program_goes_on_when_its_client_leaves(slow_station, sit_down) -> None:
+    operator = sit_down(slow_station)
+    watch = Watch(operator)
+    run = start(operator, ROUND)
+    watch.until(what("call", method="goto"))
+    operator.robot.close()
+    assert sit_down(slow_station).wait(run).state == "done"
+
+
+def test_a_failure_is_told_with_its_line_and_can_be_caught(operator) -> None:
+    status = operator.wait(start(operator, 'robot.say("Now.")\nrobot.grab("unicorn")\n'))
+    assert (status.state, status.line) == ("failed", 2)
+    assert "unicorn" in status.message
+    program = (
+        'try:\n    robot.grab("unicorn")\nexcept Exception:\n    robot.say("There is none.")\n'
+    )
+    assert operator.wait(start(operator, program)).state == "done"
+
+
+def test_what_cannot_be_logged_is_not_done(operator, station, log, monkeypatch) -> None:
+    def full(*_values, **_more) -> None:
+        raise LogError("The run log cannot be used (database or disk is full).")
+
+    monkeypatch.setattr(log, "call_begins", full)
+    before = station.simulation.robot
+    status = operator.wait(start(operator, ROUND))
+    assert status.state == "stopped"
+    assert "disk is full" in status.message
+    assert station.simulation.robot.x == before.x
+
+
+def test_two_operators_see_the_same_run(slow_station, sit_down) -> None:
+    first, second = sit_down(slow_station), sit_down(slow_station)
+    watch = Watch(second)
+    run = start(first, ROUND)
+    watch.until(what("state", state="done", run=run))
+    assert first.wait(run) == second.wait(run)
