@@ -42,8 +42,9 @@ _BUBBLE_WIDTH = 240.0
 _BUBBLE_LINES = 12
 _LINES_OF_ONE = 4
 _PAD = 7.0
-_FARTHEST = 430.0
-"""Pixels that a bubble may be off its stop; else what it says stands below the picture."""
+_FARTHEST = 400.0
+"""Pixels that a bubble's middle may be off its stop; else what it says stands below the picture."""
+_LONGEST_LEADER = 240.0
 _CROSSED = 350.0
 """What it counts that a leader line runs across a label."""
 _PIECES = 64
@@ -304,9 +305,15 @@ class _Bubbles:
             if not math.isfinite(cost):
                 continue
             end = _nearest(box, spot)
-            cost += math.dist(end, spot) * 5
-            cost += sum(_cuts(label, spot, end) for label in labels) * _CROSSED
-            if (best is None or cost < best[0]) and self._clear(box, spot, end):
+            length = math.dist(end, spot)
+            cost += length * 5
+            if length > _LONGEST_LEADER or (best is not None and cost >= best[0]):
+                continue
+            crossed = sum(_cuts(label, spot, end) for label in labels)
+            cost += crossed * _CROSSED
+            if crossed > 1 or (best is not None and cost >= best[0]):
+                continue
+            if self._clear(box, spot, end):
                 best = (cost, box, end)
         if best is None:
             return None
