@@ -73,6 +73,8 @@ class Where:
 
     place: Value | None = None
     furniture: str | None = None
+    words: str = ""
+    """What else tells the thing: "behind the cup"."""
 
 
 @dataclass
@@ -93,6 +95,11 @@ class Discourse:
     """Where the robot is by now; None where the command was given."""
     with_person: Value | None = None
     holding: Value | None = None
+    delivered: Value | None = None
+    """A thing that was brought to the speaker without their saying where to."""
+    at_pick_up: Value | None = None
+    """Where it was picked up."""
+    in_loop: bool = False
     answer: str | None = None
     """The variable with the last answer."""
     answer_options: tuple[str, ...] = ()

@@ -7,11 +7,11 @@ from typing import Any
 
 import msgspec
 
-from grammar.plan import Call, Node, Plan, Recall, Step
+from grammar.plan import Call, Node, Plan, Recall, Remember, Step
 
 
 def without_unused(plan: Plan) -> Plan:
-    """The plan without names for results that nothing uses."""
+    """The plan without names for results, and without kept values, that nothing uses."""
     used = {value.name for value in nodes(plan.steps) if isinstance(value, Recall)}
     return msgspec.structs.replace(plan, steps=_forget(plan.steps, used))
 
@@ -31,7 +31,11 @@ def nodes(value: Any) -> Iterator[Node]:
 
 
 def _forget(steps: tuple[Step, ...], used: set[str]) -> tuple[Step, ...]:
-    return tuple(_forget_in(step, used) for step in steps)
+    return tuple(
+        _forget_in(step, used)
+        for step in steps
+        if not (isinstance(step, Remember) and step.name not in used)
+    )
 
 
 def _forget_in(step: Step, used: set[str]) -> Step:

@@ -6,6 +6,8 @@ several steps, or depends on what was said before.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from grammar.chart import Leaf, Node
 from grammar.discourse import (
     ANYONE,
@@ -17,12 +19,11 @@ from grammar.discourse import (
     as_value,
     capital,
 )
-from grammar.meanings.nouns import is_me, kind_places
+from grammar.meanings.nouns import is_me, kind_places, sought
 from grammar.meanings.registry import meaning
 from grammar.plan import (
     Ask,
     Call,
-    Choice,
     ForEach,
     Forever,
     Holds,
@@ -48,9 +49,19 @@ def go(d: Discourse, place: Value) -> Steps:
 
 @meaning("go")
 def go_to(d: Discourse, node: Node) -> Steps:
-    place: Value = d.get(node, "place")
-    d.went(place)
-    return [Call("goto", {"place": place})]
+    """Drive to a place; to a piece of furniture, that is to where it stands."""
+    spot: Where = d.get(node, "spot") or Where(d.get(node, "place"))
+    if spot.place is None:
+        return look_for(d, Thing(Text(str(spot.furniture))))
+    d.went(spot.place)
+    return [Call("goto", {"place": spot.place})]
+
+
+@meaning("go_find")
+def go_find(d: Discourse, node: Node) -> Steps:
+    """ "go to the kitchen to find the cup"."""
+    going = go_to(d, node)
+    return [*going, *d.build(node.parts["then"])]
 
 
 @meaning("go_places")
@@ -70,16 +81,6 @@ def go_point(d: Discourse, node: Node) -> Steps:
     return [
         Call("goto", {name: value for name, value in arguments.items() if node.parts.get(name)})
     ]
-
-
-@meaning("go_furniture")
-def go_furniture(d: Discourse, node: Node) -> Steps:
-    """ "go to the table": the place it stands in, or whatever table there is."""
-    spot: Where = d.get(node, "where")
-    if spot.place is not None:
-        d.went(spot.place)
-        return [Call("goto", {"place": spot.place})]
-    return look_for(d, Thing(Text(str(spot.furniture))))
 
 
 @meaning("come_back")
@@ -147,7 +148,7 @@ def wait_for(d: Discourse, node: Node) -> Steps:
     thing = noun_of(d, node)
     timeout = d.get(node, "seconds")
     steps = go(d, thing.place) if thing.place is not None else []
-    arguments: dict[str, Value] = {"thing": thing.value}
+    arguments: dict[str, Value] = {"thing": sought(d, thing)}
     if timeout is not None:
         arguments["timeout"] = as_value(timeout)
     if thing.person:
@@ -173,24 +174,47 @@ def guide(d: Discourse, node: Node) -> Steps:
     pronoun = node.parts.get("person_ref")
     if pronoun is not None and d.thing_last and speaks_of_things(d, pronoun):
         return carry_it(d, node)
-    person: Thing | None = d.get(node, "person_ref")
-    source: Where | None = d.get(node, "from")
-    thing = (
-        Thing(Text(ANYONE), person=True, here=True) if person is None or is_me(person) else person
-    )
-    place_before = source.place if source is not None and source.place is not None else thing.place
-    steps = meet(
-        d, Thing(thing.value, place_before, known=thing.known, person=True, here=thing.here)
-    )
-    to_person: Thing | None = d.get(node, "to_person")
-    if to_person is not None:
+    thing = led(d, node)
+    source: Where | None = d.get(node, "source")
+    if source is not None and source.place is not None:
+        thing = replace(thing, place=source.place, here=False)
+    steps = meet(d, thing)
+    spot: Where = d.get(node, "spot") or Where(d.get(node, "place"))
+    if spot.place is None:
         raise NotUnderstood(d.language.phrase("guide_needs_place"))
-    place: Value = d.get(node, "place")
-    steps.append(Call("guide", {"person": thing.value, "place": place}))
+    return [*steps, lead(d, thing, spot.place)]
+
+
+def led(d: Discourse, node: Node) -> Thing:
+    """Who is to be led: "me" is whoever is here."""
+    person: Thing | None = d.get(node, "person_ref")
+    if person is None or is_me(person):
+        return Thing(Text(ANYONE), person=True, here=True)
+    return person
+
+
+def lead(d: Discourse, person: Thing, place: Value) -> Call:
     d.at = d.place = place
-    d.with_person = thing.value
-    d.person = thing
-    return steps
+    d.with_person = person.value
+    d.person = replace(person, place=None, furniture=None, here=True)
+    d.thing_last = False
+    return Call("guide", {"person": person.value, "place": place})
+
+
+@meaning("guide_back")
+def guide_back(d: Discourse, node: Node) -> Steps:
+    """ "bring her back": to where the command was given."""
+    thing = led(d, node)
+    steps = meet(d, thing)
+    return [*steps, lead(d, thing, d.start())]
+
+
+@meaning("guide_nowhere")
+def guide_nowhere(d: Discourse, node: Node) -> Steps:
+    person = led(d, node)
+    who = named(d, person)
+    words = who if isinstance(who, str) else d.language.phrase("somebody")
+    raise NotUnderstood(d.language.phrase("guide_where", person=words))
 
 
 def speaks_of_things(d: Discourse, pronoun: Leaf | Node) -> bool:
@@ -201,18 +225,24 @@ def speaks_of_things(d: Discourse, pronoun: Leaf | Node) -> bool:
 def carry_it(d: Discourse, node: Node) -> Steps:
     """ "take them to the kitchen", where "they" are cups."""
     assert d.thing is not None
-    thing = Thing(d.thing.value, d.thing.place, known=d.thing.known, here=True)
-    steps = pick_up(d, thing)
-    steps += go(d, d.get(node, "place"))
-    d.holding = None
-    return [*steps, Call("put", {"thing": thing.value})]
+    spot: Where = d.get(node, "spot") or Where(d.get(node, "place"))
+    return deliver(d, replace(d.thing, here=True), None, spot)
 
 
 @meaning("statement")
 def statement(d: Discourse, node: Node) -> Steps:
     """ "there is a cup on the table": nothing to do, but now it is spoken of."""
-    thing = noun_of(d, node)
-    d.thing, d.thing_last = thing, True
+    thing: Thing | None = d.get(node, "thing") or d.get(node, "person_ref")
+    spot: Where | None = d.get(node, "from")
+    if thing is None:  # "he is in the kitchen"
+        thing = d.person or d.thing or Thing(Text(ANYONE), person=True)
+    if spot is not None:
+        thing = replace(thing, place=spot.place, furniture=spot.furniture)
+    if thing.person:
+        d.person, d.thing_last = thing, False
+        d.with_person = None
+    else:
+        d.thing, d.thing_last = thing, True
     return []
 
 
@@ -234,44 +264,38 @@ def guide_list(d: Discourse, node: Node) -> Steps:
 
 @meaning("follow")
 def follow(d: Discourse, node: Node) -> Steps:
-    person: Thing = d.get(node, "person_ref")
-    place: Value | None = d.get(node, "place")
-    if is_me(person):
-        person = Thing(Text(ANYONE), person=True, here=True)
+    person = led(d, node)
+    spot: Where | None = d.get(node, "spot")
     steps = meet(d, person)
     arguments: dict[str, Value] = {"person": person.value}
-    if place is not None:
-        arguments["to"] = place
-    d.at = place
+    d.at = None
+    if spot is not None and spot.place is not None:
+        arguments["to"] = d.at = d.place = spot.place
     d.with_person = person.value
-    d.person = person
+    d.person = replace(person, place=None, furniture=None, here=True)
+    d.thing_last = False
     return [*steps, Call("follow", arguments)]
-
-
-@meaning("follow_then_guide_back")
-def follow_then_guide_back(d: Discourse, node: Node) -> Steps:
-    """ "follow her and take her back"."""
-    person: Thing = d.get(node, "person_ref")
-    start = d.start()
-    d.went(start)
-    who = Text(ANYONE) if is_me(person) else person.value
-    return [Call("guide", {"person": who, "place": start})]
 
 
 def meet(d: Discourse, person: Thing) -> Steps:
     """Find a person, unless they are here by what was said."""
     if person.here or d.with_person == person.value:
-        return go(d, person.place) if person.place is not None else []
+        return []
     if not person.known and person.place is None:
         return []
     d.with_person = person.value
-    arguments: dict[str, Value] = {"thing": person.value}
+    d.at = person.place
     if person.place is not None:
-        arguments["place"] = person.place
-        d.at = d.place = person.place
-    else:
-        d.at = None
-    return [Call("find", arguments)]
+        d.place = person.place
+    return [found(d, person)]
+
+
+def found(d: Discourse, thing: Thing) -> Call:
+    """The call that looks for a thing or a person."""
+    arguments: dict[str, Value] = {"thing": sought(d, thing)}
+    if thing.place is not None:
+        arguments["place"] = thing.place
+    return Call("find", arguments)
 
 
 @meaning("greet")
@@ -292,12 +316,11 @@ def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
         return steps
     if not person.known and person.text == ANYONE and person.place is not None:
         return [*go(d, person.place), *steps]
-    arguments: dict[str, Value] = {"thing": person.value}
-    if person.place is not None:
-        arguments["place"] = person.place
     d.at = person.place
     d.with_person = person.value
-    return [If(Holds(Ask("find", arguments)), tuple(steps), (not_found(d, person),))]
+    return [
+        If(Holds(Ask("find", found(d, person).arguments)), tuple(steps), (not_found(d, person),))
+    ]
 
 
 def not_found(d: Discourse, thing: Thing) -> Call:
@@ -321,125 +344,128 @@ def noun_of(d: Discourse, node: Node) -> Thing:
     thing: Thing | None = d.get(node, "thing")
     if thing is None:
         person: Thing = d.get(node, "person_ref")
-        return Thing(Text(ANYONE), person=True, here=True) if is_me(person) else person
+        thing = Thing(Text(ANYONE), person=True, here=True) if is_me(person) else person
     spot: Where | None = d.get(node, "from")
     if spot is not None:
-        return Thing(thing.value, spot.place, spot.furniture, thing.known, thing.plural)
+        return replace(thing, place=spot.place, furniture=spot.furniture)
     return thing
 
 
 def look_for(d: Discourse, thing: Thing) -> Steps:
-    arguments: dict[str, Value] = {"thing": thing.value}
-    if thing.place is not None:
-        arguments["place"] = thing.place
-        d.place = thing.place
     d.at = thing.place
+    if thing.place is not None:
+        d.place = thing.place
     d.with_person = thing.value if thing.person else None
     if thing.person:
-        d.person = thing
+        d.person, d.thing_last = thing, False
     else:
-        d.thing = thing
-    return [Call("find", arguments)]
+        d.thing, d.thing_last = thing, True
+    return [found(d, thing)]
 
 
 @meaning("find")
 def find(d: Discourse, node: Node) -> Steps:
-    return look_for(d, noun_of(d, node))
+    thing = noun_of(d, node)
+    if thing.place is None and d.at is not None:
+        thing = replace(thing, place=d.at)  # "go to the kitchen and find the cup"
+    return look_for(d, thing)
 
 
 @meaning("grab")
 def grab(d: Discourse, node: Node) -> Steps:
     thing = noun_of(d, node)
-    if thing.place is not None:
+    if thing.place is not None and thing.place != d.at:
         return pick_up(d, thing)
     d.holding = thing.value
-    d.thing = thing
-    return [Call("grab", {"thing": thing.value})]
+    d.thing, d.thing_last = thing, True
+    return [Call("grab", {"thing": sought(d, thing)})]
 
 
 def pick_up(d: Discourse, thing: Thing) -> Steps:
     """Find a thing and take it; nothing if it is in the hand by what was said."""
     if d.holding == thing.value:
         return []
-    known_here = thing.place is None and (d.at is not None or bool(thing.here and d.done))
-    found = known_here
+    take_back_delivery(d, thing)
+    if d.holding == thing.value:
+        return []
     last = d.done[-1] if d.done else None
-    if isinstance(last, Call) and last.method == "find" and last.arguments["thing"] == thing.value:
-        found = True
-    steps = [] if found else look_for(d, thing)
+    looked = isinstance(last, Call) and last == found(d, thing)
+    if isinstance(last, Call) and last.method == "find" and thing.here:
+        looked = True  # "find the cup and bring it to me"
+    is_here = d.at is not None and (thing.place is None or thing.place == d.at)
+    steps: Steps = [] if looked or is_here else look_for(d, thing)
     d.holding = thing.value
-    d.thing = thing
-    return [*steps, Call("grab", {"thing": thing.value})]
+    d.thing, d.thing_last = thing, True
+    return [*steps, Call("grab", {"thing": sought(d, thing)})]
+
+
+def take_back_delivery(d: Discourse, thing: Thing) -> None:
+    """ "get the cup and put it on the table": "get" alone would have handed it to the speaker."""
+    if d.delivered == thing.value and len(d.done) >= 2:
+        del d.done[-2:]
+        d.delivered = None
+        d.holding = thing.value
+        d.at = d.at_pick_up
 
 
 @meaning("put")
 def put(d: Discourse, node: Node) -> Steps:
     """ "put the cup on the table", "... in the kitchen", "... down"."""
     thing: Thing = d.get(node, "thing")
-    spot: Where = d.get(node, "where") or Where()
     source: Where | None = d.get(node, "from")
     if source is not None:
-        thing = Thing(thing.value, source.place, source.furniture, thing.known)
-    steps: Steps = []
+        thing = replace(thing, place=source.place, furniture=source.furniture)
+    spot: Where = d.get(node, "where") or Where()
     last = d.done[-1] if d.done else None
-    carried = isinstance(last, Call) and last == Call("put", {"thing": thing.value})
-    if carried:  # "carry it to the ward and put it on the table": put down once
-        d.done.pop()
-    elif d.holding != thing.value and spot.place is None and thing.place is None:
-        steps += [Call("grab", {"thing": thing.value})] if spot.furniture else []
-    elif d.holding != thing.value:
-        steps += pick_up(d, thing)
-    if spot.place is not None:
-        steps += go(d, spot.place)
-    arguments: dict[str, Value] = {"thing": thing.value}
-    if spot.furniture is not None:
-        arguments["where"] = Text(spot.furniture)
-    d.holding = None
-    d.thing = thing
-    return [*steps, Call("put", arguments)]
+    if isinstance(last, Call) and last == Call("put", {"thing": thing.value}):
+        d.done.pop()  # "carry it to the ward and put it on the table": put down once
+        d.holding = thing.value
+    take_back_delivery(d, thing)
+    if d.holding != thing.value and spot == Where():
+        return [Call("put", {"thing": thing.value})]
+    return deliver(d, thing, None, spot)
 
 
 @meaning("bring")
 def bring(d: Discourse, node: Node) -> Steps:
-    """Fetch a thing and hand it to a person, or put it down at a place."""
+    """Fetch a thing and hand it to a person, or put it down at a spot."""
     thing: Thing = d.get(node, "thing")
     source: Where | None = d.get(node, "from")
     if source is not None:
-        thing = Thing(thing.value, source.place, source.furniture, thing.known)
+        thing = replace(thing, place=source.place, furniture=source.furniture)
     person: Thing | None = d.get(node, "person_ref")
-    spot: Where | None = d.get(node, "where")
-    place: Value | None = spot.place if spot is not None else d.get(node, "place")
-    pointed_at = thing.here and d.holding is None and d.thing is not None and not d.done
-    if pointed_at:
-        steps: Steps = [Call("grab", {"thing": thing.value})]
-        d.holding = thing.value
+    return deliver(d, thing, person, d.get(node, "where"))
+
+
+def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None) -> Steps:
+    """Pick a thing up, go where it is to be, and put it down or hand it over."""
+    no_way = spot is not None and spot.place is None and thing.place is None
+    if no_way and d.holding != thing.value and not thing.here:
+        steps: Steps = [Call("grab", {"thing": sought(d, thing)})]  # both are here
     else:
         steps = pick_up(d, thing)
     d.holding = None
-    d.thing = thing
+    d.thing, d.thing_last = thing, True
     give: dict[str, Value] = {"thing": thing.value}
-    if spot is not None or place is not None:
-        if place is not None:
-            steps += go(d, place)
-        if spot is not None and spot.furniture:
+    if spot is not None:
+        if spot.place is not None:
+            steps += go(d, spot.place)
+        if spot.furniture:
             give["where"] = Text(spot.furniture)
         return [*steps, Call("put", give)]
     if person is None or is_me(person):
         start = d.start()
         steps.append(Call("goto", {"place": start}))
+        d.at_pick_up = d.at
         d.went(start)
+        d.delivered = thing.value if person is None else None
         return [*steps, Call("give", give)]
-    if person.known or person.place is not None or not person.here:
-        steps += meet(d, person) or ([] if person.here else look_for(d, person))
+    if not person.here:
+        steps += meet(d, person) or look_for(d, person)
+    d.thing, d.thing_last = thing, True
     if person.text != ANYONE:
         give["person"] = person.value
     return [*steps, Call("give", give)]
-
-
-@meaning("give")
-def give(d: Discourse, node: Node) -> Steps:
-    """ "hand it to Alice": from the hand if it is there, else fetched first."""
-    return bring(d, node)
 
 
 # --- speaking
@@ -483,13 +509,6 @@ def say_it(d: Discourse, node: Node) -> Steps:
 def phrase(d: Discourse, node: Node) -> Steps:
     """Say what the language holds ready: "introduce yourself", "thank them"."""
     return speak_to(d, d.get(node, "person_ref"), [d.say(str(node.production.fixed["phrase"]))])
-
-
-@meaning("joke")
-def joke(d: Discourse, node: Node) -> Steps:
-    jokes = [text for name, text in d.language.phrases.items() if name.startswith("joke_")]
-    text: Value = Choice(Items(tuple(Text(each) for each in jokes)))
-    return speak_to(d, d.get(node, "person_ref"), [Call("say", {"text": text})])
 
 
 @meaning("set_volume")
@@ -586,11 +605,3 @@ def refused(d: Discourse, node: Node) -> Steps:
 def unknown_contact(d: Discourse, node: Node) -> Steps:
     words = d.words(node.parts["unknown"].start, node.parts["unknown"].end)
     raise NotUnderstood(d.language.phrase("unknown_contact", name=words))
-
-
-@meaning("find_in")
-def find_in(d: Discourse, node: Node) -> Steps:
-    """ "search the kitchen for the cup"."""
-    thing = noun_of(d, node)
-    place: Value = d.get(node, "place")
-    return look_for(d, Thing(thing.value, place, known=thing.known, person=thing.person))

@@ -306,7 +306,9 @@ def for_each_place(d: Discourse, node: Node) -> Steps:
     d.at = here if node.production.fixed.get("go") else None
     body: Steps = []
     if "steps" in node.parts:
+        outer, d.in_loop = d.in_loop, True
         body = d.build(node.parts["steps"])
+        d.in_loop = outer
     first = body[0] if body else None
     goes = isinstance(first, Call) and first.method in ("goto", "guide", "find")
     if (node.production.fixed.get("go") and not goes) or (not goes and not mentions(body, here)):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from grammar.chart import Leaf, Node
@@ -41,7 +42,8 @@ def place_there(d: Discourse, node: Node) -> Value:
 
 @meaning("place_here")
 def place_here(d: Discourse, node: Node) -> Value:
-    return d.start() if d.at is None else d.at
+    """ "here" is where the speaker is, wherever the robot has gone meanwhile."""
+    return d.start()
 
 
 @meaning("place_start")
@@ -75,9 +77,18 @@ def where(d: Discourse, node: Node) -> Where:
     return Where(place, furniture)
 
 
+@meaning("where_is")
+def where_is(d: Discourse, node: Node) -> Where:
+    """A preposition and a spot: "on the table"."""
+    spot: Where = d.get(node, "spot")
+    return spot
+
+
 def home_of(d: Discourse, furniture: str) -> Value | None:
-    """The place a piece of furniture stands in, where the world says so."""
+    """The place a piece of furniture stands in: where the robot is, or where the world says."""
     homes = {each.inside for each in d.lexicon.furniture if each.name == furniture and each.inside}
+    if isinstance(d.at, Text) and d.at.value in homes:
+        return d.at
     return Text(homes.pop()) if len(homes) == 1 else None
 
 
@@ -88,44 +99,18 @@ def place_list(d: Discourse, node: Node) -> list[Value]:
     return [first, *(rest or [])]
 
 
-# --- things
+# --- what follows a noun
 
 
-@meaning("thing")
-def thing(d: Discourse, node: Node) -> Thing:
-    """A noun with its adjectives; what follows it ("in the kitchen", "that is red") is added."""
-    head = node.parts["head"]
-    assert isinstance(head, Leaf)
-    words = " ".join(d.norms(head.start, head.end))
-    name: str = head.value[0] if isinstance(head.value, tuple) else words
-    if head.slot == "object":
-        adjectives = node.parts.get("adjectives")
-        if adjectives is not None:
-            name = f"{' '.join(d.norms(adjectives.start, adjectives.end))} {name}"
-    one = singular(name, d.language)
-    after = d.get(node, "after")
-    if after:
-        one = f"{one} {after}"
-    at: Where = d.get(node, "where") or Where()
-    found = Thing(
-        Text(one),
-        place=at.place,
-        furniture=at.furniture,
-        known=head.slot == "object",
-        plural=one != name,
-        here=bool(node.production.fixed.get("here")),
-    )
-    d.thing, d.thing_last = found, True
-    return found
-
-
-@meaning("thing_it")
-def thing_it(d: Discourse, node: Node) -> Thing:
-    if d.thing is not None:
-        return Thing(d.thing.value, known=d.thing.known, here=True)
-    if d.holding is not None:
-        return Thing(d.holding, here=True)
-    raise NotUnderstood(d.language.phrase("what_is_it", word=d.words(node.start, node.end)))
+@meaning("mods")
+def mods(d: Discourse, node: Node) -> list[Where | str]:
+    """All that follows a noun: where it is, and what tells it from others."""
+    first = d.get(node, "first")
+    found = [first] if isinstance(first, Where) or (isinstance(first, str) and first) else []
+    words = d.norms(node.parts["first"].start, node.parts["first"].end)
+    if words[-1] in d.language.speech.get("pointing", ()):
+        found = []  # "the woman there": nothing that tells her from others
+    return [*found, *(d.get(node, "rest") or [])]
 
 
 @meaning("descriptor")
@@ -135,8 +120,107 @@ def descriptor(d: Discourse, node: Node) -> str:
     part = node.parts.get("what")
     what = "" if part is None else " ".join(d.norms(part.start, part.end))
     if isinstance(part, Leaf) and isinstance(part.value, tuple):
-        what = str(part.value[0])
+        first = part.value[0]
+        what = first.name if isinstance(first, Name) else str(first)
     return form.format(what=what)
+
+
+@meaning("descriptor_fixed")
+def descriptor_fixed(d: Discourse, node: Node) -> str:
+    """What is said after a noun, but is a superlative: "that weighs the most"."""
+    return f"{SUPERLATIVE}{node.production.fixed['what']}"
+
+
+@meaning("superlative_after")
+def superlative_after(d: Discourse, node: Node) -> str:
+    return f"{SUPERLATIVE}{d.get(node, 'superlative')}"
+
+
+@meaning("relation")
+def relation(d: Discourse, node: Node) -> Where | str:
+    """ "behind the cup": a descriptor; with its place if the other thing has one."""
+    remembered, last = d.thing, d.thing_last
+    other: Thing = d.get(node, "other")
+    d.thing, d.thing_last = remembered, last
+    words = f"{node.production.fixed['relation']} {other.text}"
+    if other.place is not None or other.furniture is not None:
+        return Where(other.place, other.furniture, words)
+    return words
+
+
+SUPERLATIVE = "\0"
+"""Marks a descriptor that stands before the noun."""
+
+
+def described(d: Discourse, noun: str, node: Node) -> Thing:
+    """A noun with all that its node says about it."""
+    before: list[str] = []
+    number = node.parts.get("number")
+    if number is not None:
+        before.append(str(d.build(number)))
+    superlative = d.get(node, "superlative")
+    if superlative:
+        before.append(superlative)
+    adjectives = node.parts.get("adjectives")
+    if adjectives is not None:
+        before.append(" ".join(d.norms(adjectives.start, adjectives.end)))
+    after: list[str] = []
+    place: Value | None = None
+    furniture: str | None = None
+    for mod in (d.get(node, "mods") or []) + (d.get(node, "mods_after") or []):
+        if isinstance(mod, Where):
+            place = mod.place or place
+            furniture = mod.furniture or furniture
+            if mod.words:
+                after.append(mod.words)
+        elif mod.startswith(SUPERLATIVE):
+            before.append(mod[len(SUPERLATIVE) :])
+        else:
+            after.append(mod)
+    return Thing(Text(" ".join((*before, noun, *after))), place, furniture)
+
+
+def sought(d: Discourse, thing: Thing) -> Value:
+    """The thing as the robot is to look for it: "cup on the table"."""
+    if thing.furniture and isinstance(thing.value, Text):
+        on = d.language.phrase("on_furniture", furniture=thing.furniture)
+        return Text(f"{thing.value.value} {on}")
+    return thing.value
+
+
+# --- things
+
+
+@meaning("thing")
+def thing(d: Discourse, node: Node) -> Thing:
+    """A noun with its adjectives and what follows it."""
+    head = node.parts.get("head")
+    if isinstance(head, Leaf):
+        words = " ".join(d.norms(head.start, head.end))
+        name = head.value[0] if isinstance(head.value, tuple) else words
+        one = singular(name, d.language)
+        known = head.slot == "object"
+        one = name if known else one
+        many = words not in (one, name) or one != name
+    else:
+        one, known, many = str(node.production.fixed.get("what", "object")), False, False
+    found = replace(
+        described(d, one, node),
+        known=known,
+        plural=many,
+        here=bool(node.production.fixed.get("here")),
+    )
+    d.thing, d.thing_last = found, True
+    return found
+
+
+@meaning("thing_it")
+def thing_it(d: Discourse, node: Node) -> Thing:
+    if d.thing is not None:
+        return replace(d.thing, here=True)
+    if d.holding is not None:
+        return Thing(d.holding, here=True)
+    raise NotUnderstood(d.language.phrase("what_is_it", word=d.words(node.start, node.end)))
 
 
 # --- people
@@ -146,8 +230,8 @@ def descriptor(d: Discourse, node: Node) -> str:
 def person_name(d: Discourse, node: Node) -> Thing:
     leaf = node.parts["person"]
     assert isinstance(leaf, Leaf)
-    at: Where = d.get(node, "where") or Where()
-    found = Thing(Text(d.one_of(leaf).name), place=at.place, known=True, person=True)
+    name = d.one_of(leaf).name
+    found = replace(described(d, name, node), value=Text(name), known=True, person=True)
     d.person, d.thing_last = found, False
     return found
 
@@ -155,23 +239,16 @@ def person_name(d: Discourse, node: Node) -> Thing:
 @meaning("person_kind")
 def person_kind(d: Discourse, node: Node) -> Thing:
     """ "the visitor waving in the lobby", "a nurse", "this gentleman"."""
-    kind = d.get(node, "kind_of_person", ANYONE)
-    words = [str(kind)]
-    adjectives = node.parts.get("adjectives")
-    if adjectives is not None:
-        words.insert(0, " ".join(d.norms(adjectives.start, adjectives.end)))
-    after = d.get(node, "after")
-    if after:
-        words.append(after)
-    at: Where = d.get(node, "where") or Where()
-    found = Thing(
-        Text(" ".join(words)),
-        place=at.place,
-        furniture=at.furniture,
+    kind = str(d.get(node, "kind_of_person", ANYONE))
+    found = replace(
+        described(d, kind, node),
         person=True,
         here=bool(node.production.fixed.get("here")),
         plural=bool(node.production.fixed.get("plural")),
     )
+    for each in d.lexicon.people:  # "the person named Alice" is Alice
+        if found.text == f"{kind} named {each.name}":
+            found = replace(found, value=Text(each.name), known=True)
     d.person, d.thing_last = found, False
     return found
 
@@ -180,7 +257,9 @@ def person_kind(d: Discourse, node: Node) -> Thing:
 def person_pronoun(d: Discourse, node: Node) -> Thing:
     """ "him", "her", "them": the person spoken of last, else whoever is here."""
     if d.person is not None:
-        return Thing(d.person.value, known=d.person.known, person=True, here=True)
+        met = d.person.here or d.with_person == d.person.value
+        elsewhere = d.person.place is not None and not met
+        return replace(d.person, here=not elsewhere and (met or not d.person.known))
     owner = owner_of(d)
     if owner is not None:
         return Thing(owner, known=True, person=True, here=True)
@@ -190,10 +269,9 @@ def person_pronoun(d: Discourse, node: Node) -> Thing:
 def owner_of(d: Discourse) -> Text | None:
     """Whose place was spoken of last: Bob, after "Bob's office"."""
     if isinstance(d.place, Text):
+        mark = d.language.speech["possessive"]
         for person in d.lexicon.people:
-            if d.place.value.lower().startswith(
-                person.name.lower() + d.language.speech["possessive"]
-            ):
+            if d.place.value.lower().startswith(person.name.lower() + mark):
                 return Text(person.name)
     return None
 

@@ -1,8 +1,14 @@
-"""Telling what the robot finds out: the time, the place, what it sees, how many there are."""
+"""Telling what the robot finds out: the time, the place, what it sees, how many there are.
+
+What is to be told is a `Report`: how to find it out and the phrase it is told with. A report about
+somewhere else that is for the speaker is brought back to them.
+"""
 
 from __future__ import annotations
 
-from grammar.chart import Node
+from dataclasses import dataclass, replace
+
+from grammar.chart import Leaf, Node
 from grammar.discourse import (
     ANYONE,
     Ambiguous,
@@ -13,90 +19,227 @@ from grammar.discourse import (
     Where,
     as_value,
 )
-from grammar.meanings.actions import look_for, not_found, noun_of, speak_to
+from grammar.meanings.actions import not_found, speak_to
+from grammar.meanings.nouns import described, is_me, kind_places, sought
 from grammar.meanings.registry import meaning
-from grammar.plan import Ask, Call, Compare, Holds, If, Number, Text, Value
+from grammar.plan import (
+    Ask,
+    Call,
+    Choice,
+    Holds,
+    If,
+    Items,
+    Number,
+    Recall,
+    Remember,
+    Text,
+    Value,
+)
 from grammar.wordforms import plural
 
 
-@meaning("tell")
-def tell(d: Discourse, node: Node) -> Steps:
-    """Say a phrase with the result of a robot method in it."""
-    fixed = node.production.fixed
-    value = Ask(str(fixed["method"]), dict(_arguments(d, node)), fixed.get("field"))
-    steps = [d.say(str(fixed["phrase"]), value=value)]
-    return speak_to(d, d.get(node, "person_ref"), [*steps])
+@dataclass(frozen=True)
+class Report:
+    """Something to tell."""
+
+    phrase: str
+    value: Value | None = None
+    """What the phrase tells, found out when it is spoken."""
+    place: Value | None = None
+    """Where to find it out."""
+    words: tuple[tuple[str, str], ...] = ()
+    """Fixed words of the phrase."""
+    otherwise: str | None = None
+    """The phrase for a value that is false; then `phrase` is for one that is true."""
+    name: str = "result"
+    """What the value is called when it is remembered."""
+    about_here: bool = True
+    """Whether it is about where the robot is, and so has to be found out there."""
 
 
-def _arguments(d: Discourse, node: Node) -> list[tuple[str, Value]]:
-    names = ("kind", "lines", "selector")
-    return [(name, as_value(d.get(node, name))) for name in names if d.get(node, name) is not None]
-
-
-def go_and_look(d: Discourse, thing: Thing) -> Steps:
-    """Drive to where a question is about, if it is about somewhere else."""
-    if thing.place is None or thing.place == d.at:
-        return []
-    d.went(thing.place)
-    return [Call("goto", {"place": thing.place})]
-
-
-@meaning("tell_count")
-def tell_count(d: Discourse, node: Node) -> Steps:
-    """ "how many cups are in the kitchen?"."""
-    thing = noun_of(d, node)
-    thing = _at(d, node, thing)
-    steps = go_and_look(d, thing)
-    noun = plural(thing.text, d.language) if not thing.person else None
-    if noun is None:
-        noun = (
-            d.language.phrase("people") if thing.text == ANYONE else plural(thing.text, d.language)
-        )
-    count = Ask("count", {"thing": thing.value})
-    return [*steps, *_back(d, node), d.say("counted", count=count, things=noun)]
-
-
-def _at(d: Discourse, node: Node, thing: Thing) -> Thing:
-    spot: Where | None = d.get(node, "spot")
-    if spot is None:
-        return thing
-    value = thing.value
-    if spot.furniture and isinstance(value, Text):
-        value = Text(f"{value.value} {d.language.phrase('on_furniture', furniture=spot.furniture)}")
-    return Thing(value, spot.place, spot.furniture, thing.known, thing.plural, thing.person)
-
-
-def _back(d: Discourse, node: Node) -> Steps:
-    """ "... and come back to tell me" is not asked for here."""
-    return []
-
-
-@meaning("tell_seen")
-def tell_seen(d: Discourse, node: Node) -> Steps:
-    """ "what do you see?", "who is in the lobby?", "what is on the table?"."""
-    spot: Where | None = d.get(node, "spot")
+@meaning("report")
+def report(d: Discourse, node: Node) -> Steps:
+    if node.production.fixed.get("joke"):
+        return told(d, joke(d), None)
+    found: Report | Steps = d.get(node, "info")
+    person: Thing | None = d.get(node, "person_ref")
+    if isinstance(found, list):
+        return speak_to(d, person, found)
+    asked_by_me = person is None or is_me(person)
+    back = bool(node.production.fixed.get("to_me")) or is_me(person)
     steps: Steps = []
-    if spot is not None and spot.place is not None:
-        steps = go_and_look(d, Thing(Text(""), spot.place))
-    method = str(node.production.fixed["method"])
-    phrase = "people_seen" if method == "people" else "objects_seen"
-    return [*steps, d.say(phrase, value=Ask(method))]
+    if found.place is not None and found.place != d.at:
+        d.start()
+        steps.append(Call("goto", {"place": found.place}))
+        d.went(found.place)
+        back = back or asked_by_me
+    if (
+        back
+        and asked_by_me
+        and d.at is not None
+        and not d.in_loop
+        and found.about_here
+        and found.value is not None
+    ):
+        start = d.start()
+        name = d.variable(found.name)
+        steps += [Remember(name, found.value), Call("goto", {"place": start})]
+        d.went(start)
+        return [*steps, *told(d, replace(found, value=Recall(name)), None)]
+    return [*steps, *told(d, found, person)]
 
 
-@meaning("tell_whether")
-def tell_whether(d: Discourse, node: Node) -> Steps:
-    """ "is there anybody in the waiting room?": look, and say yes or no."""
-    thing = _at(d, node, noun_of(d, node))
-    steps = go_and_look(d, thing)
-    seen = Holds(Ask("sees", {"thing": thing.value}))
-    return [
-        *steps,
-        If(
-            seen,
-            (d.say("yes_seen", thing=_named(d, thing)),),
-            (d.say("no_seen", thing=_named(d, thing)),),
-        ),
-    ]
+def told(d: Discourse, found: Report, person: Thing | None) -> Steps:
+    """Say it."""
+    words = dict(found.words)
+    if found.otherwise is not None:
+        assert found.value is not None
+        yes, no = d.say(found.phrase, **words), d.say(found.otherwise, **words)
+        return speak_to(d, person, [If(Holds(found.value), (yes,), (no,))])
+    values: dict[str, Value | str] = {**words}
+    if found.value is not None:
+        values["value"] = found.value
+    return speak_to(d, person, [d.say(found.phrase, **values)])
+
+
+# --- about the robot
+
+
+@meaning("about_robot")
+def about_robot(d: Discourse, node: Node) -> Report:
+    fixed = node.production.fixed
+    value = Ask(str(fixed["method"]), {}, fixed.get("field"))
+    return Report(str(fixed["phrase"]), value, about_here=False)
+
+
+@meaning("fixed_phrase")
+def fixed_phrase(d: Discourse, node: Node) -> Report:
+    return Report(str(node.production.fixed["phrase"]), about_here=False)
+
+
+@meaning("some_joke")
+def some_joke(d: Discourse, node: Node) -> Report:
+    return joke(d)
+
+
+def joke(d: Discourse) -> Report:
+    jokes = [text for name, text in d.language.phrases.items() if name.startswith("joke_")]
+    return Report(
+        "only", Choice(Items(tuple(Text(each) for each in jokes))), name="joke", about_here=False
+    )
+
+
+@meaning("known_places")
+def known_places(d: Discourse, node: Node) -> Report:
+    return Report("places_are", kind_places(d, d.get(node, "kind")), about_here=False)
+
+
+@meaning("last_log")
+def last_log(d: Discourse, node: Node) -> Report:
+    lines = d.get(node, "lines")
+    arguments: dict[str, Value] = {} if lines is None else {"lines": as_value(lines)}
+    return Report("log_says", Ask("log", arguments), about_here=False)
+
+
+# --- about what is seen
+
+
+@meaning("names_here")
+def names_here(d: Discourse, node: Node) -> Report:
+    """ "who is in the lobby?", "the name of the person in the kitchen"."""
+    person: Thing | None = d.get(node, "person_ref")
+    if person is None:
+        person = described(d, ANYONE, node)
+        d.person = Thing(Text(ANYONE), person.place, person=True, here=True)
+    return Report("people_seen", Ask("people"), person.place, name="names")
+
+
+@meaning("seen_here")
+def seen_here(d: Discourse, node: Node) -> Report:
+    place = described(d, "", node)
+    if place.furniture:
+        return Report(
+            "only",
+            Ask(
+                "describe",
+                {"thing": sought(d, replace(place, value=Text(d.language.phrase("objects"))))},
+            ),
+            place.place,
+            name="description",
+        )
+    return Report("objects_seen", Ask("objects"), place.place, name="things")
+
+
+@meaning("looks_of")
+def looks_of(d: Discourse, node: Node) -> Report:
+    """How something looks; a description says it all."""
+    thing: Thing = d.get(node, "thing") or d.get(node, "person_ref")
+    extra = described(d, "", node)
+    place = thing.place or extra.place
+    return Report("only", Ask("describe", {"thing": sought(d, thing)}), place, name="description")
+
+
+@meaning("best_of")
+def best_of(d: Discourse, node: Node) -> Report:
+    """ "what is the biggest thing on the table?"."""
+    thing: Thing | None = d.get(node, "thing")
+    if thing is None:
+        thing = _best(d, node)
+    value = sought(d, thing)
+    d.thing, d.thing_last = replace(thing, here=True), True
+    return Report("only", Ask("describe", {"thing": value}), thing.place, name="description")
+
+
+def _best(d: Discourse, node: Node) -> Thing:
+    head = node.parts.get("head")
+    noun = "object"
+    if isinstance(head, Leaf):
+        noun = str(head.value[0]) if head.value else d.words(head.start, head.end)
+    weighs = node.parts.get("weighs")
+    thing = described(d, noun, node)
+    if weighs is not None:
+        least = d.language.speech["least"] in d.norms(weighs.start, weighs.end)
+        word = d.language.speech["lightest" if least else "heaviest"]
+        thing = replace(thing, value=Text(f"{word} {thing.text}"))
+    return thing
+
+
+@meaning("counted_info")
+def counted_info(d: Discourse, node: Node) -> Report:
+    """ "how many cups are in the kitchen?"."""
+    thing: Thing = d.get(node, "thing")
+    more = described(d, thing.text, node)
+    first: Where | None = d.get(node, "spot_first")
+    thing = replace(
+        thing,
+        value=more.value,
+        place=thing.place or more.place or (first.place if first else None),
+        furniture=thing.furniture or more.furniture or (first.furniture if first else None),
+    )
+    phrase_words = thing.text
+    noun, _, rest = phrase_words.partition(" ") if thing.person else (phrase_words, "", "")
+    things = f"{plural(noun, d.language)} {rest}".strip()
+    count = Ask("count", {"thing": sought(d, thing)})
+    return Report("counted", count, thing.place, (("things", things),), name="count")
+
+
+@meaning("whether_seen")
+def whether_seen(d: Discourse, node: Node) -> Report:
+    """ "is there anybody in the waiting room?"."""
+    thing: Thing = d.get(node, "thing") or d.get(node, "person_ref")
+    more = described(d, thing.text, node)
+    thing = replace(
+        thing, place=thing.place or more.place, furniture=thing.furniture or more.furniture
+    )
+    named = _named(d, thing)
+    return Report(
+        "yes_seen",
+        Ask("sees", {"thing": sought(d, thing)}),
+        thing.place,
+        (("thing", named),),
+        otherwise="no_seen",
+        name="seen",
+    )
 
 
 def _named(d: Discourse, thing: Thing) -> str:
@@ -105,49 +248,57 @@ def _named(d: Discourse, thing: Thing) -> str:
     return thing.text if thing.known and thing.person else d.language.phrase("a", noun=thing.text)
 
 
-@meaning("describe")
-def describe(d: Discourse, node: Node) -> Steps:
-    thing = _at(d, node, noun_of(d, node))
-    steps = look_for(d, thing) if thing.place is not None else []
-    return [*steps, Call("say", {"text": Ask("describe", {"thing": thing.value})})]
-
-
-@meaning("scan")
-def scan(d: Discourse, node: Node) -> Steps:
-    """Scan a code; said aloud where nothing else is done with it."""
-    d.code = d.variable("code")
-    d.answer = None
-    steps: Steps = [Call("scan", {}, save_as=d.code)]
-    return steps
-
-
-@meaning("tell_log")
-def tell_log(d: Discourse, node: Node) -> Steps:
-    lines = d.get(node, "lines")
-    arguments: dict[str, Value] = {} if lines is None else {"lines": as_value(lines)}
-    return [d.say("log_says", value=Ask("log", arguments))]
-
-
-@meaning("battery_low")
-def battery_low(d: Discourse, node: Node) -> Compare:
-    fixed = node.production.fixed
-    return Compare(Ask("battery"), str(fixed["operator"]), Number(int(fixed["percent"])))
-
-
-@meaning("where_thing")
-def where_thing(d: Discourse, node: Node) -> Steps:
+@meaning("where_found")
+def where_found(d: Discourse, node: Node) -> Steps:
     """ "where is the stapler?": look for it and say where it is."""
-    thing = noun_of(d, node)
-    found = d.say("it_is_at", thing=_the(d, thing), place=Ask("location"))
-    arguments: dict[str, Value] = {"thing": thing.value}
+    thing: Thing = d.get(node, "thing") or d.get(node, "person_ref")
+    the = thing.text if thing.known and thing.person else d.language.phrase("the", noun=thing.text)
+    found = d.say("it_is_at", thing=the, place=Ask("location"))
+    arguments: dict[str, Value] = {"thing": sought(d, thing)}
     if thing.place is not None:
         arguments["place"] = thing.place
     d.at = None
     return [If(Holds(Ask("find", arguments)), (found,), (not_found(d, thing),))]
 
 
-def _the(d: Discourse, thing: Thing) -> str:
-    return thing.text if thing.known and thing.person else d.language.phrase("the", noun=thing.text)
+@meaning("tell_me_that")
+def tell_me_that(d: Discourse, node: Node) -> Steps:
+    """ "and tell me": what was found out just before, brought back to the speaker."""
+    last = d.done[-1] if d.done else None
+    if d.answer is not None and not isinstance(last, If):
+        start = d.start()
+        moved = d.at is not None
+        d.went(start)
+        going: Steps = [Call("goto", {"place": start})] if moved else []
+        return [*going, Call("say", {"text": Recall(d.answer)})]
+    if isinstance(last, Call) and last.method == "say":
+        return []  # it is told already
+    raise NotUnderstood(d.language.phrase("say_what"))
+
+
+@meaning("scan")
+def scan(d: Discourse, node: Node) -> Steps:
+    """Scan a code; where nothing is done with it, it is read out."""
+    d.code = d.variable("code")
+    d.answer = None
+    return [Call("scan", {}, save_as=d.code)]
+
+
+@meaning("tell")
+def tell(d: Discourse, node: Node) -> Steps:
+    """Say a phrase with the result of a robot method in it."""
+    fixed = node.production.fixed
+    selector = d.get(node, "selector")
+    value = Ask(str(fixed["method"]), {"selector": as_value(selector)} if selector else {})
+    return speak_to(d, d.get(node, "person_ref"), [d.say(str(fixed["phrase"]), value=value)])
+
+
+@meaning("battery_low")
+def battery_low(d: Discourse, node: Node) -> object:
+    from grammar.plan import Compare
+
+    fixed = node.production.fixed
+    return Compare(Ask("battery"), str(fixed["operator"]), Number(int(fixed["percent"])))
 
 
 @meaning("offer_guide")
@@ -157,6 +308,5 @@ def offer_guide(d: Discourse, node: Node) -> Steps:
     if not isinstance(place, Text):
         raise NotUnderstood(d.language.phrase("where_is_there"))
     question = d.language.phrase("offer_guide", place=place.value)
-    raise Ambiguous(
-        question, 0, len(d.tokens), (d.language.phrase("take_me_to", place=place.value),)
-    )
+    yes = d.language.phrase("take_me_to", place=place.value)
+    raise Ambiguous(question, 0, len(d.tokens), (yes,))
