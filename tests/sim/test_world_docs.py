@@ -26,7 +26,7 @@ def test_the_examples_load_and_can_be_drawn(tmp_path: Path) -> None:
         png(world, None, tmp_path / "world.png")
     second = load_world(tmp_path / "world1.yaml")
     assert second.start == second.place("charger").pose  # type: ignore[union-attr]
-    assert (4.8, 7.3) == (second.furniture[1].pose.x, second.furniture[1].pose.y)  # type: ignore[union-attr]
+    assert (second.furniture[1].pose.x, second.furniture[1].pose.y) == (4.8, 7.3)  # type: ignore[union-attr]
 
 
 def test_every_field_is_told() -> None:
