@@ -28,7 +28,7 @@ from urllib.parse import urlsplit
 CONNECT_SECONDS = 3.0  # a publisher that cannot be reached must not keep anybody waiting
 ANSWER_SECONDS = 8.0  # name lookup + connection + first answer together
 STALL_SECONDS = 20.0  # no byte for so long counts as a broken connection
-CHUNK = 1 << 18
+CHUNK = 1 << 16  # what is lost at most when a connection breaks
 MEGABYTE = 1_000_000
 MOST_UNPACKED = 4_000 * MEGABYTE  # no speech model is larger; an archive that claims so is broken
 

