@@ -6,7 +6,7 @@ import itertools
 import math
 from collections.abc import Sequence
 
-from sim.driving import check_goal, come_to_rest, face, lengths_to, travel, wheel
+from sim.driving import check_goal, lengths_to, travel
 from sim.errors import Blocked, NotFound
 from sim.hospital import Hospital
 from sim.navigation import Spot
@@ -15,6 +15,7 @@ from sim.perception import person_in_view
 from sim.robot import TOP_SPEED, bearing
 from sim.runner import Behaviour
 from sim.searching import approach
+from sim.wheel import come_to_rest, face, wheel
 from sim.world import Place
 
 _SLOW_GAP, _WAIT_GAP = 1.8, 2.8

@@ -1,37 +1,29 @@
-"""Driving: follow a route smoothly, slow down for people, find a way around what is in the way.
+"""Driving to a goal: plan a way, follow it, and find another around what is in the way.
 
-`drive_to`, `move`, `turn`, `drive` and `dock` are whole behaviours; `travel` and `face` are parts
-for other behaviours that have the wheel already.
+`drive_to`, `move`, `turn`, `drive` and `dock` are whole behaviours; `travel` is a part for other
+behaviours that have the wheel already.
 """
 
 from __future__ import annotations
 
-import contextlib
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 
 from sim.errors import Blocked, NotPossible
 from sim.hospital import PERSON_RADIUS, Hospital
 from sim.navigation import Disc, Route, Spot
 from sim.people import Errand, Human
 from sim.physics import STEP
-from sim.robot import SLOW_DOWN, TOP_SPEED, TOP_TURN, TURN_CHANGE, bearing, wrap
+from sim.robot import TOP_SPEED, TOP_TURN, bearing
 from sim.runner import Behaviour
+from sim.tracking import KEEP, Progress, is_still, track
+from sim.wheel import braking, check_battery, come_to_rest, face, turn_by, wheel
 
-_LOOK_EVERY = 4  # steps between two looks for people and doors
-_LOOK_AHEAD = 2.5
-"""Metres of the route in which people count."""
-_KEEP = 0.08
-"""Metres to leave to a person when passing; a way around somebody is planned with more."""
 _KEEP_AROUND = 0.15
-_DOOR_IN_VIEW = 2.0
+"""Metres to leave to somebody when planning a way around them."""
 _DOOR_REMEMBERED = 120.0
-_HELD, _HELD_BY_WALKER = 1.0, 3.0
-"""Seconds that it waits for somebody who stands, or who walks, before it looks for a way around."""
 _PATIENCE = 12.0
 """Seconds that the robot waits where there is no way around."""
-_MOST_DETOURS = 20
 
 
 # --- whole behaviours ----------------------------------------------------------------------------
@@ -64,7 +56,7 @@ def move(hospital: Hospital, metres: float) -> Behaviour[None]:
             free = _free_ahead(hospital, heading)
             if free < min(left, 0.02):
                 raise Blocked(_in_the_way(hospital, heading, gone))
-            robot.aim(ahead * min(TOP_SPEED, _braking(min(left, free))), 0.0)
+            robot.aim(ahead * min(TOP_SPEED, braking(min(left, free))), 0.0)
             yield
             x, y = robot.position
             gone = (x - start[0]) * math.cos(heading) + (y - start[1]) * math.sin(heading)
@@ -73,7 +65,7 @@ def move(hospital: Hospital, metres: float) -> Behaviour[None]:
 
 def turn(hospital: Hospital, degrees: float) -> Behaviour[None]:
     with wheel(hospital):
-        yield from _turn(hospital, degrees)
+        yield from turn_by(hospital, degrees)
 
 
 def drive(hospital: Hospital, linear: float, angular: float, seconds: float) -> Behaviour[None]:
@@ -90,7 +82,7 @@ def drive(hospital: Hospital, linear: float, angular: float, seconds: float) -> 
                 free = _free_ahead(hospital, heading)
                 if free < 0.02:
                     raise Blocked(_in_the_way(hospital, heading, None))
-                speed = math.copysign(min(abs(linear), _braking(free)), linear)
+                speed = math.copysign(min(abs(linear), braking(free)), linear)
             robot.aim(speed, angular)
             yield
             if robot.driver is not mine:
@@ -98,60 +90,18 @@ def drive(hospital: Hospital, linear: float, angular: float, seconds: float) -> 
         yield from come_to_rest(hospital)
 
 
-# --- having the wheel ----------------------------------------------------------------------------
+def _free_ahead(hospital: Hospital, heading: float) -> float:
+    return hospital.physics.free_ahead(hospital.robot.body, heading, 1.5)
 
 
-@dataclass(frozen=True, eq=False)
-class _Wheel:
-    joystick: bool
-
-
-@contextlib.contextmanager
-def wheel(hospital: Hospital, joystick: bool = False) -> Iterator[object]:
-    """Have the wheel; the robot rests afterwards. One behaviour has it at a time, but that a
-    movement of the joystick takes over from the one before."""
-    robot = hospital.robot
-    holder = robot.driver
-    if isinstance(holder, _Wheel) and not (joystick and holder.joystick):
-        raise NotPossible("The robot is already driving. Stop it first, or wait until it is there.")
-    check_battery(hospital)
-    mine = robot.driver = _Wheel(joystick)
-    try:
-        yield mine
-    finally:
-        if robot.driver is mine:
-            robot.driver = None
-            robot.waits_for = None
-            robot.rest()
-
-
-def check_battery(hospital: Hospital) -> None:
-    if hospital.robot.battery <= 0:
-        raise NotPossible("The battery is empty. Push the robot to its charging station.")
-
-
-def come_to_rest(hospital: Hospital) -> Behaviour[None]:
-    hospital.robot.aim(0.0, 0.0)
-    while hospital.robot.moving:
-        yield
-
-
-def face(hospital: Hospital, theta: float) -> Behaviour[None]:
-    """Turn on the spot, the shorter way round."""
-    yield from _turn(hospital, wrap(theta - hospital.robot.theta))
-    hospital.robot.theta = wrap(theta)
-
-
-def _turn(hospital: Hospital, degrees: float) -> Behaviour[None]:
-    robot = hospital.robot
-    yield from come_to_rest(hospital)
-    while abs(degrees) > 0.3:
-        check_battery(hospital)
-        rate = min(TOP_TURN, math.sqrt(1.6 * TURN_CHANGE * abs(degrees)), abs(degrees) / STEP)
-        robot.aim(0.0, math.copysign(rate, degrees))
-        yield
-        degrees -= robot.turning * STEP
-    yield from come_to_rest(hospital)
+def _in_the_way(hospital: Hospital, heading: float, gone: float | None) -> str:
+    """A sentence about what stops a straight drive."""
+    x, y = hospital.robot.position
+    beyond = (x + 0.5 * math.cos(heading), y + 0.5 * math.sin(heading))
+    near = [human for human in hospital.people if human.distance(beyond) < 0.45]
+    what = near[0].name if near else "A wall or furniture"
+    after = f" after {max(0.0, gone):.1f} metres" if gone is not None else ""
+    return f"{what} is in the way{after}. Turn first, or drive to a place instead."
 
 
 # --- to a goal -----------------------------------------------------------------------------------
@@ -166,17 +116,17 @@ def travel(
     """Drive to a spot and turn to `theta`. `limit` says each step how fast it may drive at most.
     Raises `NotPossible` if it cannot stand there, `Blocked` if there is no way."""
     check_goal(hospital, goal)
-    patience = _Patience(hospital)
+    progress = Progress(hospital)
     around: Human | None = None
     while True:
         route = _plan(hospital, goal, around)
-        trouble = yield from _track(hospital, route, around, patience, limit)
+        trouble = yield from track(hospital, route, around, progress, limit)
         if trouble is None:
             break
-        patience.detour(goal)
+        progress.detour(goal)
         around = trouble if isinstance(trouble, Human) else None
         if around is not None and _around(hospital, goal, around) is None:
-            yield from _wait_for_person(hospital, around, patience, goal)
+            yield from _wait_for_person(hospital, around, progress, goal)
     hospital.robot.waits_for = None
     yield from come_to_rest(hospital)
     if theta is not None:
@@ -233,10 +183,10 @@ def _around(hospital: Hospital, goal: Spot, human: Human | None) -> Route | None
     near = [
         other
         for other in hospital.people
-        if other is human or (_still(other) and other.distance(here) < 5.0)
+        if other is human or (is_still(other) and other.distance(here) < 5.0)
     ]
     for other in near:
-        if other.distance(goal) < keep + _KEEP:
+        if other.distance(goal) < keep + KEEP:
             goal = _beside(hospital, other, keep + _KEEP_AROUND) or goal
     discs = [Disc(*other.position, keep + _KEEP_AROUND) for other in near]
     return hospital.chart.route(here, goal, _closed(hospital), discs)
@@ -254,43 +204,8 @@ def _beside(hospital: Hospital, human: Human, reach: float) -> Spot | None:
     return None
 
 
-def _still(human: Human) -> bool:
-    vx, vy = human.body.velocity
-    return vx * vx + vy * vy < 0.01
-
-
-class _Patience:
-    """How long the robot has got no further."""
-
-    def __init__(self, hospital: Hospital) -> None:
-        self._hospital = hospital
-        self._spot = hospital.robot.position
-        self._since = hospital.time
-        self._detours = 0
-
-    @property
-    def waited(self) -> float:
-        """Seconds since it last got on."""
-        if math.dist(self._spot, self._hospital.robot.position) > 0.5:
-            self.renew()
-        return self._hospital.time - self._since
-
-    def renew(self) -> None:
-        self._spot, self._since = self._hospital.robot.position, self._hospital.time
-        self._detours = 0
-
-    def detour(self, goal: Spot) -> None:
-        """Count one; raises `Blocked` where many lead nowhere."""
-        self._detours = self._detours + 1 if self.waited else 1
-        if self._detours > _MOST_DETOURS:
-            raise Blocked(
-                f"The robot does not get through to {self._hospital.name_of_spot(*goal)}: "
-                "the way is blocked again and again. Try again when it is calmer."
-            )
-
-
 def _wait_for_person(
-    hospital: Hospital, human: Human, patience: _Patience, goal: Spot
+    hospital: Hospital, human: Human, progress: Progress, goal: Spot
 ) -> Behaviour[None]:
     """Nobody gets past somebody: wait until they have gone on."""
     robot = hospital.robot
@@ -303,9 +218,9 @@ def _wait_for_person(
             next_try += 1.0
             if _around(hospital, goal, human) is not None:
                 return
-            if patience.waited > 3.0 and human.errand in (Errand.NONE, Errand.COME_ALONG):
+            if progress.waited > 3.0 and human.errand in (Errand.NONE, Errand.COME_ALONG):
                 human.make_way(hospital)
-        if patience.waited > _PATIENCE:
+        if progress.waited > _PATIENCE:
             place = hospital.name_of_spot(*human.position)
             raise Blocked(
                 f"{human.name} is in the way at {place}, and there is no way around to "
@@ -331,202 +246,3 @@ def _no_way(hospital: Hospital, goal: Spot) -> str:
         f"There is no way for the robot from {hospital.name_of_spot(*here)} to {name}. "
         "Choose another place."
     )
-
-
-# --- along a route -------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class _ClosedDoor:
-    gate: str
-
-
-@dataclass(frozen=True)
-class _Stuck:
-    pass
-
-
-_Trouble = Human | _ClosedDoor | _Stuck
-
-
-def _track(
-    hospital: Hospital,
-    route: Route,
-    around: Human | None,
-    patience: _Patience,
-    limit: Callable[[], float] | None,
-) -> Behaviour[_Trouble | None]:
-    """Drive along a route, which was planned around somebody; returns None at its end, or what is
-    in the way."""
-    robot, points = hospital.robot, route.points
-    rest = _lengths_from_end(points)
-    leg = 1
-    allowed = TOP_SPEED
-    pushed = 0  # steps without getting anywhere though the wheels turn
-    looks = 0
-    held_since = hospital.time
-    while leg < len(points):
-        check_battery(hospital)
-        here = robot.position
-        while leg < len(points) - 1 and _off(here, points[leg], points[leg + 1]) <= _off(
-            here, points[leg - 1], points[leg]
-        ):
-            leg += 1
-        remaining = rest[leg] + max(0.0, _left(here, points[leg - 1], points[leg]))
-        if remaining < 0.02 or (leg == len(points) - 1 and math.dist(here, points[-1]) < 0.02):
-            break
-        if looks % _LOOK_EVERY == 0:
-            door = _closed_door_ahead(hospital, route)
-            if door is not None:
-                return door
-            allowed, human = _people_ahead(hospital, points, leg)
-            robot.waits_for = human.name if human is not None else None
-            if human is None or robot.speed > 0.05:
-                held_since = hospital.time
-            elif hospital.time - held_since > (_HELD if _still(human) else _HELD_BY_WALKER):
-                return human
-            if human is not None and human is not around and _still(human) and allowed > 0.3:
-                return human  # seen in time to go around without a stop
-        looks += 1
-        ahead = _point_ahead(points, leg, here, 0.3 + 0.2 * robot.speed)
-        off = wrap(bearing(here, ahead) - robot.theta)
-        speed = min(allowed, _braking(remaining))
-        if limit is not None:
-            speed = min(speed, limit())
-        # Turn first when the way leads elsewhere; slow down in bends.
-        speed *= 0.0 if abs(off) > 50 else max(0.15, math.cos(math.radians(off))) ** 2
-        robot.aim(speed, max(-TOP_TURN, min(TOP_TURN, 3.5 * off)))
-        yield
-        if robot.speed > 0.1 and math.dist(here, robot.position) < 0.3 * robot.speed * STEP:
-            pushed += 1
-            if pushed > 120:
-                yield from come_to_rest(hospital)
-                return _nearest_in_touch(hospital) or _Stuck()
-        else:
-            pushed = 0
-        if limit is not None and limit() < 0.05:
-            patience.renew()  # it waits because it wants to
-    return None
-
-
-def _closed_door_ahead(hospital: Hospital, route: Route) -> _ClosedDoor | None:
-    here = hospital.robot.position
-    for gate in route.gates & hospital.closed_doors():
-        x1, y1, x2, y2 = hospital.world.doors[int(gate.removeprefix("door "))].ends
-        if math.dist(here, ((x1 + x2) / 2, (y1 + y2) / 2)) < _DOOR_IN_VIEW:
-            hospital.known_closed[gate] = hospital.time
-            return _ClosedDoor(gate)
-    return None
-
-
-def _people_ahead(
-    hospital: Hospital, points: tuple[Spot, ...], leg: int
-) -> tuple[float, Human | None]:
-    """How fast people allow to drive, and who is in the way."""
-    here = hospital.robot.position
-    allowed, who = TOP_SPEED, None
-    keep = hospital.robot.body.radius + PERSON_RADIUS + _KEEP
-    for human in hospital.people:
-        now = human.distance(here)
-        if now > _LOOK_AHEAD:
-            continue
-        vx, vy = human.body.velocity
-        x, y = human.position
-        for spot in ((x, y), (x + 0.6 * vx, y + 0.6 * vy)):
-            free = _free_until(here, points, leg, spot, min(keep, now - 0.03))
-            if free < _LOOK_AHEAD and (speed := _braking(free - 0.05)) < allowed:
-                allowed, who = speed, human
-    return allowed, who
-
-
-def _free_until(here: Spot, points: tuple[Spot, ...], leg: int, spot: Spot, keep: float) -> float:
-    """How far along the route one comes before being nearer than `keep` to the spot."""
-    gone, start = 0.0, here
-    for end in points[leg:]:
-        length = math.dist(start, end)
-        if length > 1e-9:
-            ux, uy = (end[0] - start[0]) / length, (end[1] - start[1]) / length
-            along = (spot[0] - start[0]) * ux + (spot[1] - start[1]) * uy
-            aside = abs((spot[0] - start[0]) * uy - (spot[1] - start[1]) * ux)
-            if aside < keep:
-                half = math.sqrt(keep * keep - aside * aside)
-                if along + half > 0 and along - half < length:
-                    return gone + max(0.0, along - half)
-        gone += length
-        if gone > _LOOK_AHEAD:
-            break
-        start = end
-    return math.inf
-
-
-def _nearest_in_touch(hospital: Hospital) -> Human | None:
-    here = hospital.robot.position
-    near = min(hospital.people, key=lambda human: human.distance(here), default=None)
-    touch = hospital.robot.body.radius + PERSON_RADIUS + 0.1
-    return near if near is not None and near.distance(here) < touch else None
-
-
-def _free_ahead(hospital: Hospital, heading: float) -> float:
-    return hospital.physics.free_ahead(hospital.robot.body, heading, 1.5)
-
-
-def _in_the_way(hospital: Hospital, heading: float, gone: float | None) -> str:
-    """A sentence about what stops a straight drive."""
-    x, y = hospital.robot.position
-    beyond = (x + 0.5 * math.cos(heading), y + 0.5 * math.sin(heading))
-    near = [human for human in hospital.people if human.distance(beyond) < 0.45]
-    what = near[0].name if near else "A wall or furniture"
-    after = f" after {max(0.0, gone):.1f} metres" if gone is not None else ""
-    return f"{what} is in the way{after}. Turn first, or drive to a place instead."
-
-
-# --- geometry ------------------------------------------------------------------------------------
-
-
-def _braking(distance: float) -> float:
-    """The speed from which one can stop within the distance."""
-    return math.sqrt(1.6 * SLOW_DOWN * distance) if distance > 0 else 0.0
-
-
-def _lengths_from_end(points: tuple[Spot, ...]) -> list[float]:
-    """For each point, how long the rest of the route is."""
-    rest = [0.0]
-    for start, end in zip(points[-2::-1], points[:0:-1], strict=True):
-        rest.append(rest[-1] + math.dist(start, end))
-    return rest[::-1]
-
-
-def _left(here: Spot, start: Spot, end: Spot) -> float:
-    """How much of a leg is left, seen along it."""
-    length = math.dist(start, end)
-    if length < 1e-9:
-        return 0.0
-    return ((end[0] - here[0]) * (end[0] - start[0]) + (end[1] - here[1]) * (end[1] - start[1])) / (
-        length
-    )
-
-
-def _off(here: Spot, start: Spot, end: Spot) -> float:
-    """How far from a leg one is."""
-    length = math.dist(start, end)
-    left = min(max(_left(here, start, end), 0.0), length)
-    share = left / length if length > 1e-9 else 0.0
-    return math.dist(
-        here, (end[0] + (start[0] - end[0]) * share, end[1] + (start[1] - end[1]) * share)
-    )
-
-
-def _point_ahead(points: tuple[Spot, ...], leg: int, here: Spot, reach: float) -> Spot:
-    """The spot on the route so far ahead; its end if that is nearer."""
-    start, end = points[leg - 1], points[leg]
-    left = min(max(_left(here, start, end), 0.0), math.dist(start, end))
-    while left < reach and leg < len(points) - 1:
-        reach -= left
-        leg += 1
-        start, end = points[leg - 1], points[leg]
-        left = math.dist(start, end)
-    length = math.dist(start, end)
-    if left <= reach or length < 1e-9:
-        return end
-    share = (left - reach) / length
-    return end[0] + (start[0] - end[0]) * share, end[1] + (start[1] - end[1]) * share

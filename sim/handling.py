@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 
-from sim.driving import wheel
 from sim.errors import NotFound, NotPossible
 from sim.hospital import Hospital
 from sim.perception import fits, item_in_view, parse, person_in_view, spot_of
 from sim.placing import ROBOT, Item, spot_on
 from sim.runner import Behaviour
 from sim.searching import approach
+from sim.wheel import wheel
 from sim.world import Furniture
 
 HANDS = 1

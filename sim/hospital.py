@@ -15,7 +15,7 @@ from datetime import datetime
 from typing import Any
 
 from sim.errors import NotPossible, UnknownPlace
-from sim.navigation import Chart, Disc, Spot
+from sim.navigation import Chart, Spot
 from sim.people import Home, Human
 from sim.physics import STEP, Physics
 from sim.placing import Item, free_spot, people_at_start, things_at_start
@@ -302,11 +302,6 @@ class Hospital:
         around = self.world.place(place.inside) if place.inside else None
         return self.pose_of(around) if around is not None and around is not place else None
 
-    def locate_person(self, name: str) -> Human | None:
-        person = self.world.person(name)
-        wanted = person.name if person else name
-        return next((human for human in self.people if human.name == wanted), None)
-
     def here(self, x: float, y: float) -> bool:
         """Whether a spot is where the robot is: in the same room, or, where the map knows no
         rooms, in sight within the lidar's reach."""
@@ -368,15 +363,6 @@ class Hospital:
         if door.name:
             return door.name
         return f"the door of {door.at}" if door.at else "a door"
-
-    def standing_discs(self, margin: float, but: Human | None = None) -> list[Disc]:
-        """The people who do not walk, as discs that a robot's middle keeps out of."""
-        keep = self.robot.body.radius + PERSON_RADIUS + margin
-        return [
-            Disc(*human.position, keep)
-            for human in self.people
-            if human is not but and not human.walking
-        ]
 
     def free_spot(self, x: float, y: float, nearest: float, farthest: float) -> Spot | None:
         """A spot around x, y in the same room where a person can stand free of all others."""

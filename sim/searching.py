@@ -6,7 +6,7 @@ import contextlib
 import math
 from collections.abc import Iterator
 
-from sim.driving import check_battery, come_to_rest, face, lengths_to, travel, way_to, wheel
+from sim.driving import lengths_to, travel, way_to
 from sim.errors import Blocked, NotPossible
 from sim.hospital import Hospital
 from sim.navigation import Spot
@@ -16,6 +16,7 @@ from sim.physics import STEP
 from sim.placing import Item
 from sim.robot import bearing
 from sim.runner import Behaviour
+from sim.wheel import check_battery, come_to_rest, face, wheel
 from sim.words import words
 from sim.world import Person, Place
 

@@ -10,6 +10,7 @@ from typing import TypeVar
 
 import pytest
 
+from sim.people import Human
 from sim.runner import Behaviour
 from sim.simulation import Simulation
 from sim.world import World, load_world
@@ -25,6 +26,10 @@ class Ward:
 
     def does(self, behaviour: Behaviour[T]) -> T:
         return self.simulation.run(behaviour, threading.Event())
+
+    def person(self, name: str) -> Human:
+        """The simulator's truth about somebody."""
+        return next(human for human in self.simulation._hospital.people if human.name == name)
 
     def goes_to(self, place: str) -> None:
         self.does(self.simulation.drive_to(*self.simulation.locate(place)))

@@ -15,16 +15,12 @@ def gaps(simulation, name: str) -> list[float]:
     return [math.dist((s.x, s.y), s.people[number]) for s in simulation.record.samples]
 
 
-def person(simulation, name: str):
-    return simulation._hospital.locate_person(name)
-
-
 @pytest.mark.parametrize("seed", [1, 2])
 def test_alice_is_led_from_ward_a_to_ward_b(small_ward, living, seed) -> None:
     ward = living(small_ward, seed)
     ward.goes_to("ward a")
     ward.does(ward.simulation.guide("Alice", *ward.simulation.locate("ward b")))
-    robot, alice = ward.simulation.robot, person(ward.simulation, "Alice")
+    robot, alice = ward.simulation.robot, ward.person("Alice")
     assert robot.place == "ward b" and robot.speed == 0
     assert small_ward.place_at(*alice.position).name == "ward b"
     assert math.dist((robot.x, robot.y), alice.position) < 2
@@ -46,12 +42,12 @@ def test_somebody_lying_gets_up_to_come_along(small_ward, living) -> None:
     ward = living(small_ward)
     ward.goes_to("ward b")
     ward.does(ward.simulation.guide("patient", *ward.simulation.locate("corridor")))
-    assert small_ward.place_at(*person(ward.simulation, "Henry").position).name == "corridor"
+    assert small_ward.place_at(*ward.person("Henry").position).name == "corridor"
 
 
 def test_whoever_was_led_away_goes_home_after_a_while(small_ward, living) -> None:
     ward = living(small_ward)
-    henry = person(ward.simulation, "Henry")
+    henry = ward.person("Henry")
     bed = henry.position
     ward.goes_to("ward b")
     ward.does(ward.simulation.guide("Henry", *ward.simulation.locate("ward a")))
@@ -73,14 +69,14 @@ def test_nobody_is_led_into_a_wall(small_ward, living) -> None:
     ward.goes_to("ward a")
     with pytest.raises(NotPossible):
         ward.does(ward.simulation.guide("Alice", 6, 5))
-    assert not person(ward.simulation, "Alice").walking
+    assert not ward.person("Alice").walking
 
 
 def test_somebody_who_is_held_up_is_given_up_after_a_while(small_ward, living) -> None:
     ward = living(small_ward)
     ward.goes_to("ward a")
     behaviour = ward.simulation.guide("Alice", *ward.simulation.locate("ward b"))
-    alice = person(ward.simulation, "Alice")
+    alice = ward.person("Alice")
 
     def hold_up(kind, data) -> None:
         alice.pace = 0.0
@@ -95,7 +91,7 @@ def test_the_next_place_is_reached_behind_alice(small_ward, living) -> None:
     ward = living(small_ward)
     ward.goes_to("ward a")
     ward.does(ward.simulation.follow("Alice", "ward b"))
-    robot, alice = ward.simulation.robot, person(ward.simulation, "Alice")
+    robot, alice = ward.simulation.robot, ward.person("Alice")
     assert small_ward.place_at(*alice.position).name == "ward b"
     assert math.dist((robot.x, robot.y), alice.position) < 2.5
     assert min(gaps(ward.simulation, "Alice")) > 0.5
@@ -106,9 +102,9 @@ def test_the_next_place_is_reached_behind_alice(small_ward, living) -> None:
 def test_following_without_a_place_ends_when_they_stand_still(hospital, living) -> None:
     ward = living(hospital, 3)
     assert ward.does(ward.simulation.find("porter"))
-    before = person(ward.simulation, "Victor").position
+    before = ward.person("Victor").position
     ward.does(ward.simulation.follow("porter"))
-    victor = person(ward.simulation, "Victor").position
+    victor = ward.person("Victor").position
     robot = ward.simulation.robot
     assert math.dist(before, victor) > 3
     assert math.dist((robot.x, robot.y), victor) < 2.5
@@ -118,7 +114,7 @@ def test_a_nurse_on_her_round_can_be_asked_to_go_elsewhere(hospital, living) -> 
     ward = living(hospital, 2)
     assert ward.does(ward.simulation.find("Maria"))
     ward.does(ward.simulation.follow("Maria", "kitchen"))
-    assert hospital.place_at(*person(ward.simulation, "Maria").position).name == "kitchen"
+    assert hospital.place_at(*ward.person("Maria").position).name == "kitchen"
 
 
 def test_a_place_unknown_or_out_of_reach_is_said_at_once(world_of, living) -> None:

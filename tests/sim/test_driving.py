@@ -230,3 +230,18 @@ def test_wherever_it_is_sent_it_is_never_in_a_wall(living, start, goal) -> None:
     # A centimetre is what the contact of two bodies may give way.
     for sample in ward.simulation.record.samples:
         assert FLOOR.distance(sample.x, sample.y) >= SMALL.robot.radius - 0.01
+
+
+def test_a_newer_movement_of_the_joystick_takes_over(small_ward, living) -> None:
+    ward = living(small_ward)
+    hold = ward.simulation.drive(0.5, 0, 10)
+    hospital = ward.simulation._hospital
+    for _ in range(30):
+        next(hold)
+        hospital.step()
+    ward.does(ward.simulation.drive(0.0, 45, 2))
+    with pytest.raises(StopIteration):
+        next(hold)
+    assert ward.simulation.robot.theta == pytest.approx(90, abs=12)
+    # The older one did not take the wheel back when it ended.
+    assert ward.simulation.robot.speed == 0

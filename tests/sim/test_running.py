@@ -309,3 +309,12 @@ def test_whatever_is_asked_the_same_calls_give_the_same_record(actions, seed) ->
         return to_json(simulation.record)
 
     assert play() == play()
+
+
+def test_the_benchmark_tells_how_fast_a_busy_floor_runs() -> None:
+    from sim.benchmark import measure
+
+    figures = measure(20)
+    assert figures["people"] == 10 and figures["rays"] == 36
+    assert figures["simulated_seconds"] >= 20 and figures["metres_driven"] > 3
+    assert figures["times_real_time"] > 0

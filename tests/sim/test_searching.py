@@ -118,7 +118,7 @@ def test_in_a_loop_wait_for_brings_the_next_person_each_time(hospital, living) -
     # Whoever comes in later stands before the robot when the robot has met them.
     robot = ward.simulation.robot
     for newcomer in met[2:]:
-        human = ward.simulation._hospital.locate_person(newcomer)
+        human = ward.person(newcomer)
         assert human.distance((robot.x, robot.y)) < 3.5
 
 
@@ -168,7 +168,7 @@ def test_three_visitors_are_shown_the_way(hospital, living) -> None:
         place = ward.does(ward.simulation.hear(10, "Where to?", ["radiology", "pharmacy"]))
         place = "pharmacy" if place is None or "pharmacy" in place else "radiology"
         ward.does(ward.simulation.guide("visitor", *ward.simulation.locate(place)))
-        guest = ward.simulation._hospital.locate_person(ward.simulation._hospital.partner)
+        guest = ward.person(ward.simulation._hospital.partner)
         assert hospital.place_at(*guest.position).name == place
         shown.append(guest.name)
         ward.does(ward.simulation.drive_to(*desk))

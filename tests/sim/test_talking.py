@@ -17,7 +17,7 @@ def ward_a(small_ward, living):
 
 @pytest.fixture
 def alice(ward_a):
-    return ward_a.simulation._hospital.locate_person("Alice")
+    return ward_a.person("Alice")
 
 
 def test_a_long_sentence_takes_longer_and_is_heard_by_those_who_listen(ward_a) -> None:
