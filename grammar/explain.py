@@ -10,6 +10,7 @@ is what is done.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final, assert_never
@@ -17,7 +18,7 @@ from typing import Final, assert_never
 from grammar import plan as p
 from grammar.inference import Types, walk
 from grammar.reading import Code, CodeStep, Function, read_program
-from grammar.speech import Speech, fill, fitting, forms, gaps, speech
+from grammar.speech import Speech, Words, fill, fitting, forms, gaps, speech
 from robot_api.methods import METHODS
 
 ROLES: Final = {
@@ -34,6 +35,14 @@ ROLES: Final = {
     "options": "options",
 }
 """How a parameter's text is put into a sentence; all others are quoted."""
+
+NUMBERS: Final = frozenset(
+    parameter.name
+    for method in METHODS.values()
+    for form in method.forms
+    for parameter in form
+    if parameter.kind.schema.get("type") in ("number", "integer")
+)
 
 
 def explain(plan: p.Plan, language: str = "en") -> str:
@@ -121,7 +130,10 @@ def sentences(told: Sequence[Told], words: Speech) -> str:
     finish()
     if not written:
         return _capital(fill(words.sentences["first"], {"steps": words.sentences["nothing"]}))
-    return " ".join(_capital(sentence) for sentence in written)
+    # What is quoted at the end may have brought its own full stop.
+    closing = words.values["quoted"][-1]
+    ended = re.compile(rf"(?<=[.!]{re.escape(closing)})\.$")
+    return " ".join(_capital(ended.sub("", sentence)) for sentence in written)
 
 
 def listed(told: Iterable[Told], words: Speech, depth: int = 0) -> list[tuple[int, str]]:
@@ -190,6 +202,8 @@ class _Teller:
     """What it may be called while it is the latest of its sort: "the answer"."""
     latest: dict[str, str] = field(init=False, default_factory=dict)
     """For each such short way the name that it means at this point of the plan."""
+    makers: dict[str, p.Step | None] = field(init=False, default_factory=dict)
+    """The step that makes each name, where it is only one."""
     told_apart: set[str] = field(init=False, default_factory=set)
     """The names whose spelling is needed to tell them from another."""
 
@@ -208,6 +222,7 @@ class _Teller:
                     pass
                 case _:
                     continue
+            self.makers[name] = step if name not in self.makers else None
             wishes = list(self._called(name, step))
             known = choices.setdefault(name, wishes)
             if known != wishes:  # made in several ways: only what they have in common
@@ -347,7 +362,7 @@ class _Teller:
 
     def call(self, step: p.Call) -> str:
         words = self.words.methods[step.method]
-        action = self.patterned(words.do, step.arguments)
+        action = self.patterned(*_signed(words, step.arguments))
         if step.save_as:
             self.latest[self.short[step.save_as]] = step.save_as
         if step.save_as in self.told_apart:
@@ -381,6 +396,9 @@ class _Teller:
 
     def filled(self, pattern: str, arguments: dict[str, p.Value]) -> str:
         wanted = forms(pattern)
+        for name, value in arguments.items():
+            if isinstance(value, p.Number) and value.value == 1:
+                pattern = self.words.nouns.one(pattern, name)
         return fill(
             pattern,
             {
@@ -405,6 +423,10 @@ class _Teller:
                 return self.series(value.items, "or")
             case p.Recall() if role == "place" and self._is_answer(value.name):
                 return fill(self.words.values["place"], {"value": self.value(value)})
+            case p.Number() | p.Text() | p.Items() | p.Sentence():
+                return self.value(value)
+            case _ if parameter in NUMBERS:
+                return fill(self.words.values["inserted"], {"value": self.value(value)})
             case _:
                 return self.value(value)
 
@@ -519,15 +541,27 @@ class _Teller:
                 return say["always" if value.value is holds else "never"]
             case p.Ask(method=method, field=None):
                 words = self.words.methods[method]
-                pattern = words.holds if holds else words.fails
-                if pattern:
-                    return self.patterned((pattern,), value.arguments)
+                patterns = words.holds if holds else words.fails
+                if patterns:
+                    return self.patterned(patterns, value.arguments)
+            case p.Recall(name=name) if isinstance(call := self.makers.get(name), p.Call):
+                words = self.words.methods[call.method]
+                patterns = words.held if holds else words.missed
+                if patterns and name not in self.told_apart:
+                    return self.patterned(patterns, call.arguments)
             case _:
                 pass
         return fill(say["holds" if holds else "fails"], {"value": self.value(value)})
 
     def comparison(self, compare: p.Compare, holds: bool) -> str:
         operator = compare.operator
+        if not holds and operator != "in":
+            operator, holds = _OPPOSITES[operator], True
+        match compare:
+            case p.Compare(left=p.Ask(method=method, field=str(part)), right=p.Text(value=text)):
+                patterns = self.words.methods[method].compared.get(part, {})
+                if operator in patterns:
+                    return fill(patterns[operator], {"right": text})
         values = {"left": self.value(compare.left), "right": self.value(compare.right)}
         if operator == "in":
             is_list = self.types.of(compare.right).startswith("list[")
@@ -537,6 +571,17 @@ class _Teller:
         if not holds:
             operator = _OPPOSITES[operator]
         return fill(self.words.conditions[operator], values)
+
+
+def _signed(
+    words: Words, arguments: dict[str, p.Value]
+) -> tuple[tuple[str, ...], dict[str, p.Value]]:
+    """The patterns for what is done, and the arguments: turning by -90 is turning right by 90."""
+    for name in gaps(words.negative[0]) if words.negative else ():
+        number = arguments.get(name)
+        if isinstance(number, p.Number) and number.value < 0:
+            return words.negative, {**arguments, name: p.Number(-number.value)}
+    return words.do, arguments
 
 
 _OPPOSITES: Final = {

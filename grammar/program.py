@@ -69,6 +69,9 @@ PERCENT: Final = (
     "    return round(100 * part / whole) if whole else 0",
 )
 
+LONGEST_IN_BRACES: Final = 60
+"""Characters: an f-string cannot be broken within its braces."""
+
 _FLIPPED: Final = {"==": "!=", "!=": "==", "<": ">=", "<=": ">", ">": "<=", ">=": "<"}
 
 
@@ -297,7 +300,7 @@ class _Writer:
         if isinstance(document, Call) and document.head == "str":  # the braces do that
             document = document.arguments[0]
         text = flat(document)
-        if "'" in text or "\\" in text or "{" in text:
+        if "'" in text or "\\" in text or "{" in text or len(text) > LONGEST_IN_BRACES:
             return None
         return text.replace('"', "'")
 
@@ -356,6 +359,9 @@ class _Writer:
             return Compare(self.lowered(left), operator, self.lowered_all(right))
         if operator not in _FLIPPED:
             raise PlanError(f"Values cannot be compared with {operator!r}.")
+        letterless = any(isinstance(each, p.Text) and not _letters(each) for each in (left, right))
+        if kinds == {"str"} and letterless:  # "12:00" is the same in upper and lower case
+            return Compare(self.value(left), operator, self.value(right))
         if operator in ("==", "!="):
             if "str" in kinds or kinds == {"Location"}:
                 return Compare(self.lowered(left), operator, self.lowered(right))
@@ -399,6 +405,10 @@ def _parts(sentence: p.Sentence) -> Iterator[str | p.Value]:
                 yield from _parts(part)
             case _:
                 yield part
+
+
+def _letters(text: p.Text) -> bool:
+    return text.value.lower() != text.value.upper()
 
 
 def _counter(step: p.Repeat) -> str:

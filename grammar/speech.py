@@ -26,9 +26,13 @@ class Words(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     result: tuple[str, ...] = ()
     first: str | None = None
     value: tuple[str, ...] = ()
-    holds: str | None = None
-    fails: str | None = None
+    negative: tuple[str, ...] = ()
+    holds: tuple[str, ...] = ()
+    fails: tuple[str, ...] = ()
+    held: tuple[str, ...] = ()
+    missed: tuple[str, ...] = ()
     fields: dict[str, str] = {}
+    compared: dict[str, dict[str, str]] = {}
 
 
 class Times(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -44,6 +48,7 @@ class Nouns(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     definite: str
     vowels: str
     plural: tuple[tuple[str, str], ...]
+    singular: tuple[tuple[str, str], ...]
 
     def indefinite(self, noun: str) -> str:
         if re.fullmatch(self.definite, noun):
@@ -58,6 +63,13 @@ class Nouns(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             return noun
         before_vowel = noun[:1].lower() in self.vowels
         return fill(patterns[-1 if before_vowel else 0], {"noun": noun})
+
+    def one(self, pattern: str, gap: str) -> str:
+        """A phrase for the number 1 in its gap."""
+        for found, replacement in self.singular:
+            escaped = found.replace("{gap}", re.escape(f"{{{gap}}}"))
+            pattern = re.sub(escaped, replacement.replace("{gap}", f"{{{gap}}}"), pattern)
+        return pattern
 
     def many(self, noun: str) -> str:
         for pattern, replacement in self.plural:

@@ -58,7 +58,7 @@ def test_the_visitors_of_the_design() -> None:
         "Then, three times, I will wait for a person, ask “Where to?” and take one of the answers "
         "“radiology” or “pharmacy”, take the person to the place named in the answer, and then go "
         "to where I started. "
-        "Then I will say “Three visitors have been shown the way.”."
+        "Then I will say “Three visitors have been shown the way.”"
     )
 
 
@@ -159,7 +159,7 @@ def test_a_clause_in_a_clause() -> None:
     )
     assert told == (
         "For each of the offices I know, I will do this: go to this office; "
-        "if I do not see a person, say “Nobody here.”."
+        "if I do not see a person, say “Nobody here.”"
     )
 
 
@@ -168,6 +168,34 @@ def test_waiting_for_somebody_is_not_called_doing_nothing() -> None:
     assert explained(p.While(nobody, ())) == (
         "As long as I do not see a person, I will wait a moment."
     )
+
+
+def test_numbers_and_directions() -> None:
+    assert explained(
+        call("turn", degrees=p.Number(-90)),
+        call("move", metres=p.Number(1)),
+        call("wait", seconds=p.Number(1)),
+    ) == (
+        "I will turn 90 degrees to the right, drive 1 metre straight ahead, and then wait 1 second."
+    )
+    told = explained(question("How long?", "time"), call("wait", seconds=p.Recall("time")))
+    assert "wait [the answer] seconds" in told
+
+
+def test_yes_or_no_that_was_remembered() -> None:
+    told = explained(
+        call("find", "found", thing=text("stapler")),
+        p.If(p.Holds(p.Recall("found")), (call("grab", thing=text("stapler")),), (say("No."),)),
+        p.If(p.Not(p.Holds(p.Recall("found"))), (call("dock"),)),
+    )
+    assert "Then, if I found a stapler, I will take a stapler. Otherwise, I will say “No.”" in told
+    assert "if I did not find a stapler, I will go back" in told
+
+
+def test_the_time_of_day() -> None:
+    noon = p.Compare(p.Ask("clock", field="time"), ">=", text("12:00"))
+    assert explained(p.If(noon, (call("dock"),))).startswith("If it is 12:00 or later, I will")
+    assert explained(p.If(p.Not(noon), (call("dock"),))).startswith("If it is before 12:00, I")
 
 
 def test_nothing_to_do() -> None:
@@ -189,21 +217,24 @@ def test_every_method_has_words_in_every_language(language: str) -> None:
         required = [
             {parameter.name for parameter in form if parameter.required} for form in method.forms
         ]
-        patterns = [*said.do, *said.result, *said.value, said.holds or "", said.fails or ""]
+        patterns = [*said.do, *said.negative, *said.result, *said.value]
+        patterns += [*said.holds, *said.fails, *said.held, *said.missed]
         assert all(gaps(pattern) <= known for pattern in patterns), name
         for form in required:
             assert any(gaps(pattern) <= form for pattern in said.do), f"{name}: nothing for {form}"
         if method.returns.annotation != "None":
             assert said.value and said.result, f"{name} has a result"
         if method.returns.annotation == "bool":
-            assert said.holds and said.fails, f"{name} is yes or no"
+            assert said.holds and said.fails and said.held and said.missed, f"{name} is yes or no"
 
 
 def spoken(language: str, method: str, told: str) -> bool:
     """Whether one of the method's phrases is in the text, gaps being anything."""
     words = speech(language).methods[method]
-    patterns = [*words.do, *words.value, words.holds or "", words.fails or ""]
+    patterns = [*words.do, *words.negative, *words.value, *words.holds, *words.fails]
     patterns += [*words.fields.values()]
+    one = speech(language).nouns.one
+    patterns += [one(pattern, gap) for pattern in patterns for gap in gaps(pattern)]
     return any(
         re.search(".+?".join(map(re.escape, re.split(r"\{[^}]*\}", pattern))), told, re.DOTALL)
         for pattern in patterns
