@@ -66,7 +66,7 @@ class Hopeless(Exception):
     """No sense in reading on."""
 
     def __init__(self, line: int | None, message: str) -> None:
-        self.problem = Problem(line, message)
+        self.problem = Problem(line, printable(message))
 
 
 def compose(path: Path) -> Node:
@@ -177,6 +177,11 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return f' Did you mean "{table[close[0]]}"?' if close else ""
 
 
+def printable(message: str) -> str:
+    """One line that does nothing odd to a terminal, whatever was quoted from the file."""
+    return "".join(c if c.isprintable() else "?" for c in message)
+
+
 def short(text: str) -> str:
     return text if len(text) <= 40 else text[:37] + "..."
 
@@ -199,7 +204,7 @@ class NodeReader:
     # --- problems
 
     def problem(self, line: int, message: str) -> None:
-        self.problems.append(Problem(line, message))
+        self.problems.append(Problem(line, printable(message)))
         if len(self.problems) >= MAX_PROBLEMS:
             raise Hopeless(None, "There are more problems than these. Correct these first.")
 

@@ -250,6 +250,11 @@ def test_anchors_cannot_blow_a_file_up(problems):  # type: ignore[no-untyped-def
     assert any("more than 200000 values" in told for told in problems(text))
 
 
+def test_what_is_quoted_from_a_file_does_nothing_to_the_terminal(problems):  # type: ignore[no-untyped-def]
+    (found,) = problems('units: "\\e[31m\\n"\n')
+    assert found.isprintable()
+
+
 def test_no_flood_of_problems(problems):  # type: ignore[no-untyped-def]
     found = problems("places:\n" + "  - {nam: x}\n" * 900)
     assert len(found) <= 51
