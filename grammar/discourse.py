@@ -100,6 +100,8 @@ class Discourse:
     at_pick_up: Value | None = None
     """Where it was picked up."""
     in_loop: bool = False
+    at_furniture: str | None = None
+    """The furniture that a command is about: "on the table, ..."."""
     answer: str | None = None
     """The variable with the last answer."""
     answer_options: tuple[str, ...] = ()

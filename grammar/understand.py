@@ -176,7 +176,8 @@ class _Reader:
         skips: dict[int, list[tuple[int, float]]] = {}
         words = [token.norm for token in self.tokens]
         for at, token in enumerate(self.tokens):
-            if token.norm == COMMA:
+            said_twice = at > 0 and words[at - 1] == token.norm and token.kind == "word"
+            if token.norm == COMMA or said_twice:
                 skips.setdefault(at, []).append((at + 1, COMMA_PASSED_OVER))
             for filler in _fillers_by_first(self.language).get(token.norm, ()):
                 if tuple(words[at : at + len(filler)]) == filler:

@@ -83,6 +83,17 @@ def go_point(d: Discourse, node: Node) -> Steps:
     ]
 
 
+@meaning("in_place")
+def in_place(d: Discourse, node: Node) -> Steps:
+    """ "in the kitchen, count the cups": go there first."""
+    spot: Where = d.get(node, "spot")
+    going = go(d, spot.place) if spot.place is not None else []
+    d.at_furniture = spot.furniture
+    inner: Steps = d.build(node.parts["then"])
+    d.at_furniture = None
+    return [*going, *inner]
+
+
 @meaning("come_back")
 def come_back(d: Discourse, node: Node) -> Steps:
     """Back to where the command was given."""

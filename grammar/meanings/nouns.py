@@ -177,12 +177,14 @@ def described(d: Discourse, noun: str, node: Node) -> Thing:
             before.append(mod[len(SUPERLATIVE) :])
         else:
             after.append(mod)
-    return Thing(Text(" ".join((*before, noun, *after))), place, furniture)
+    if place is None and furniture is None:
+        furniture = d.at_furniture
+    return Thing(Text(" ".join(word for word in (*before, noun, *after) if word)), place, furniture)
 
 
 def sought(d: Discourse, thing: Thing) -> Value:
     """The thing as the robot is to look for it: "cup on the table"."""
-    if thing.furniture and isinstance(thing.value, Text):
+    if thing.furniture and isinstance(thing.value, Text) and not thing.person:
         on = d.language.phrase("on_furniture", furniture=thing.furniture)
         return Text(f"{thing.value.value} {on}")
     return thing.value
