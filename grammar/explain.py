@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, replace
 from typing import Final, assert_never
 
 from grammar import plan as p
-from grammar.inference import Types, walk
+from grammar.inference import Types, may_end, walk
 from grammar.reading import Code, CodeStep, Function, read_program
 from grammar.speech import Speech, Words, fill, fitting, forms, gaps, speech
 from robot_api.methods import METHODS
@@ -217,7 +217,7 @@ class _Teller:
         for step in walk(self.plan.steps):
             match step:
                 case p.Call(save_as=str() as name) | p.Remember(name=name):
-                    pass
+                    step = _as_call(step)
                 case p.ForEach(variable=name):
                     pass
                 case _:
@@ -243,7 +243,7 @@ class _Teller:
     def forget(self, steps: Iterable[p.Step]) -> None:
         """After or before steps that may run or not: what they make is no longer just the latest,
         unless it would be the same anyway."""
-        for step in walk(steps):
+        for step in map(_as_call, walk(steps)):
             if isinstance(step, p.Call) and step.save_as:
                 short = self.short[step.save_as]
                 if self.latest.get(short) != step.save_as:
@@ -254,7 +254,7 @@ class _Teller:
         match step:
             case p.Call():
                 words = self.words.methods[step.method]
-                if words.first and self.plan.steps and step is self.plan.steps[0]:
+                if words.first and step == _as_call(self.plan.steps[0]):
                     yield words.first
                     return
                 given = step.arguments.keys()
@@ -282,7 +282,7 @@ class _Teller:
 
     def step(self, step: p.Step) -> Iterator[Told]:
         say = self.words.steps
-        match step:
+        match step := _as_call(step):
             case p.Call():
                 yield Told(self.call(step))
             case p.Remember(value=p.Items(items=())):
@@ -314,7 +314,8 @@ class _Teller:
             case Function(name=name):
                 yield self.clause("function", step.steps, False, name=self.quoted_code(name))
             case p.Forever():
-                yield self.loop("forever", step.steps)
+                leaves = any(map(may_end, step.steps))
+                yield self.loop("again" if leaves else "forever", step.steps)
             case p.Try():
                 yield self.clause("try", step.steps)
                 self.forget(step.steps)
@@ -435,7 +436,7 @@ class _Teller:
             isinstance(step, p.Call)
             and step.save_as == name
             and METHODS[step.method].returns.annotation == "str"
-            for step in walk(self.plan.steps)
+            for step in map(_as_call, walk(self.plan.steps))
         )
 
     def recall(self, name: str) -> str:
@@ -571,6 +572,15 @@ class _Teller:
         if not holds:
             operator = _OPPOSITES[operator]
         return fill(self.words.conditions[operator], values)
+
+
+def _as_call(step: p.Step) -> p.Step:
+    """Remembering what a robot method gives, as the call that it is."""
+    match step:
+        case p.Remember(name=name, value=p.Ask(field=None) as ask):
+            return p.Call(ask.method, ask.arguments, name)
+        case _:
+            return step
 
 
 def _signed(

@@ -161,7 +161,7 @@ def _steps_take_time(steps: Steps, may_leave: bool) -> bool:
             return may_leave
         if _step_takes_time(step, may_leave):
             return True
-        if not may_leave and _may_end(step):
+        if not may_leave and may_end(step):
             return False
     return False
 
@@ -189,20 +189,20 @@ def _step_takes_time(step: p.Step, may_leave: bool) -> bool:
         case p.RepeatUntil() | p.Forever():
             # A pause is written into them where nothing else takes time.
             return _steps_take_time(step.steps, may_leave=False) or not any(
-                map(_may_end, step.steps)
+                map(may_end, step.steps)
             )
         case _:
             return False
 
 
-def _may_end(step: p.Step) -> bool:
+def may_end(step: p.Step) -> bool:
     """Whether the step can leave the loop that it is in."""
     match step:
         case p.End():
             return True
         case p.If():
-            return any(map(_may_end, (*step.then, *step.otherwise)))
+            return any(map(may_end, (*step.then, *step.otherwise)))
         case p.Try():
-            return any(map(_may_end, (*step.steps, *step.otherwise)))
+            return any(map(may_end, (*step.steps, *step.otherwise)))
         case _:
             return False

@@ -67,7 +67,14 @@ def test_nouns_have_their_articles() -> None:
         "I will look for an apple at the kitchen."
     )
     assert explained(call("goto", place=text("Alice's office"))) == "I will go to Alice's office."
-    assert explained(call("goto", place=text("room 12"))) == "I will go to room 12."
+    for name, said in {
+        "room 12": "room 12",
+        "radiology": "radiology",
+        "alice's office": "alice's office",
+        "children's ward": "the children's ward",
+        "pharmacy": "the pharmacy",
+    }.items():
+        assert explained(call("goto", place=text(name))) == f"I will go to {said}."
     assert explained(call("grab", thing=text("leftmost bottle"))) == (
         "I will take the leftmost bottle."
     )
@@ -190,6 +197,26 @@ def test_yes_or_no_that_was_remembered() -> None:
     )
     assert "Then, if I found a stapler, I will take a stapler. Otherwise, I will say “No.”" in told
     assert "if I did not find a stapler, I will go back" in told
+
+
+def test_a_value_that_was_remembered_is_called_as_a_result_is() -> None:
+    """Both ways to keep the result of a robot method read alike."""
+    told = explained(
+        p.Remember("start", p.Ask("location")),
+        p.Remember("seen", p.Ask("sees", {"thing": text("person")})),
+        call("goto", place=p.Recall("start")),
+        p.If(p.Holds(p.Recall("seen")), (say("Somebody."),)),
+    )
+    assert told == (
+        "I will note where I am, look whether I see a person, and then go to where I started. "
+        "Then, if I saw a person, I will say “Somebody.”"
+    )
+
+
+def test_a_loop_that_is_left_from_within() -> None:
+    seen = p.If(p.Holds(p.Ask("sees", {"thing": text("cup")})), (p.End(),))
+    told = explained(p.Forever((call("turn", degrees=p.Number(90)), seen)))
+    assert told.startswith("Again and again, I will do this: turn 90 degrees to the left; if I see")
 
 
 def test_the_time_of_day() -> None:
