@@ -175,14 +175,21 @@ class _Compiler:
         return False
 
     def _deterministic(self, finals: dict[int, tuple[float, int]], name: str) -> int:
+        alone: dict[int, frozenset[int]] = {}  # most are asked for one node, again and again
+
         def closure(nodes: set[int]) -> frozenset[int]:
-            todo, found = list(nodes), set(nodes)
-            while todo:
-                for node in self.empty[todo.pop()]:
-                    if node not in found:
-                        found.add(node)
-                        todo.append(node)
-            return frozenset(found)
+            if len(nodes) > 1:
+                return frozenset().union(*(closure({node}) for node in nodes))
+            (only,) = nodes
+            if only not in alone:
+                todo, found = [only], {only}
+                while todo:
+                    for node in self.empty[todo.pop()]:
+                        if node not in found:
+                            found.add(node)
+                            todo.append(node)
+                alone[only] = frozenset(found)
+            return alone[only]
 
         start = closure({0})
         if any(node in finals for node in start):

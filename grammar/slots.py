@@ -19,7 +19,7 @@ from grammar.wordforms import plural
 
 FREE_WORD: Final = 1.0
 """Cost of a word that only an open slot understands."""
-SWALLOWED_COMMAND: Final = 25.0
+SWALLOWED_COMMAND: Final = 40.0
 """Cost of a text that goes on over what begins like another command."""
 UNKNOWN_NAME: Final = 30.0
 """Cost of reading words as the name of something that is not known."""
@@ -317,7 +317,13 @@ class Slots:
                 break
             length = position + 1 - at
             matches.append((position + 1, FREE_WORD * length, None))
-        return matches
+        named = {end for slot in ("person", "place") for end in self._named(slot, at)}
+        return [match for match in matches if match[0] not in named]  # a name is no thing
+
+    def _named(self, slot: str, at: int) -> list[int]:
+        """Where names of this slot end that begin here, spelled right."""
+        trie = self.names.tries.get(slot)
+        return [end for end, cost, _ in self._name(trie, at) if not cost] if trie else []
 
     def _unknown(self, at: int) -> list[Match]:
         """The name of something nobody knows, so that it can be said which."""
