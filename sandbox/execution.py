@@ -167,9 +167,10 @@ class Execution:
                     event = self._handle(interpreter, event)
         except Stopped as error:
             return self._ended("stopped", self._stopped or error.because, self._line)
-        except Killed:
-            if self._stopped is not None:
-                return self._ended("stopped", self._stopped, self._line)
+        except Killed as error:
+            if self._stopped is not None or error.interrupted:
+                because = self._stopped or "The program was interrupted."
+                return self._ended("stopped", because, self._line)
             message = "The program's process was ended by something else. Run it once more."
             return self._ended("failed", message, self._line, "killed")
         except Unavailable:

@@ -81,7 +81,12 @@ class LimitReached(Exception):
 
 
 class Killed(Exception):
-    """The process of the program is gone, by `kill` or by a fault."""
+    """The process of the program is gone: by `kill`, by a fault, or (`interrupted`) by a signal
+    that asks programs to end, such as the terminal sends at Ctrl-C to all that it started."""
+
+    def __init__(self, message: str, interrupted: bool = False) -> None:
+        super().__init__(message)
+        self.interrupted = interrupted
 
 
 class Unavailable(Exception):
@@ -391,7 +396,9 @@ class Interpreter:
         inner = error.exception()
         text = str(inner)
         if isinstance(error, monty.MontyCrashedError):
-            return LimitReached("computing") if error.timed_out else Killed(str(error))
+            if error.timed_out:
+                return LimitReached("computing")
+            return Killed(text, bool(re.search(r"\(SIG(INT|TERM|HUP)\)", str(error))))
         if "time limit exceeded" in text and isinstance(inner, TimeoutError):
             return LimitReached("computing")
         if isinstance(inner, MemoryError):

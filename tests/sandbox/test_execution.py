@@ -217,6 +217,18 @@ def test_a_fault_where_the_output_goes_is_not_hidden() -> None:
 
 
 @linux
+def test_ctrl_c_in_the_terminal_reaches_the_process_too_and_is_a_stop() -> None:
+    before = children()
+
+    def terminal(method: str, arguments: dict[str, object], line: int) -> None:
+        for pid in children() - before:
+            os.kill(pid, signal.SIGINT)
+
+    outcome = Execution("robot.wait(1)\nrobot.wait(2)", terminal).run()
+    assert (outcome.status, outcome.line) == ("stopped", 1)
+
+
+@linux
 def test_a_process_that_something_else_ends_is_a_failure() -> None:
     before = children()
 
