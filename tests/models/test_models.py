@@ -25,6 +25,7 @@ from nl2robot.models import Language, ModelError, Npm, Zip
 FILES = {
     "am/final.mdl": os.urandom(600_000),  # does not shrink, so a cut falls inside the download
     "conf/mfcc.conf": b"--sample-frequency=16000\n",
+    "graph/HCLr.fst": b"sounds" * 1000,
     "graph/Gr.fst": b"words" * 1000,
     "README": b"A small model.\n",
 }
@@ -497,7 +498,17 @@ def test_a_model_unpacked_by_hand_is_used_as_it_is(folder: Path) -> None:
 def test_a_folder_that_is_no_model_is_not_taken_for_one(folder: Path) -> None:
     (folder / "en" / "am").mkdir(parents=True)
     assert models.find("en") is None
-    assert len(models.verify("en")) == len(models.NEEDED)
+    assert len(models.verify("en")) == 4
+
+
+def test_a_model_copied_without_its_graph_is_not_used(folder: Path) -> None:
+    """libvosk would end the program instead of raising an error."""
+    for name, content in FILES.items():
+        (folder / "en" / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / "en" / name).write_bytes(b"" if name == "graph/HCLr.fst" else content)
+    assert models.find("en") is None
+    (problem,) = models.verify("en")
+    assert "lacks graph/HCLr.fst" in problem
 
 
 def test_a_missing_model_says_how_to_get_it() -> None:
