@@ -10,7 +10,7 @@ from grammar.samples import samples
 from grammar.vocabulary import vocabulary
 from nl2robot.knowledge import Knowledge
 from nl2robot.speech.audio import read
-from nl2robot.speech.recogniser import Heard, Recogniser
+from nl2robot.speech.recogniser import Heard, Recogniser, choose
 from nl2robot.translation import Planner, Translation, translate
 
 
@@ -29,8 +29,10 @@ class Ear:
         ]
 
     def hear(self, recording: Path) -> Heard:
-        """What a recording says. Raises `AudioError`."""
-        return self._recogniser.recognise(read(recording), self._phrases)
+        """What a recording says: of its readings the best fitting one that is understood, for
+        people say what makes sense. Raises `AudioError`."""
+        heard = self._recogniser.recognise(read(recording), self._phrases)
+        return choose(heard, lambda text: self._translate(text).program is not None)
 
     def deaf_to(self) -> list[str]:
         """Names of this world that hold a word the model can never hear."""
@@ -40,12 +42,12 @@ class Ear:
 
     def translate(self, heard: Heard, planner: Planner = "auto") -> Translation:
         """The program for what was heard; nothing, and a question back, if that is in doubt."""
-        translation = translate(heard.text, self.knowledge, self.language, planner)
+        translation = self._translate(heard.text, planner)
         if not heard.text:
             return msgspec.structs.replace(
                 translation, message="Nothing was heard. Please say it again, a little louder."
             )
-        if not heard.doubtful or translation.program is None:
+        if translation.program is None or not heard.doubtful:
             return translation
         return msgspec.structs.replace(
             translation,
@@ -59,3 +61,6 @@ class Ear:
             f' "{heard.free_text}". Please say it again, or type it.',
             suggestions=(heard.text,),
         )
+
+    def _translate(self, text: str, planner: Planner = "auto") -> Translation:
+        return translate(text, self.knowledge, self.language, planner)

@@ -12,9 +12,11 @@ import msgspec
 
 from grammar.samples import samples
 from grammar.understand import Context
+from nl2robot.errors import UserError
 from nl2robot.runner import Runner
 from nl2robot.translation import translate
 from robot_api.driver import StopFlag
+from robot_api.errors import InvalidCall
 from robot_api.methods import MAX_TEXT
 from robot_api.server import Context as CallContext
 from robot_api.server import Service
@@ -153,7 +155,10 @@ def _service(
     required: str = "",
 ) -> Service:
     def handle(parameters: dict[str, Any], context: CallContext) -> Any:
-        return msgspec.to_builtins(handler(parameters))
+        try:
+            return msgspec.to_builtins(handler(parameters))
+        except UserError as error:
+            raise InvalidCall(str(error)) from error
 
     return Service(handler=handle, params=_object(properties or {}, required), doc=doc)
 

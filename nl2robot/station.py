@@ -51,11 +51,13 @@ class SimulatedStation(Station):
         self.simulation = simulation
         self._spans: dict[int, tuple[float, float]] = {}
 
-    def note(self, run: int, state: str) -> None:
-        """Remember at what simulated time a run began or ended."""
+    def note(self, run: int, state: str) -> bool:
+        """Remember at what simulated time a run began or ended; True if it has just begun."""
         now = self.simulation.time
-        began = self._spans.get(run, (now, math.inf))[0]
+        new = run not in self._spans
+        began = now if new else self._spans[run][0]
         self._spans[run] = (began, math.inf if state in ("running", "paused") else now)
+        return new
 
     def record(self, run: int) -> Record:
         """The timeline of that run."""
@@ -114,7 +116,8 @@ def simulated_station(
         if data["what"] != "state":
             return
         run, state = data["run"], data["state"]
-        station.note(run, state)
+        if station.note(run, state):
+            driver.begin()
         if pictures is not None and state not in ("running", "paused"):
             _keep_picture(station, log, run, pictures / f"run-{run}.svg")
 

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from typing import Any, Literal
 
 import msgspec
-from grammar.understand import Context, understand
 
 from grammar.plan import Plan, to_data
+from grammar.understand import Context, understand
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 
@@ -41,6 +41,15 @@ class Translation(msgspec.Struct, frozen=True, kw_only=True):
     def to_json(self) -> str:
         return msgspec.json.encode(self).decode()
 
+    def readable(self) -> str:
+        """For people at a terminal: the program with its explanation, or why there is none."""
+        if self.program is not None:
+            return f"{self.program}# {self.explanation}\n"
+        lines = [self.message or "This was not understood."]
+        if self.suggestions:
+            lines += ["You could say:", *(f"  {phrase}" for phrase in self.suggestions)]
+        return "\n".join(lines)
+
 
 def translate(
     utterance: str,
@@ -52,7 +61,6 @@ def translate(
     """Understand an utterance and write it as a program. Never moves anything, never raises for
     words that are not understood: the status says so."""
     from grammar.explain import explain
-
     from grammar.program import write_program
 
     if planner == "model":

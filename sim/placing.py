@@ -149,12 +149,13 @@ def free_spot(
 ) -> Spot | None:
     """A spot at some distance around the middle, in the same room, where somebody fits and that
     is `apart` from those taken; None if there is none."""
-    room = world.place_at(*middle)
+    # A charger's bay in the lobby is no room of its own: the widest area counts.
+    areas = [place.area for place in world.places if place.area and contains(place.area, *middle)]
     for i in range(60):
         reach = nearest + (farthest - nearest) * i / 60
         x = middle[0] + reach * math.cos(i * _GOLDEN)
         y = middle[1] + reach * math.sin(i * _GOLDEN)
-        if room is not None and room.area and not contains(room.area, x, y):
+        if areas and not any(contains(area, x, y) for area in areas):
             continue
         if any(math.dist((x, y), other) < apart for other in taken):
             continue

@@ -18,7 +18,7 @@ from sim.robot import bearing
 from sim.runner import Behaviour
 from sim.wheel import check_battery, come_to_rest, face, wheel
 from sim.words import words
-from sim.world import Person, Place
+from sim.world import Person, Place, World, contains
 
 _LOOK_EVERY = 15  # steps: four times a second
 _NEXT_TO = 0.75
@@ -195,9 +195,8 @@ def _let_somebody_come(hospital: Hospital, thing: str, met: set[str]) -> None:
     spot = hospital.free_spot(*robot, 1.0, 2.5)
     if spot is None:
         return
-    place = hospital.place
     newcomer = _newcomer(hospital, thing)
-    if place is not None and place.kind in words().public and newcomer is not None:
+    if _is_public(hospital.world, robot) and newcomer is not None:
         door = _way_in(hospital, spot)
         human = hospital.add_person(newcomer, *door, bearing(door, spot), "standing")
         hospital.newcomers += 1
@@ -214,6 +213,14 @@ def _let_somebody_come(hospital: Hospital, thing: str, met: set[str]) -> None:
             return
         human = min(free, key=lambda sight: (sight.posture == "sitting", sight.distance(robot)))
     human.comes = human.walk_to(hospital, spot)
+
+
+def _is_public(world: World, spot: Spot) -> bool:
+    """Whether people from outside may come there: a charger in the lobby is in the lobby."""
+    here = [place for place in world.places if place.area and contains(place.area, *spot)]
+    if not here and (near := world.place_at(*spot)) is not None:
+        here = [near]
+    return any(place.kind in words().public for place in here)
 
 
 def _newcomer(hospital: Hospital, thing: str) -> Person | None:

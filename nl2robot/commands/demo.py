@@ -12,6 +12,7 @@ from nl2robot.commands.options import open_log, user_name
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.operator import Operator
+from nl2robot.runlog import RunLog
 from nl2robot.session import Session
 from nl2robot.station import simulated_station
 from nl2robot.terminal import Terminal
@@ -34,18 +35,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     folder = Path(options.folder)
     terminal = Terminal()
-    typed = _perform(terminal, TYPED, None, folder / "typed")
+    log = open_log(options.debug)
+    typed = _perform(terminal, log, TYPED, None, folder / "typed")
     heard = _hear(terminal)
-    spoken = _perform(terminal, heard, heard, folder / "spoken") if heard else ExitStatus.OK
+    spoken = _perform(terminal, log, heard, heard, folder / "spoken") if heard else ExitStatus.OK
     terminal.console.print(
         '\nNow in your own words: [bold].venv/bin/nl2robot run "bring the red cup to Alice"[/]'
     )
     return typed or spoken
 
 
-def _perform(terminal: Terminal, words: str, heard: str | None, picture: Path) -> ExitStatus:
+def _perform(
+    terminal: Terminal, log: RunLog, words: str, heard: str | None, picture: Path
+) -> ExitStatus:
     terminal.console.rule(f"[bold]{'Spoken' if heard else 'Typed'}:[/] {words}")
-    with simulated_station(load_world(DEFAULT_WORLD), open_log()) as station:
+    with simulated_station(load_world(DEFAULT_WORLD), log) as station:
         with station.connect() as robot:
             session = Session(Operator(robot, user_name()), terminal, approve_all=True)
             status = session.perform(words, heard)

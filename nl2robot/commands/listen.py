@@ -3,8 +3,17 @@
 from __future__ import annotations
 
 import argparse
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
 
-from nl2robot.commands.options import add_language, add_planner, add_world
+import msgspec
+
+from nl2robot.commands.options import add_language, add_planner, add_world, world_of
+from nl2robot.errors import ExitStatus, UserError
+from nl2robot.knowledge import Knowledge
+from nl2robot.models import need
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -23,4 +32,52 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    raise NotImplementedError
+    model = need(options.lang)
+    if options.expect:
+        return _answers(options, model)
+    from nl2robot.hearing import Ear
+
+    ear = Ear(model, Knowledge(world_of(options)), options.lang)
+
+    def command(recording: Path) -> None:
+        heard = ear.hear(recording)
+        translation = ear.translate(heard, options.planner)
+        if options.json:
+            data = {**msgspec.to_builtins(translation), "heard": heard.text}
+            print(json.dumps(data, ensure_ascii=False), flush=True)
+        else:
+            print(f'heard: "{heard.text}" ({heard.confidence:.0%})')
+            print(translation.readable(), flush=True)
+
+    return _each(options.wav, command)
+
+
+def _answers(options: argparse.Namespace, model: Path) -> int:
+    from nl2robot.speech.answers import expect, hear_answer
+    from nl2robot.speech.audio import read
+    from nl2robot.speech.recogniser import Recogniser
+
+    expected = expect(options.expect, options.lang)
+    recogniser = Recogniser(model, options.lang)
+
+    def answer(recording: Path) -> None:
+        heard = hear_answer(recogniser, read(recording), expected)
+        if options.json:
+            print(json.dumps(msgspec.to_builtins(heard), ensure_ascii=False), flush=True)
+        else:
+            said = f'"{heard.heard}"' if heard.heard else "nothing"
+            print(f"heard: {said}, answer: {heard.answer or '-'} ({heard.confidence:.0%})")
+
+    return _each(options.wav, answer)
+
+
+def _each(files: list[str], hear: Callable[[Path], None]) -> int:
+    """Hear every file; one that cannot be used does not keep the others from being heard."""
+    status = ExitStatus.OK
+    for file in files:
+        try:
+            hear(Path(file))
+        except UserError as error:
+            print(error, file=sys.stderr)
+            status = error.status
+    return status

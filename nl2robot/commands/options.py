@@ -72,10 +72,22 @@ def world_of(options: argparse.Namespace) -> World:
     return load_world(options.world)
 
 
-def open_log() -> RunLog:
-    """The run log in the user's data folder."""
+def open_log(debug: bool = False) -> RunLog:
+    """The run log in the user's data folder. What the server has to say about faults goes to a file
+    beside it, with `debug` to standard error."""
+    import logging
+    from logging.handlers import RotatingFileHandler
+
     from nl2robot.runlog import RunLog
 
+    logger = logging.getLogger("robot_api")
+    if not debug and not logger.handlers:
+        logger.addHandler(
+            RotatingFileHandler(
+                data_folder() / "faults.log", maxBytes=1_000_000, backupCount=2, delay=True
+            )
+        )
+        logger.propagate = False
     return RunLog(data_folder() / "runs.sqlite")
 
 

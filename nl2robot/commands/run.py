@@ -54,7 +54,7 @@ def open_session(
     options: argparse.Namespace, *, approve_all: bool = False
 ) -> Iterator[tuple[Session, Station]]:
     """Open the robot that the options name and sit down at the terminal."""
-    log = open_log()
+    log = open_log(options.debug)
     world = world_of(options)
     opened = (
         simulated_station(

@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     with simulated_station(
         world_of(options),
-        open_log(),
+        open_log(options.debug),
         seed=options.seed,
         speed=options.speed,
         host=options.host,

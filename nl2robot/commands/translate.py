@@ -8,7 +8,7 @@ import sys
 from nl2robot.commands.options import add_language, add_planner, add_world, world_of
 from nl2robot.errors import ExitStatus
 from nl2robot.knowledge import Knowledge
-from nl2robot.translation import Translation, translate
+from nl2robot.translation import translate
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -26,14 +26,5 @@ def run(options: argparse.Namespace) -> int:
     )
     for line in lines:
         translation = translate(line, knowledge, options.lang, options.planner)
-        print(translation.to_json() if options.json else _readable(translation), flush=True)
+        print(translation.to_json() if options.json else translation.readable(), flush=True)
     return ExitStatus.OK
-
-
-def _readable(translation: Translation) -> str:
-    if translation.program is not None:
-        return f"{translation.program}\n# {translation.explanation}\n".replace("\n\n", "\n", 1)
-    lines = [translation.message or "This was not understood."]
-    if translation.suggestions:
-        lines += ["You could say:", *(f"  {phrase}" for phrase in translation.suggestions)]
-    return "\n".join(lines)
