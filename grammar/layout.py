@@ -187,7 +187,7 @@ def _within(document: Document, tail: str, indent: int, before: int = 0) -> list
         return [line]
     match document:
         case String():
-            lines = list(_chunks(document, WIDTH - indent - len(tail)))
+            lines = list(_chunks(document, WIDTH - indent - len(tail), before))
         case Operators():
             lines = _within(document.operands[0], "", indent)
             for operand in document.operands[1:]:
@@ -195,14 +195,15 @@ def _within(document: Document, tail: str, indent: int, before: int = 0) -> list
                 lines += [f"{document.operator} {first}", *rest]
         case Compare():
             lines = _within(document.left, "", indent)
-            first, *rest = _within(document.right, "", indent)
+            first, *rest = _within(document.right, "", indent, len(document.operator) + 1)
             if len(lines) > 1 and isinstance(document.left, String):
                 lines[-1] += f" {document.operator} {first}"
             else:
                 lines.append(f"{document.operator} {first}")
             lines += rest
         case Prefix(inner=String() as inner):
-            lines = list(_chunks(inner, WIDTH - indent - len(tail) - len(document.after)))
+            width = WIDTH - indent - len(tail) - len(document.after)
+            lines = list(_chunks(inner, width, before + len(document.before)))
             lines[0] = document.before + lines[0]
             lines[-1] += document.after
         case _:
@@ -256,13 +257,14 @@ def _string(parts: Sequence[tuple[str, bool]]) -> str:
     return f"{'f' if formatted else ''}{mark}{inner}{mark}"
 
 
-def _chunks(string: String, width: int) -> Iterator[str]:
-    """String literals that together are the string, none wider than `width` if that can be."""
+def _chunks(string: String, width: int, before: int = 0) -> Iterator[str]:
+    """String literals that together are the string, none wider than `width` if that can be;
+    `before` columns of the first are taken."""
     line: list[tuple[str, bool]] = []
-    for piece in _pieces(string, width):
-        if line and len(_string([*line, piece])) > width:
+    for piece in _pieces(string, width - before):
+        if line and before + len(_string([*line, piece])) > width:
             yield _string(line)
-            line = []
+            line, before = [], 0
         line.append(piece)
     yield _string(line)
 

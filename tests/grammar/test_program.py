@@ -233,7 +233,7 @@ def ordinary(program: str) -> bool:
     """Whether nothing in it is so strange that ruff might cut a line elsewhere: a condition or a
     sum too long for a line, characters that are not one column wide."""
     return max(program) < "\u0300" and not re.search(
-        r"^ *((if|elif|while|for) .*[(\[]|[+] .*)$", program, re.MULTILINE
+        r"^ *((if|elif|while|for) .*[(\[]|.* [+] .*|[+] .*)$", program, re.MULTILINE
     )
 
 
