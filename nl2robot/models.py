@@ -33,8 +33,8 @@ from nl2robot.paths import data_folder
 
 MANIFEST = "nl2robot-manifest.json"
 REMEMBERED_SECONDS = 60.0  # how long a source that cannot be reached is left alone
-# What every vosk model has: without them the folder is something else, and with some of them missing
-# libvosk ends the program. The decoding graph is one file in large models, two in small ones.
+# What every vosk model has: without them the folder is something else, and without a graph libvosk
+# ends the program. The decoding graph is one file in large models, two in small ones.
 NEEDED = ("am/final.mdl", "conf/mfcc.conf")
 GRAPHS = (("graph/HCLG.fst",), ("graph/HCLr.fst", "graph/Gr.fst"))
 

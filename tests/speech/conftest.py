@@ -1,0 +1,26 @@
+"""What the stories about speech share: a real speech model, and recordings."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from nl2robot import models
+from nl2robot.speech.recogniser import Recogniser, load
+
+SHOWN = Path(models.__file__).parent / "data" / "recordings"  # the two that `make run` plays
+RECORDED = Path(__file__).parent / "recordings"  # synthesised for these tests, see docs/voice.md
+
+
+@pytest.fixture(scope="session")
+def recogniser() -> Recogniser:
+    """The English one, fetched if need be; where that fails the test is skipped, in CI failed."""
+    try:
+        models.get("en")
+    except models.ModelError as error:
+        if os.environ.get("CI") == "true":
+            pytest.fail(str(error))
+        pytest.skip(str(error))
+    return load("en")
