@@ -248,10 +248,11 @@ def _escaped(text: str, mark: str, braces: bool) -> str:
 def _string(parts: Sequence[tuple[str, bool]]) -> str:
     fixed = "".join(text for text, expression in parts if not expression)
     formatted = any(expression for _, expression in parts)
-    holds_quotes = any(expression and "'" in text for text, expression in parts)
-    mark = "'" if fixed.count('"') > fixed.count("'") and not holds_quotes else '"'
+    mark = "'" if fixed.count('"') > fixed.count("'") else '"'
+    other = '"' if mark == "'" else "'"
     inner = "".join(
-        "{" + text + "}" if expression else _escaped(text, mark, formatted)
+        # Before Python 3.12 the marks around the whole cannot stand within its braces.
+        "{" + text.replace(mark, other) + "}" if expression else _escaped(text, mark, formatted)
         for text, expression in parts
     )
     return f"{'f' if formatted else ''}{mark}{inner}{mark}"

@@ -302,7 +302,7 @@ class _Writer:
         text = flat(document)
         if "'" in text or "\\" in text or "{" in text or len(text) > LONGEST_IN_BRACES:
             return None
-        return text.replace('"', "'")
+        return text
 
     def sum(self, sentence: p.Sentence) -> Document:
         parts: list[Document] = []
