@@ -151,7 +151,9 @@ class Server:
     # --- from start to end
 
     def start(self) -> None:
-        """Begin to serve, in a thread of its own. Raises CannotListen."""
+        """Begin to serve, in a thread of its own, if it does not yet. Raises CannotListen."""
+        if self._thread is not None:
+            return
         listening = _listen(self._host, self._port)
         self._port = listening.getsockname()[1]
         self._unsubscribe = self.driver.subscribe(self.publish)

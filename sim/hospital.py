@@ -160,6 +160,7 @@ class Hospital:
 
     def rest(self) -> None:
         self.robot.rest()
+        self._tell_pose()  # who watches a stop need not wait for the next tenth of a second
 
     def wait(self, seconds: float) -> Generator[None, None, None]:
         """A behaviour that does nothing for so long."""
