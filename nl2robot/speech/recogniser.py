@@ -77,7 +77,7 @@ class Heard:
     """What a recording says."""
 
     text: str  # empty for silence
-    confidence: float  # 0..1, mean over the words; 0 when nothing was heard
+    confidence: float  # 0..1, mean over the words; 0 when nothing was heard that may be said
     words: tuple[Word, ...]
     # With a limited vocabulary: something else was probably said, and `free_text` is what it
     # sounds like when anything may be said. Then ask again rather than act.
@@ -90,9 +90,11 @@ class Heard:
 
 def choose(heard: Heard, understood: Callable[[str], bool]) -> Heard:
     """What was heard, with the text that makes sense: the best of its readings, if any, that is
-    not doubtful and is `understood`. Of a reading chosen so, the times of its words are not known.
+    not doubtful and is `understood`. Where none is, a doubtful text gives way to the free one: that
+    is what to show the speaker. Of another text than the first, the times of words are not known.
     """
-    if not heard.doubtful and understood(heard.text):
+    makes_sense = understood(heard.text)
+    if makes_sense and not heard.doubtful:
         return heard
     for reading in heard.readings:
         if not reading.doubtful and reading.text != heard.text and understood(reading.text):
@@ -103,6 +105,8 @@ def choose(heard: Heard, understood: Callable[[str], bool]) -> Heard:
                 words=(),
                 doubtful=False,
             )
+    if heard.doubtful and heard.free_text and not makes_sense:
+        return replace(heard, text=heard.free_text, confidence=0.0, words=())
     return heard
 
 

@@ -220,7 +220,15 @@ def test_the_best_fitting_reading_that_makes_sense_is_chosen() -> None:
 def test_a_reading_that_does_not_fit_the_sound_is_not_chosen() -> None:
     """Somebody said something else; that it would make a command is no reason to act."""
     remark = heard("weight", Reading("wait for a visitor", -0.6, True), doubtful=True)
-    assert choose(remark, understood) is remark
+    chosen = choose(remark, understood)
+    assert chosen.doubtful
+    assert chosen.text == "weight for busier"  # what it sounds like, to show the speaker
+    assert chosen.confidence == 0.0
+
+
+def test_a_doubtful_command_stays_one_to_ask_about() -> None:
+    command = heard("wait", Reading("wait", -0.3, True), doubtful=True)
+    assert choose(command, understood) is command
 
 
 def test_a_doubtful_command_gives_way_to_one_that_fits() -> None:
