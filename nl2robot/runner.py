@@ -68,6 +68,7 @@ class _Activity:
         self.run = run
         self.approval = approval
         self.execution: Execution | None = None
+        self.robot: Robot | None = None
         self.state: State = "running"
         self.line: int | None = None
         self.message: str | None = None
@@ -216,6 +217,8 @@ class Runner:
             activity.stop_because = because
             if activity.execution is not None:
                 activity.execution.stop(because)
+            if activity.robot is not None:
+                activity.robot.cancel()
 
     # --- the run itself
 
@@ -240,6 +243,7 @@ class Runner:
     def _perform(self, activity: _Activity) -> None:
         try:
             with self._connect() as robot:
+                activity.robot = robot
                 activity.outcome = self._execute(activity, robot)
                 if activity.outcome.status != "done":
                     robot.stop()

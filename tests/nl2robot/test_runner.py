@@ -144,6 +144,14 @@ def test_a_stop_by_anybody_ends_the_program(slow_operator, slow_station) -> None
     assert slow_operator.wait(run).state == "stopped"
 
 
+def test_stopping_the_program_breaks_off_what_the_robot_does(slow_operator, slow_station) -> None:
+    watch = Watch(slow_operator)
+    run = start(slow_operator, "robot.wait(3600)\n")
+    watch.until(what("call", method="wait"))
+    slow_operator.robot.request("program.stop")
+    assert slow_operator.wait(run).state == "stopped"
+
+
 def test_pause_step_and_resume(slow_operator) -> None:
     watch = Watch(slow_operator)
     request = slow_operator.robot.request
