@@ -60,7 +60,11 @@ class Thing:
     plural: bool = False
     person: bool = False
     here: bool = False
-    """Whether it was pointed at ("this box") or is a pronoun: no search needed."""
+    """Whether it was pointed at ("this box") or is somebody here: no search needed."""
+    me: bool = False
+    """Whether it is the speaker."""
+    pronoun: bool = False
+    """Whether it was spoken of before: "it"."""
 
     @property
     def text(self) -> str:

@@ -10,14 +10,14 @@ would be.
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final, Literal
 
 from grammar.chart import Chart, Leaf, Node, TooMuch
-from grammar.discourse import Ambiguous, Discourse, NotUnderstood
+from grammar.discourse import Ambiguous, Discourse, NotUnderstood, Thing
 from grammar.language import Language, load_language
 from grammar.lexicon import Lexicon
-from grammar.plan import Plan
+from grammar.plan import Plan, Text, Value
 from grammar.slots import Names, Slots, names_of
 from grammar.tidy import without_unused
 from grammar.tokens import COMMA, Token, tokenise
@@ -25,8 +25,19 @@ from grammar.tokens import COMMA, Token, tokenise
 LONGEST_TEXT: Final = 2000
 """Characters."""
 MOST_WORDS: Final = 150
-COMMA_PASSED_OVER: Final = 0.5
+COMMA_PASSED_OVER: Final = 1.5
 FILLER_PASSED_OVER: Final = 0.1
+MOST_SUGGESTIONS: Final = 3
+CORRECTABLE: Final = (
+    "place_ref",
+    "length",
+    "angle",
+    "duration",
+    "percentage",
+    "person_ref",
+    "thing",
+)
+"""Rules of which a part of the last sentence can be put right: "no, the pharmacy"."""
 SHORTEST_CORRECTED: Final = 4
 """Letters of a word that may be misspelt."""
 
@@ -41,6 +52,10 @@ class Context:
     """The last plan."""
     text: str = ""
     """The last sentence."""
+    thing: Thing | None = None
+    person: Thing | None = None
+    place: Value | None = None
+    """What was spoken of last: "it", "her", "there"."""
     question: Clarification | None = None
     """The question that waits for an answer."""
 
@@ -91,9 +106,17 @@ def understand(
         return _rejected(text, pack.phrase("too_long"), context)
     if context.question is not None:
         answered = _answered(text, context.question, pack)
+        context = replace(context, question=None)
         if answered is not None:
-            return understand(answered, lexicon, language, Context(context.plan, context.text))
-    return _Reader(text, lexicon, pack, context).understand()
+            return understand(answered, lexicon, language, context)
+    reader = _Reader(text, lexicon, pack, context)
+    if context.plan is not None:
+        if " ".join(token.norm for token in reader.tokens).strip(" .") in pack.speech["again"]:
+            return Understanding(text, "ok", context.plan, 1.0, context=context)
+        corrected = reader.correction()
+        if corrected is not None:
+            return understand(corrected, lexicon, language, context)
+    return reader.understand()
 
 
 def _answered(text: str, question: Clarification, language: Language) -> str | None:
@@ -139,7 +162,15 @@ class _Reader:
             return _rejected(self.text, self.language.phrase("too_complicated"), self.context)
         if tree is None:
             return self._not_understood(chart)
-        discourse = Discourse(self.language, self.lexicon, self.tokens, self.text)
+        discourse = Discourse(
+            self.language,
+            self.lexicon,
+            self.tokens,
+            self.text,
+            thing=self.context.thing,
+            person=self.context.person,
+            place=self.context.place,
+        )
         try:
             steps = discourse.build(tree.parts["steps"])
         except NotUnderstood as reason:
@@ -156,8 +187,48 @@ class _Reader:
             plan,
             round(confidence, 2),
             reading=self._reading(tree),
-            context=Context(plan, self.text),
+            context=Context(
+                plan,
+                self.text,
+                thing=discourse.thing,
+                person=discourse.person,
+                place=discourse.place if isinstance(discourse.place, Text) else None,
+            ),
         )
+
+    def correction(self) -> str | None:
+        """ "no, the pharmacy": the last sentence with this in the place of what it corrects."""
+        said = [token.norm for token in self.tokens if token.norm != COMMA]
+        marks = [words.split() for words in self.language.speech["corrections"]]
+        mark = max((each for each in marks if said[: len(each)] == each), key=len, default=None)
+        if mark is None:
+            return None
+        words = 0
+        start = 0
+        while words < len(mark) or (start < len(self.tokens) and self.tokens[start].norm == COMMA):
+            words += self.tokens[start].norm != COMMA
+            start += 1
+        if start >= len(self.tokens):
+            return None
+        rest = _Reader(
+            self.text[self.tokens[start].start :], self.lexicon, self.language, Context()
+        )
+        before = _Reader(self.context.text, self.lexicon, self.language, Context())
+        try:
+            old_tree = before.chart().best("utterance")
+            for rule in CORRECTABLE:
+                new = rest.chart().longest(rule, 0)
+                if old_tree is None or new is None or new.end < rest.last_word:
+                    continue
+                old = _last(old_tree, rule)
+                if old is None:
+                    continue
+                span = slice(before.tokens[old.start].start, before.tokens[old.end - 1].end)
+                text = self.context.text
+                return text[: span.start] + rest.text.strip(" .!?") + text[span.stop :]
+        except TooMuch:
+            pass
+        return None
 
     def chart(self) -> Chart:
         slots = Slots(self.names, self.tokens, self.corrections).all()
@@ -168,6 +239,14 @@ class _Reader:
             skips=self.skips,
             corrections=self.corrections,
         )
+
+    @property
+    def last_word(self) -> int:
+        """How many tokens there are without the punctuation at the end."""
+        count = len(self.tokens)
+        while count and self.tokens[count - 1].kind == "mark":
+            count -= 1
+        return count
 
     # --- before parsing
 
@@ -214,15 +293,15 @@ class _Reader:
         return f"{', '.join(names[:-1])} {self.language.phrase('or')} {names[-1]}"
 
     def _ask_back(self, which: Ambiguous) -> Understanding:
-        start = self.tokens[which.start].start
         end = self.tokens[which.end - 1].end
+        start = self.tokens[which.start].start if which.start < which.end else end
         question = Clarification(self.text, start, end, which.choices)
         return Understanding(
             self.text,
             "clarify",
             message=which.question,
-            suggestions=[question.completed(choice) for choice in which.choices],
-            context=Context(self.context.plan, self.context.text, question),
+            suggestions=[question.completed(choice) for choice in which.choices[:MOST_SUGGESTIONS]],
+            context=replace(self.context, question=question),
         )
 
     def _not_understood(self, chart: Chart) -> Understanding:
@@ -277,6 +356,17 @@ class _Reader:
 
     def _words(self, start: int, end: int) -> str:
         return self.text[self.tokens[start].start : self.tokens[end - 1].end] if end > start else ""
+
+
+def _last(tree: Node, rule: str) -> Node | None:
+    """The last part of a reading that this rule made."""
+    found: Node | None = None
+    for part in tree.parts.values():
+        if isinstance(part, Node):
+            inner = part if part.production.rule == rule else _last(part, rule)
+            if inner is not None and (found is None or inner.start >= found.start):
+                found = inner
+    return found
 
 
 @functools.cache

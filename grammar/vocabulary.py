@@ -18,7 +18,7 @@ def vocabulary(lexicon: Lexicon, language: str = "en") -> list[str]:
     texts: list[str] = [*pack.spelled_words, *pack.spelling.contractions]
     texts += [word for filler in pack.fillers for word in filler]
     texts += pack.closed
-    texts += pack.phrases.values()
+    texts += [example for examples in pack.help.values() for example in examples]
     for name in (*lexicon.places, *lexicon.people, *lexicon.objects, *lexicon.furniture):
         texts += [name.name, *name.aliases, *name.attributes, name.kind or ""]
     texts += [*lexicon.contacts, *lexicon.gestures, *lexicon.emotions, *lexicon.skills]

@@ -11,6 +11,7 @@ from dataclasses import replace
 from grammar.chart import Leaf, Node
 from grammar.discourse import (
     ANYONE,
+    Ambiguous,
     Discourse,
     NotUnderstood,
     Steps,
@@ -19,7 +20,7 @@ from grammar.discourse import (
     as_value,
     capital,
 )
-from grammar.meanings.nouns import is_me, kind_places, sought
+from grammar.meanings.nouns import is_me, kind_places, sought, thing_it
 from grammar.meanings.registry import meaning
 from grammar.plan import (
     Ask,
@@ -222,10 +223,16 @@ def guide_back(d: Discourse, node: Node) -> Steps:
 
 @meaning("guide_nowhere")
 def guide_nowhere(d: Discourse, node: Node) -> Steps:
-    person = led(d, node)
-    who = named(d, person)
+    """ "guide Bob": asks back where to."""
+    who = named(d, led(d, node))
     words = who if isinstance(who, str) else d.language.phrase("somebody")
-    raise NotUnderstood(d.language.phrase("guide_where", person=words))
+    to_place = d.language.speech["to_place"]
+    raise Ambiguous(
+        d.language.phrase("guide_where", person=words),
+        node.end,
+        node.end,
+        tuple(to_place.format(place=place.name) for place in d.lexicon.places),
+    )
 
 
 def speaks_of_things(d: Discourse, pronoun: Leaf | Node) -> bool:
@@ -237,7 +244,7 @@ def carry_it(d: Discourse, node: Node) -> Steps:
     """ "take them to the kitchen", where "they" are cups."""
     assert d.thing is not None
     spot: Where = d.get(node, "spot") or Where(d.get(node, "place"))
-    return deliver(d, replace(d.thing, here=True), None, spot)
+    return deliver(d, replace(d.thing, pronoun=True), None, spot)
 
 
 @meaning("statement")
@@ -401,9 +408,9 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
         return []
     last = d.done[-1] if d.done else None
     looked = isinstance(last, Call) and last == found(d, thing)
-    if isinstance(last, Call) and last.method == "find" and thing.here:
+    if isinstance(last, Call) and last.method == "find" and thing.pronoun:
         looked = True  # "find the cup and bring it to me"
-    is_here = d.at is not None and (thing.place is None or thing.place == d.at)
+    is_here = thing.here or (d.at is not None and thing.place in (None, d.at))
     steps: Steps = [] if looked or is_here else look_for(d, thing)
     d.holding = thing.value
     d.thing, d.thing_last = thing, True
@@ -422,7 +429,7 @@ def take_back_delivery(d: Discourse, thing: Thing) -> None:
 @meaning("put")
 def put(d: Discourse, node: Node) -> Steps:
     """ "put the cup on the table", "... in the kitchen", "... down"."""
-    thing: Thing = d.get(node, "thing")
+    thing: Thing = d.get(node, "thing") or thing_it(d, node)
     source: Where | None = d.get(node, "from")
     if source is not None:
         thing = replace(thing, place=source.place, furniture=source.furniture)
@@ -440,7 +447,7 @@ def put(d: Discourse, node: Node) -> Steps:
 @meaning("bring")
 def bring(d: Discourse, node: Node) -> Steps:
     """Fetch a thing and hand it to a person, or put it down at a spot."""
-    thing: Thing = d.get(node, "thing")
+    thing: Thing = d.get(node, "thing") or thing_it(d, node)  # "and deliver to Bob"
     source: Where | None = d.get(node, "from")
     if source is not None:
         thing = replace(thing, place=source.place, furniture=source.furniture)
@@ -451,7 +458,7 @@ def bring(d: Discourse, node: Node) -> Steps:
 def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None) -> Steps:
     """Pick a thing up, go where it is to be, and put it down or hand it over."""
     no_way = spot is not None and spot.place is None and thing.place is None
-    if no_way and d.holding != thing.value and not thing.here:
+    if no_way and d.holding != thing.value and not thing.pronoun:
         steps: Steps = [Call("grab", {"thing": sought(d, thing)})]  # both are here
     else:
         steps = pick_up(d, thing)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from grammar.chart import Node
 from grammar.discourse import Discourse, NotUnderstood, Thing, as_value
 from grammar.meanings.actions import noun_of
+from grammar.meanings.nouns import sought
 from grammar.meanings.registry import meaning
 from grammar.plan import (
     Ask,
@@ -46,7 +47,7 @@ def is_seen(d: Discourse, node: Node) -> Condition:
         d.person = Thing(thing.value, known=thing.known, person=True, here=True)
         d.with_person = thing.value
     method = "find" if thing.place is not None and thing.place != d.at else "sees"
-    arguments: dict[str, Value] = {"thing": thing.value}
+    arguments: dict[str, Value] = {"thing": sought(d, thing)}
     if method == "find" and thing.place is not None:
         arguments["place"] = thing.place
     result: Condition = Holds(Ask(method, arguments))
@@ -58,7 +59,7 @@ def is_found(d: Discourse, node: Node) -> Condition:
     thing = noun_of(d, node)
     if thing.person:
         d.person = Thing(thing.value, known=thing.known, person=True, here=True)
-    arguments: dict[str, Value] = {"thing": thing.value}
+    arguments: dict[str, Value] = {"thing": sought(d, thing)}
     if thing.place is not None:
         arguments["place"] = thing.place
     result: Condition = Holds(Ask("find", arguments))
@@ -73,7 +74,7 @@ def counted(d: Discourse, node: Node) -> Condition:
         d.person = thing
     operator = d.get(node, "operator", "==")
     return Compare(
-        Ask("count", {"thing": thing.value}), operator, Number(int(d.get(node, "count")))
+        Ask("count", {"thing": sought(d, thing)}), operator, Number(int(d.get(node, "count")))
     )
 
 

@@ -9,7 +9,7 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Thing, Where, as_value
 from grammar.lexicon import Name
 from grammar.meanings.registry import meaning
-from grammar.plan import Ask, Number, Recall, Text, Value
+from grammar.plan import Ask, Number, Text, Value
 from grammar.wordforms import singular
 
 # --- places
@@ -219,9 +219,9 @@ def thing(d: Discourse, node: Node) -> Thing:
 @meaning("thing_it")
 def thing_it(d: Discourse, node: Node) -> Thing:
     if d.thing is not None:
-        return replace(d.thing, here=True)
+        return replace(d.thing, pronoun=True)
     if d.holding is not None:
-        return Thing(d.holding, here=True)
+        return Thing(d.holding, pronoun=True)
     raise NotUnderstood(d.language.phrase("what_is_it", word=d.words(node.start, node.end)))
 
 
@@ -280,11 +280,11 @@ def owner_of(d: Discourse) -> Text | None:
 
 @meaning("person_me")
 def person_me(d: Discourse, node: Node) -> Thing:
-    return Thing(Recall("me"), person=True, here=True)
+    return Thing(Text(ANYONE), person=True, here=True, me=True)
 
 
 def is_me(person: Thing | None) -> bool:
-    return person is not None and person.value == Recall("me")
+    return person is not None and person.me
 
 
 # --- quantities: always in the unit of the method table

@@ -31,8 +31,9 @@ def ask(d: Discourse, node: Node) -> Steps:
     name = remember_answer(d, options, "answer")
     if options:
         arguments["options"] = Items(tuple(Text(each) for each in options))
-    elif question.production.fixed.get("where") and len(d.lexicon.places) <= MOST_OPTIONS:
-        arguments["options"] = Ask("places")
+    elif question.production.fixed.get("where"):
+        if len(d.lexicon.places) <= MOST_OPTIONS:
+            arguments["options"] = Ask("places")
         d.place = Recall(name)
     if person is not None and person.known:
         arguments["person"] = person.value

@@ -1,0 +1,53 @@
+"""Sample sentences come from the same rules and names; what they promise, holds."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grammar.explain import explain
+from grammar.language import languages, load_language
+from grammar.lexicon import Lexicon
+from grammar.meanings import MEANINGS
+from grammar.program import write_program
+from grammar.samples import random_sentence, samples
+from grammar.understand import understand
+from robot_api.methods import METHODS
+from robot_api.stub import stub
+from sandbox.check import check
+from tests.grammar.ward import WARD
+
+STUB = stub()
+MISUNDERSTOOD = "did not understand"
+
+
+@pytest.mark.parametrize("language", languages())
+def test_every_meaning_that_a_rule_names_exists(language: str) -> None:
+    named = {each.means for each in load_language(language).network.productions if each.means}
+    assert named <= MEANINGS.keys() | METHODS.keys()
+
+
+@pytest.mark.parametrize("language", languages())
+@pytest.mark.parametrize("lexicon", [WARD, Lexicon()])
+def test_all_help_is_understood(language: str, lexicon: Lexicon) -> None:
+    topics = samples(lexicon, language)
+    assert len(topics) >= 6
+    for phrases in topics.values():
+        for phrase in phrases:
+            understood = understand(phrase, lexicon, language)
+            assert understood.status == "ok", f"{phrase}: {understood.message}"
+
+
+@settings(max_examples=80, deadline=None)
+@given(st.sampled_from(languages()), st.integers(0, 10**9))
+def test_what_the_rules_can_say_they_understand(language: str, seed: int) -> None:
+    sentence = random_sentence(WARD, language, seed)
+    understood = understand(sentence, WARD, language)
+    if understood.plan is None:  # "put it there": nothing was spoken of before
+        assert understood.message is not None
+        assert MISUNDERSTOOD not in understood.message, sentence
+        return
+    program = write_program(understood.plan)
+    assert not [finding for finding in check(program, STUB) if finding.severity == "error"], program
+    assert explain(understood.plan, language)
