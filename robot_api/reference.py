@@ -85,7 +85,7 @@ robot.connect("10.0.0.1:9090")
 robot.send_message(robot.say("I'm coming"))
 robot.send_message(robot.goto(-605, -1027, -1.3))
 response = robot.send_message(robot.listen(prompt="Where to?"))
-speech = response.get('data', {}).get('speech')
+speech = response.get("data", {}).get("speech")
 ```
 
 Coordinates count in the map's own unit here, and angles in radians. Nobody having spoken in time
