@@ -12,11 +12,10 @@ import ast
 from collections.abc import Iterator
 from typing import Any
 
-from sandbox.check import Finding
-
 from nl2robot.knowledge import Knowledge
 from robot_api.driver import Capabilities
 from robot_api.methods import METHODS, Method
+from sandbox.check import Finding
 
 
 def violations(program: str, knowledge: Knowledge) -> list[Finding]:

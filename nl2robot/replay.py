@@ -13,11 +13,11 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import msgspec
-from sandbox.execution import Execution
 
 from nl2robot.runlog import LoggedCall, Run
 from robot_api import errors
 from robot_api.driver import StopFlag
+from sandbox.execution import Execution
 from sim.simulation import Simulation
 
 FROM_PEOPLE = frozenset({"ask", "listen", "answer", "scan", "touch"})

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import msgspec
+
 from sandbox.check import Finding, check
 
 if TYPE_CHECKING:
