@@ -11,6 +11,7 @@ from grammar.vocabulary import vocabulary
 from nl2robot.knowledge import Knowledge
 from nl2robot.speech.audio import read
 from nl2robot.speech.recogniser import Heard, Recogniser, choose
+from nl2robot.speech.vocabulary import Missing, missing_words
 from nl2robot.translation import Planner, Translation, translate
 
 
@@ -34,11 +35,11 @@ class Ear:
         heard = self._recogniser.recognise(read(recording), self._phrases)
         return choose(heard, lambda text: self._translate(text).program is not None)
 
-    def deaf_to(self) -> list[str]:
-        """Names of this world that hold a word the model can never hear."""
+    def deaf_to(self) -> list[Missing]:
+        """The words in names of this world that the model can never hear, each with a way round."""
         world = self.knowledge.world
         names = [item.name for items in (world.places, world.people) for item in items]
-        return [name for name in names if self._recogniser.unknown_words([name])]
+        return missing_words(self._recogniser, names)
 
     def translate(self, heard: Heard, planner: Planner = "auto") -> Translation:
         """The program for what was heard; nothing, and a question back, if that is in doubt."""

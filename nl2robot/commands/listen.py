@@ -38,6 +38,8 @@ def run(options: argparse.Namespace) -> int:
     from nl2robot.hearing import Ear
 
     ear = Ear(model, Knowledge(world_of(options)), options.lang)
+    for missing in ear.deaf_to():
+        print(missing.message, file=sys.stderr)
 
     def command(recording: Path) -> None:
         heard = ear.hear(recording)
