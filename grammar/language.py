@@ -71,6 +71,13 @@ class Language:
         return self.phrases[name].format(**values)
 
 
+def spoken_name(name: str, language: Language) -> str:
+    """A name as it stands in a sentence: "the kitchen", but "Alice's office" and "room 12"."""
+    form: str = language.speech.get("common_name", "{name}")
+    proper = name[:1].isupper() or name[-1:].isdigit()
+    return name if proper else form.format(name=name)
+
+
 def languages() -> list[str]:
     """The codes of the languages there are."""
     return sorted(path.name for path in _FOLDER.iterdir() if any(path.glob("*.yaml")))

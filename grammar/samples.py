@@ -10,12 +10,14 @@ import random
 import re
 from typing import Final
 
-from grammar.language import Language, load_language
+from grammar.language import Language, load_language, spoken_name
 from grammar.lexicon import Lexicon
+from grammar.network import Production, parts_of
 from grammar.templates import Choice, Part, Sequence, Template, Word
 from grammar.wordforms import plural
 
 _SLOT: Final = re.compile(r"\{(\w+)\}")
+_SPACE_BEFORE: Final = re.compile(r" (?=[,.:]|'s\b)")
 
 
 def samples(lexicon: Lexicon, language: str = "en") -> dict[str, list[str]]:
@@ -44,7 +46,8 @@ def _filled(example: str, lexicon: Lexicon, language: Language) -> str | None:
         used[slot] = number + 1
         if number >= len(names):
             raise LookupError(slot)
-        return names[number]
+        name = names[number]
+        return spoken_name(name, language) if slot == "place" else name
 
     try:
         return _SLOT.sub(fill, example)
@@ -61,6 +64,8 @@ def _names(slot: str, lexicon: Lexicon) -> list[str]:
         "kind": [kind for kind, places in lexicon.place_kinds.items() if len(places) > 1],
         "joint": [joint.replace("_", " ") for joint in lexicon.joints],
         "skill": list(lexicon.skills),
+        "question": [question.question.rstrip("?") for question in lexicon.questions],
+        "robot_name": [lexicon.robot_name] if lexicon.robot_name else [],
     }.get(slot, [])
 
 
@@ -90,14 +95,12 @@ class _Sampler:
         self.chance = chance
 
     def sentence(self) -> str:
-        return (
-            " ".join(self.rule("steps", 0)).replace(" ,", ",").replace(" .", ".").replace(" :", ":")
-        )
+        return _SPACE_BEFORE.sub("", " ".join(self.rule("steps", 0)))
 
     def rule(self, name: str, depth: int) -> list[str]:
         productions = [each for each in self.language.rules[name] if each.cost < 2]
-        if depth > 3:
-            productions = sorted(productions, key=_size)[:2]
+        if depth > 2:
+            productions = sorted(productions, key=self.depth)[:3]
         production = self.chance.choice(productions)
         return self.template(self.chance.choice(production.templates), depth + 1)
 
@@ -138,6 +141,8 @@ class _Sampler:
         }
         return self.chance.choice(names or plain.get(name) or ["robot"])
 
-
-def _size(production: object) -> int:
-    return len(str(production))
+    def depth(self, production: Production) -> int:
+        """How many rules its templates refer to: the fewer, the sooner the sentence ends."""
+        return min(
+            sum(part.is_rule for part in parts_of(template)) for template in production.templates
+        )

@@ -20,6 +20,7 @@ from grammar.discourse import (
     as_value,
     capital,
 )
+from grammar.language import spoken_name
 from grammar.meanings.nouns import is_me, kind_places, sought, thing_it
 from grammar.meanings.registry import meaning
 from grammar.plan import (
@@ -231,7 +232,9 @@ def guide_nowhere(d: Discourse, node: Node) -> Steps:
         d.language.phrase("guide_where", person=words),
         node.end,
         node.end,
-        tuple(to_place.format(place=place.name) for place in d.lexicon.places),
+        tuple(
+            to_place.format(place=spoken_name(place.name, d.language)) for place in d.lexicon.places
+        ),
     )
 
 

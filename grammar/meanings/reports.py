@@ -19,6 +19,7 @@ from grammar.discourse import (
     Where,
     as_value,
 )
+from grammar.language import spoken_name
 from grammar.meanings.actions import not_found, speak_to
 from grammar.meanings.nouns import described, is_me, kind_places, sought
 from grammar.meanings.registry import meaning
@@ -307,6 +308,7 @@ def offer_guide(d: Discourse, node: Node) -> Steps:
     place = d.get(node, "place")
     if not isinstance(place, Text):
         raise NotUnderstood(d.language.phrase("where_is_there"))
-    question = d.language.phrase("offer_guide", place=place.value)
-    yes = d.language.phrase("take_me_to", place=place.value)
+    name = spoken_name(place.value, d.language)
+    question = d.language.phrase("offer_guide", place=name)
+    yes = d.language.phrase("take_me_to", place=name)
     raise Ambiguous(question, 0, len(d.tokens), (yes,))
