@@ -28,10 +28,15 @@ Steps = list[Step]
 class NotUnderstood(Exception):
     """A part of the sentence means nothing here; `message` is for the person who said it."""
 
-    def __init__(self, message: str, suggestions: tuple[str, ...] = ()) -> None:
+    def __init__(
+        self, message: str, nearest: tuple[str, ...] = (), span: tuple[int, int] = (0, 0)
+    ) -> None:
         super().__init__(message)
         self.message = message
-        self.suggestions = suggestions
+        self.nearest = nearest
+        """Names that may have been meant."""
+        self.span = span
+        """The tokens that would then be replaced."""
 
 
 class Ambiguous(Exception):

@@ -74,7 +74,8 @@ class Language:
 def spoken_name(name: str, language: Language) -> str:
     """A name as it stands in a sentence: "the kitchen", but "Alice's office" and "room 12"."""
     form: str = language.speech.get("common_name", "{name}")
-    proper = name[:1].isupper() or name[-1:].isdigit()
+    last = name.split()[-1] if name.split() else ""
+    proper = name[:1].isupper() or last.isdigit() or len(last) == 1
     return name if proper else form.format(name=name)
 
 

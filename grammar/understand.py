@@ -15,7 +15,7 @@ from typing import Final, Literal
 
 from grammar.chart import Chart, Leaf, Node, TooMuch
 from grammar.discourse import Ambiguous, Discourse, NotUnderstood, Thing
-from grammar.language import Language, load_language
+from grammar.language import Language, load_language, spoken_name
 from grammar.lexicon import Lexicon
 from grammar.plan import Plan, Text, Value
 from grammar.slots import Names, Slots, names_of
@@ -278,11 +278,15 @@ class _Reader:
     # --- after parsing
 
     def _refused(self, reason: NotUnderstood) -> Understanding:
-        suggestions = list(reason.suggestions)
         message = reason.message
-        if suggestions:
-            choices = self.language.phrase("did_you_mean", choices=self._listed(suggestions))
+        suggestions: list[str] = []
+        if reason.nearest:
+            names = [spoken_name(name, self.language) for name in reason.nearest]
+            choices = self.language.phrase("did_you_mean", choices=self._listed(names))
             message = f"{message} {choices}"
+            first, last = reason.span
+            start, end = self.tokens[first].start, self.tokens[last - 1].end
+            suggestions = [self.text[:start] + name + self.text[end:] for name in names]
         return Understanding(
             self.text, "rejected", message=message, suggestions=suggestions, context=self.context
         )

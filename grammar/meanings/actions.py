@@ -335,7 +335,7 @@ def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
         return steps  # "go to the lobby and tell the visitors ..."
     if not person.known and person.place is None and person.plural:
         return steps
-    if not person.known and person.text == ANYONE and person.place is not None:
+    if not person.known and person.place is not None and (person.plural or person.text == ANYONE):
         return [*go(d, person.place), *steps]
     d.at = person.place
     d.with_person = person.value

@@ -55,7 +55,9 @@ def place_start(d: Discourse, node: Node) -> Value:
 def place_unknown(d: Discourse, node: Node) -> Value:
     words = d.words(node.parts["unknown"].start, node.parts["unknown"].end)
     raise NotUnderstood(
-        d.language.phrase("unknown_place", name=words), nearest(words, d.lexicon.places)
+        d.language.phrase("unknown_place", name=words),
+        nearest(words, d.lexicon.places),
+        (node.start, node.end),
     )
 
 
@@ -64,7 +66,7 @@ def nearest(words: str, names: tuple[Name, ...]) -> tuple[str, ...]:
     from rapidfuzz import fuzz, process
 
     choices = {text: name.name for name in names for text in (name.name, *name.aliases)}
-    found = process.extract(words.lower(), list(choices), scorer=fuzz.WRatio, limit=6)
+    found = process.extract(words.lower(), list(choices), scorer=fuzz.ratio, limit=6)
     return tuple(dict.fromkeys(choices[text] for text, _, _ in found))[:3]
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Final
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import Discourse, Steps, Thing, Where, capital
-from grammar.meanings.actions import meet, sentence_form, speak_to
+from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where, capital
+from grammar.meanings.actions import go, meet, sentence_form, speak_to
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
-from grammar.plan import Ask, Call, Items, Recall, Text, Value
+from grammar.plan import Ask, Call, ForEach, Items, Recall, Text, Value
 
 MOST_OPTIONS: Final = 20
 
@@ -19,7 +19,10 @@ def ask(d: Discourse, node: Node) -> Steps:
     """Ask somebody a question and remember the answer."""
     person: Thing | None = d.get(node, "person_ref")
     steps: Steps = []
-    if person is not None and not is_me(person):
+    everybody = person is not None and person.plural and person.text == ANYONE
+    if person is not None and everybody:
+        steps = go(d, person.place) if person.place is not None else []
+    elif person is not None and not is_me(person):
         if person.known or person.place is not None:
             steps = meet(d, person)
         d.person = person
@@ -37,6 +40,11 @@ def ask(d: Discourse, node: Node) -> Steps:
         d.place = Recall(name)
     if person is not None and person.known:
         arguments["person"] = person.value
+    if everybody:
+        variable = d.variable("person")
+        arguments["person"] = Recall(variable)
+        asking = Call("ask", arguments, save_as=name)
+        return [*steps, ForEach(variable, Ask("people"), (asking,))]
     return [*steps, Call("ask", arguments, save_as=name)]
 
 

@@ -264,7 +264,7 @@ def test_an_unknown_place_is_named_with_places_like_it() -> None:
     assert understood.status == "rejected"
     assert understood.message is not None
     assert "farmacie" in understood.message
-    assert "pharmacy" in understood.suggestions
+    assert "go to the pharmacy" in understood.suggestions
 
 
 def test_a_slip_of_the_keyboard_is_put_right_and_shown() -> None:
