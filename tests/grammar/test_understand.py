@@ -21,7 +21,7 @@ from tests.grammar.ward import WARD, program, same
 
 HERE = Path(__file__).parent
 UNDERSTOOD_AT_LEAST = 0.9
-"""Share of the sentences written before the grammar was; 0.73 at first."""
+"""Share of the sentences written before the grammar was."""
 
 
 def read(name: str) -> Any:
