@@ -39,8 +39,9 @@ class Operator:
         """What can be said here: sentences by topic."""
         return self._request("program.phrases", {"language": language}, dict[str, list[str]])
 
-    def check(self, program: str) -> Review:
-        return self._request("program.check", {"program": program}, Review)
+    def check(self, program: str, language: str = "en") -> Review:
+        """Review a program; nothing moves."""
+        return self._request("program.check", {"program": program, "language": language}, Review)
 
     def approve(
         self, review: Review, translation: Translation | None = None, heard: str | None = None

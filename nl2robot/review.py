@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 import msgspec
 
+from grammar.explain import explain_program
+from nl2robot.knowledge import Knowledge
+from nl2robot.policy import violations
+from nl2robot.rehearsal import DryRun, rehearse
 from sandbox.check import Finding, check
 
 if TYPE_CHECKING:
     from sim.simulation import Simulation
 
-from nl2robot.knowledge import Knowledge
-from nl2robot.policy import violations
-from nl2robot.rehearsal import DryRun, rehearse
+
+class Reading(msgspec.Struct, frozen=True):
+    """A line of the program in plain words."""
+
+    line: int
+    depth: int
+    text: str
 
 
 class Review(msgspec.Struct, frozen=True, kw_only=True):
@@ -26,6 +34,8 @@ class Review(msgspec.Struct, frozen=True, kw_only=True):
     """Of exactly this text; an approval holds for no other."""
     findings: tuple[Finding, ...]
     """In order of lines; one of severity "error" stands in the way of approval."""
+    reading: tuple[Reading, ...]
+    """The program in plain words, as it stands: an edited one, too."""
     dry_run: DryRun | None
     """None if there was an error, or no simulated world to try it in."""
 
@@ -40,7 +50,10 @@ def digest(program: str) -> str:
 
 
 def review(
-    program: str, knowledge: Knowledge, stage: Callable[[], Simulation] | None = None
+    program: str,
+    knowledge: Knowledge,
+    stage: Callable[[], Simulation] | None = None,
+    language: str = "en",
 ) -> Review:
     """Check a program without moving anything. `stage` gives a copy of the simulated world,
     in which the program is tried."""
@@ -51,5 +64,14 @@ def review(
     acceptable = not any(finding.severity == "error" for finding in findings)
     dry_run = rehearse(program, stage()) if acceptable and stage is not None else None
     return Review(
-        program=program, sha256=digest(program), findings=tuple(findings), dry_run=dry_run
+        program=program,
+        sha256=digest(program),
+        findings=tuple(findings),
+        reading=tuple(_read(program, language)) if acceptable else (),
+        dry_run=dry_run,
     )
+
+
+def _read(program: str, language: str) -> Iterator[Reading]:
+    for told in explain_program(program, language):
+        yield Reading(told.line, told.depth, told.text)

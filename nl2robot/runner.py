@@ -120,9 +120,9 @@ class Runner:
 
     # --- before it runs
 
-    def check(self, program: str) -> Review:
-        """Review a program; nothing moves."""
-        return review(program, self.knowledge, self._stage)
+    def check(self, program: str, language: str = "en") -> Review:
+        """Review a program, and read it in a language; nothing moves."""
+        return review(program, self.knowledge, self._stage, language)
 
     def approve(
         self,

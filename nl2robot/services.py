@@ -99,9 +99,9 @@ def services(runner: Runner) -> dict[str, Service]:
             {"language": _LANGUAGE},
         ),
         "program.check": _service(
-            lambda p: runner.check(p["program"]),
+            lambda p: runner.check(p["program"], p.get("language", "en")),
             "Review a program: types, what this robot lacks, a dry run; moves nothing.",
-            {"program": _PROGRAM},
+            {"program": _PROGRAM, "language": _LANGUAGE},
             "program",
         ),
         "program.approve": _service(

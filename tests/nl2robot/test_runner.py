@@ -108,6 +108,13 @@ def test_the_dry_run_tells_what_would_happen_and_moves_nothing(operator, station
     assert station.simulation.robot == before
 
 
+def test_an_edited_program_is_read_as_it_stands(operator) -> None:
+    lines = operator.check('for bed in range(3):\n    robot.say("Hello.")\n').reading
+    assert [(told.line, told.depth) for told in lines] == [(1, 0), (2, 1)]
+    assert "three times" in lines[0].text.lower()
+    assert "Hello." in lines[1].text
+
+
 def test_a_dry_run_of_an_endless_round_comes_back(operator) -> None:
     dry_run = operator.check(ENDLESS).dry_run
     assert dry_run.status == "unfinished"
