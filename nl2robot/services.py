@@ -11,10 +11,9 @@ from typing import Any
 import msgspec
 
 from grammar.samples import samples
-from grammar.understand import Context
 from nl2robot.errors import UserError
 from nl2robot.runner import Runner
-from nl2robot.translation import translate
+from nl2robot.translation import Talk, translate
 from robot_api.driver import StopFlag
 from robot_api.errors import InvalidCall
 from robot_api.methods import MAX_TEXT
@@ -43,16 +42,16 @@ EVENTS: Mapping[str, str] = {
 
 def services(runner: Runner) -> dict[str, Service]:
     """The methods to register with a `robot_api.server.Server`."""
-    talks: OrderedDict[str, Context] = OrderedDict()
+    talks: OrderedDict[str, Talk] = OrderedDict()
 
-    def context_of(talk: str | None) -> Context | None:
-        if talk is None:
-            return None
-        context = talks.setdefault(talk, Context())
-        talks.move_to_end(talk)
+    def talk_of(name: str | None) -> Talk:
+        if name is None:
+            return Talk()
+        talk = talks.setdefault(name, Talk())
+        talks.move_to_end(name)
         while len(talks) > TALKS_KEPT:
             talks.popitem(last=False)
-        return context
+        return talk
 
     def translated(p: Mapping[str, Any]) -> Any:
         return translate(
@@ -60,7 +59,7 @@ def services(runner: Runner) -> dict[str, Service]:
             runner.knowledge,
             p.get("language", "en"),
             p.get("planner", "auto"),
-            context_of(p.get("talk")),
+            talk_of(p.get("talk")),
         )
 
     def approved(p: Mapping[str, Any]) -> Any:

@@ -51,15 +51,21 @@ class Translation(msgspec.Struct, frozen=True, kw_only=True):
         return "\n".join(lines)
 
 
+class Talk:
+    """A conversation: "no, the pharmacy" refers to what was said before in it."""
+
+    context: Context | None = None
+
+
 def translate(
     utterance: str,
     knowledge: Knowledge,
     language: str = "en",
     planner: Planner = "auto",
-    context: Context | None = None,
+    talk: Talk | None = None,
 ) -> Translation:
     """Understand an utterance and write it as a program. Never moves anything, never raises for
-    words that are not understood: the status says so."""
+    words that are not understood: the status says so. A `talk` remembers it."""
     from grammar.explain import explain
     from grammar.program import write_program
 
@@ -69,7 +75,9 @@ def translate(
             " Leave --planner out, or say --planner grammar."
         )
     started = time.perf_counter()
-    understood = understand(utterance, knowledge.lexicon(language), language, context)
+    talk = talk or Talk()
+    understood = understand(utterance, knowledge.lexicon(language), language, talk.context)
+    talk.context = understood.context
     plan: Plan | None = understood.plan
     program = write_program(plan) if plan else None
     explanation = explain(plan, language) if plan else ""
