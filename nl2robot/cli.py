@@ -7,9 +7,15 @@ Exit statuses: `nl2robot.errors.ExitStatus`.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import importlib
+import io
+import os
+import signal
 import sys
+import traceback
 from collections.abc import Sequence
+from pathlib import Path
 
 from nl2robot import __version__
 from nl2robot.errors import ExitStatus, UserError
@@ -31,26 +37,47 @@ COMMANDS = {
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; returns the exit status. No traceback reaches a user unless `--debug`."""
     given = list(sys.argv[1:] if arguments is None else arguments)
-    debug = "--debug" in given
+    _prepare()
     try:
         options = _parser(given).parse_args(given)
         command = importlib.import_module(f"nl2robot.commands.{options.command}")
-        return int(command.run(options))
-    except KeyboardInterrupt:
-        print("\nInterrupted. The robot is standing still.", file=sys.stderr)
-        return ExitStatus.INTERRUPTED
+        status = int(command.run(options))
+        sys.stdout.flush()
+        return status
     except BrokenPipeError:  # `nl2robot log | head`
-        sys.stderr.close()
-        return ExitStatus.OK
-    except UserError as error:
-        if debug:
-            raise
-        print(error, file=sys.stderr)
-        return error.status
-    except Exception as error:
-        if debug:
-            raise
-        return _explain(error)
+        status = ExitStatus.OK
+    except (KeyboardInterrupt, Exception) as error:  # noqa: BLE001 - each becomes a sentence
+        if "--debug" in given:
+            traceback.print_exc()
+        sentence, status = _explained(error)
+        print(sentence, file=sys.stderr)
+    _let_go_of_output()
+    return status
+
+
+def _prepare() -> None:
+    """Streams that bear anything; and an end by `kill` or by closing the terminal is an end by
+    Ctrl-C, so that the robot is stopped and the log is complete."""
+    for name in ("stdin", "stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, Path(os.devnull).open("r+", encoding="utf-8"))
+        elif isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
+    with contextlib.suppress(ValueError):  # not in the main thread, which gets the signals
+        for name in ("SIGTERM", "SIGHUP"):
+            if hasattr(signal, name):
+                signal.signal(getattr(signal, name), signal.default_int_handler)
+
+
+def _let_go_of_output() -> None:
+    """What cannot be written any more (the reader has left, the disk is full) is not complained of
+    a second time when Python ends."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        with contextlib.suppress(OSError):
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _parser(given: Sequence[str]) -> argparse.ArgumentParser:
@@ -74,26 +101,31 @@ def _parser(given: Sequence[str]) -> argparse.ArgumentParser:
     return parser
 
 
-def _explain(error: Exception) -> int:
-    """Say in a sentence what an error of the layers below means to a user."""
-    from robot_api.errors import LostConnection, RobotError
+def _explained(error: BaseException) -> tuple[str, ExitStatus]:
+    """What an error of the layers below means to a user, and to a script."""
+    from robot_api.errors import InvalidCall, LostConnection, RobotError
+    from sim.errors import SimError
     from sim.world import WorldError
 
-    if isinstance(error, WorldError):
-        print(error, file=sys.stderr)
-        return ExitStatus.BAD_INPUT
-    if isinstance(error, LostConnection):
-        print(error, file=sys.stderr)
-        return ExitStatus.NO_ROBOT
-    if isinstance(error, RobotError):
-        print(error, file=sys.stderr)
-        return ExitStatus.FAILED
-    print(
-        f"Something went wrong inside nl2robot ({type(error).__name__}: {error})."
-        " Run the command again with --debug and report what it prints.",
-        file=sys.stderr,
-    )
-    return ExitStatus.INTERNAL
+    match error:
+        case KeyboardInterrupt():
+            return "\nInterrupted.", ExitStatus.INTERRUPTED
+        case UserError():
+            return str(error), error.status
+        case WorldError() | SimError() | InvalidCall():
+            return str(error), ExitStatus.BAD_INPUT
+        case LostConnection():
+            return str(error), ExitStatus.NO_ROBOT
+        case RobotError():
+            return str(error), ExitStatus.FAILED
+        case OSError(strerror=str() as reason):
+            what = f"The file {error.filename}" if error.filename else "The output"
+            sentence = (
+                f"{what} cannot be used ({reason}). Check its place, its rights and the disk."
+            )
+            return sentence, ExitStatus.BAD_INPUT
+    sentence = f"Something went wrong inside nl2robot ({type(error).__name__}: {error})."
+    return f"{sentence} Run it again with --debug and report what it prints.", ExitStatus.INTERNAL
 
 
 if __name__ == "__main__":

@@ -85,7 +85,8 @@ def services(runner: Runner) -> dict[str, Service]:
             translated,
             "Turn words into a program; moves nothing.",
             {
-                "utterance": {"type": "string", "maxLength": 4 * MAX_TEXT},
+                # How long it may be is the grammar's business, which says so in words.
+                "utterance": {"type": "string"},
                 "language": _LANGUAGE,
                 "planner": {"enum": ["auto", "grammar", "model"]},
                 "talk": {"type": ["string", "null"], "maxLength": 100},

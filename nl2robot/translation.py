@@ -65,8 +65,10 @@ def translate(
     talk: Talk | None = None,
 ) -> Translation:
     """Understand an utterance and write it as a program. Never moves anything, never raises for
-    words that are not understood: the status says so. A `talk` remembers it."""
+    words that are not understood: the status says so. A `talk` remembers it.
+    Raises `UserError` for a language or a planner that there is not."""
     from grammar.explain import explain
+    from grammar.language import UnknownLanguage
     from grammar.program import write_program
 
     if planner == "model":
@@ -76,7 +78,10 @@ def translate(
         )
     started = time.perf_counter()
     talk = talk or Talk()
-    understood = understand(utterance, knowledge.lexicon(language), language, talk.context)
+    try:
+        understood = understand(utterance, knowledge.lexicon(language), language, talk.context)
+    except UnknownLanguage as error:
+        raise UserError(str(error)) from error
     talk.context = understood.context
     plan: Plan | None = understood.plan
     program = write_program(plan) if plan else None

@@ -10,15 +10,19 @@ from typing import Any
 
 import msgspec
 
-from nl2robot.commands.options import open_log
+from nl2robot.commands.options import open_log, whole
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.runlog import Run, RunLog
 from nl2robot.terminal import Terminal
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("run", nargs="?", type=int, help="the number of a run, to see all of it")
-    parser.add_argument("--last", type=int, default=20, metavar="N", help="how many (default: 20)")
+    parser.add_argument(
+        "run", nargs="?", type=whole(1), help="the number of a run, to see all of it"
+    )
+    parser.add_argument(
+        "--last", type=whole(1), default=20, metavar="N", help="how many (default: 20)"
+    )
     parser.add_argument("--replay", action="store_true", help="run it again in the simulator")
     parser.add_argument(
         "--picture", metavar="FILE", help="with --replay: save its picture (.svg, .png, .webp)"
@@ -57,7 +61,7 @@ def _list(log: RunLog, terminal: Terminal, options: argparse.Namespace) -> None:
         return
     table = terminal.table("run", "when", "who", "how", "what")
     for row in reversed(runs):
-        what = row.utterance or row.program.splitlines()[0]
+        what = row.utterance or row.program.strip().partition("\n")[0]
         table.add_row(str(row.id), _when(row.started), row.approved_by, _how(row), what)
     terminal.console.print(table, markup=False)
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import argparse
 import getpass
+import math
 import os
-from pathlib import Path
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from nl2robot.knowledge import DEFAULT_WORLD
@@ -16,6 +17,38 @@ if TYPE_CHECKING:
     from sim.world import World
 
 LANGUAGES = ("en",)
+
+
+def words(given: str) -> str:
+    """An argument that is text for people: what was no UTF-8 in it becomes a replacement sign."""
+    return os.fsencode(given).decode(errors="replace")
+
+
+def whole(least: int, most: int = 2**63 - 1) -> Callable[[str], int]:
+    """An argument that is a whole number in these bounds; `most` is what SQLite can keep."""
+
+    def number(given: str) -> int:
+        try:
+            value = int(given)
+        except ValueError:
+            value = least - 1
+        if not least <= value <= most:
+            bounds = f"from {least} to {most}" if most < 2**63 - 1 else f"of {least} or more"
+            raise argparse.ArgumentTypeError(f"{given!r} is not a whole number {bounds}")
+        return value
+
+    return number
+
+
+def speed(given: str) -> float:
+    """An argument that says how fast simulated time passes."""
+    try:
+        value = float(given)
+    except ValueError:
+        value = math.nan
+    if not (math.isfinite(value) and value > 0):
+        raise argparse.ArgumentTypeError(f"{given!r} is not a number above 0, such as 1 or 0.5")
+    return value
 
 
 def add_world(parser: argparse.ArgumentParser) -> None:
@@ -44,7 +77,7 @@ def add_planner(parser: argparse.ArgumentParser) -> None:
 
 def add_seed(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--seed", type=int, default=0, help="of the simulation: the same seed, the same course"
+        "--seed", type=whole(0), default=0, help="of the simulation: the same seed, the same course"
     )
 
 
@@ -58,7 +91,7 @@ def add_robot(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--token", help="the token that the robot server printed at its start")
     parser.add_argument(
         "--speed",
-        type=float,
+        type=speed,
         metavar="X",
         help="simulated seconds a second (default: as fast as the machine allows)",
     )
@@ -80,6 +113,7 @@ def open_log(debug: bool = False) -> RunLog:
 
     from nl2robot.runlog import RunLog
 
+    logging.raiseExceptions = debug  # a full disk is told of elsewhere
     logger = logging.getLogger("robot_api")
     if not debug and not logger.handlers:
         logger.addHandler(
@@ -89,12 +123,6 @@ def open_log(debug: bool = False) -> RunLog:
         )
         logger.propagate = False
     return RunLog(data_folder() / "runs.sqlite")
-
-
-def pictures_folder() -> Path:
-    folder = data_folder() / "pictures"
-    folder.mkdir(exist_ok=True)
-    return folder
 
 
 def user_name() -> str:

@@ -12,19 +12,20 @@ from nl2robot.commands.options import (
     add_planner,
     add_robot,
     open_log,
-    pictures_folder,
     user_name,
+    words,
     world_of,
 )
 from nl2robot.errors import UserError
 from nl2robot.operator import Operator
+from nl2robot.paths import pictures_folder
 from nl2robot.session import Session
 from nl2robot.station import Station, remote_station, simulated_station
 from nl2robot.terminal import Terminal
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("words", nargs="?", help="what the robot should do")
+    parser.add_argument("words", nargs="?", type=words, help="what the robot should do")
     parser.add_argument("--program", metavar="FILE", help="run this program instead of words")
     add_robot(parser)
     parser.add_argument(

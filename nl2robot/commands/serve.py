@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import socket
 
-from nl2robot.commands.options import add_seed, add_world, open_log, pictures_folder, world_of
+from nl2robot.commands.options import add_seed, add_world, open_log, speed, whole, world_of
 from nl2robot.errors import ExitStatus
+from nl2robot.paths import pictures_folder
 from nl2robot.station import simulated_station
 from robot_api.server import Server
 
@@ -17,10 +19,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="H",
         help="the address to listen at; another than this machine's own needs a token",
     )
-    parser.add_argument("--port", type=int, default=9090, help="(default: 9090)")
+    parser.add_argument("--port", type=whole(0, 65_535), default=9090, help="(default: 9090)")
     parser.add_argument("--token", help="what clients must show; made up if others are served")
     parser.add_argument(
-        "--speed", type=float, default=1.0, metavar="X", help="simulated seconds a second"
+        "--speed", type=speed, default=1.0, metavar="X", help="simulated seconds a second"
     )
     add_world(parser)
     add_seed(parser)
@@ -42,7 +44,10 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _say_where(server: Server) -> None:
-    print(f"The robot is at ws://{server.address} (page: http://{server.address}/).")
+    host, _, port = server.address.rpartition(":")
+    if host in ("0.0.0.0", "[::]"):  # every address of this machine, and none that clients can use
+        host = socket.gethostname()
+    print(f"The robot is at ws://{host}:{port} (page: http://{host}:{port}/).")
     if server.token:
         print(f"Clients must show this token: {server.token}")
     print("Ctrl-C stops the robot and ends the server.", flush=True)

@@ -5,14 +5,16 @@ from __future__ import annotations
 import argparse
 import sys
 
-from nl2robot.commands.options import add_language, add_planner, add_world, world_of
+from nl2robot.commands.options import add_language, add_planner, add_world, words, world_of
 from nl2robot.errors import ExitStatus
 from nl2robot.knowledge import Knowledge
 from nl2robot.translation import translate
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("words", help="the sentence, or - to read one from each line of the input")
+    parser.add_argument(
+        "words", type=words, help="the sentence, or - to read one from each line of the input"
+    )
     parser.add_argument("--json", action="store_true", help="one JSON object per sentence")
     add_world(parser)
     add_language(parser)
