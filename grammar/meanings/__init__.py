@@ -7,12 +7,16 @@ none: its slots are the parameters.
 
 from __future__ import annotations
 
-import grammar.meanings.actions
+import grammar.meanings.body
 import grammar.meanings.conditions
 import grammar.meanings.control
+import grammar.meanings.driving
 import grammar.meanings.nouns
+import grammar.meanings.people
 import grammar.meanings.questions
-import grammar.meanings.reports  # noqa: F401 (each enters its meanings)
+import grammar.meanings.reports
+import grammar.meanings.speaking
+import grammar.meanings.things  # noqa: F401 (each enters its meanings)
 from grammar.meanings.registry import MEANINGS
 
 __all__ = ["MEANINGS"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, NotUnderstood, Thing, as_value
-from grammar.meanings.actions import noun_of
+from grammar.meanings.finding import noun_of
 from grammar.meanings.nouns import sought
 from grammar.meanings.registry import meaning
 from grammar.plan import (

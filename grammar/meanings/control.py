@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, as_value
-from grammar.meanings.actions import not_found
+from grammar.meanings.finding import not_found
 from grammar.meanings.nouns import kind_places
 from grammar.meanings.registry import meaning
 from grammar.plan import (

@@ -6,9 +6,10 @@ from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where, capital
-from grammar.meanings.actions import go, meet, sentence_form, speak_to
+from grammar.meanings.finding import go, meet, speak_to
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
+from grammar.meanings.speaking import sentence_form
 from grammar.plan import Ask, Call, ForEach, Items, Recall, Text, Value
 
 MOST_OPTIONS: Final = 20

@@ -20,7 +20,7 @@ from grammar.discourse import (
     as_value,
 )
 from grammar.language import spoken_name
-from grammar.meanings.actions import not_found, speak_to
+from grammar.meanings.finding import not_found, speak_to
 from grammar.meanings.nouns import described, is_me, kind_places, sought
 from grammar.meanings.registry import meaning
 from grammar.plan import (

@@ -1,0 +1,73 @@
+"""Screen, gestures, joints and skills: commands that are nearly one robot method each."""
+
+from __future__ import annotations
+
+from grammar.chart import Node
+from grammar.discourse import Discourse, NotUnderstood, Steps, as_value
+from grammar.meanings.finding import speak_to
+from grammar.meanings.registry import meaning
+from grammar.plan import Call, Items, Recall, Text
+
+
+@meaning("show")
+def show(d: Discourse, node: Node) -> Steps:
+    url = d.get(node, "url")
+    if url:
+        address = str(url) if "://" in str(url) else f"https://{url}"
+        return [Call("show", {"url": Text(address)})]
+    quote = node.parts.get("quote")
+    part = quote or node.parts.get("text")
+    if part is None:
+        name = d.answer or d.code
+        if name is None:
+            raise NotUnderstood(d.language.phrase("show_what"))
+        return [Call("show", {"text": Recall(name)})]
+    return [Call("show", {"text": Text(str(d.build(part)))})]
+
+
+@meaning("touch")
+def touch(d: Discourse, node: Node) -> Steps:
+    """Let somebody choose on the touchscreen; the choice can be used afterwards."""
+    from grammar.meanings.questions import remember_answer, split_options
+
+    part = node.parts["text"]
+    options = split_options(d, part.start, part.end)
+    name = remember_answer(d, options, "choice")
+    return [Call("touch", {"options": Items(tuple(Text(each) for each in options))}, save_as=name)]
+
+
+@meaning("type_text")
+def type_text(d: Discourse, node: Node) -> Steps:
+    part = node.parts.get("quote") or node.parts["text"]
+    return [
+        Call(
+            "type_text",
+            {"selector": as_value(d.get(node, "selector")), "text": Text(str(d.build(part)))},
+        )
+    ]
+
+
+@meaning("joint")
+def joint(d: Discourse, node: Node) -> Steps:
+    return [
+        Call(
+            "joint",
+            {"name": as_value(d.get(node, "joint")), "degrees": as_value(d.get(node, "degrees"))},
+        )
+    ]
+
+
+@meaning("gesture")
+def gesture(d: Discourse, node: Node) -> Steps:
+    call = Call("gesture", {"name": as_value(d.get(node, "gesture"))})
+    return speak_to(d, d.get(node, "person_ref"), [call])
+
+
+@meaning("skill")
+def skill(d: Discourse, node: Node) -> Steps:
+    return [Call("do", {"skill": as_value(d.get(node, "skill"))})]
+
+
+@meaning("emotion_gesture")
+def emotion_gesture(d: Discourse, node: Node) -> Steps:
+    return [Call("emotion", {"name": as_value(d.get(node, "emotion"))})]

@@ -1,0 +1,139 @@
+"""Going places, moving and turning, waiting."""
+
+from __future__ import annotations
+
+from grammar.chart import Node
+from grammar.discourse import Discourse, Steps, Thing, Where, as_value
+from grammar.meanings.finding import go, look_for, noun_of
+from grammar.meanings.nouns import is_me, sought
+from grammar.meanings.registry import meaning
+from grammar.plan import Call, Text, Value
+
+
+@meaning("go")
+def go_to(d: Discourse, node: Node) -> Steps:
+    """Drive to a place; to a piece of furniture, that is to where it stands."""
+    spot: Where = d.get(node, "spot") or Where(d.get(node, "place"))
+    if spot.place is None:
+        return look_for(d, Thing(Text(str(spot.furniture))))
+    d.went(spot.place)
+    return [Call("goto", {"place": spot.place})]
+
+
+@meaning("go_find")
+def go_find(d: Discourse, node: Node) -> Steps:
+    """ "go to the kitchen to find the cup"."""
+    going = go_to(d, node)
+    return [*going, *d.build(node.parts["then"])]
+
+
+@meaning("go_places")
+def go_places(d: Discourse, node: Node) -> Steps:
+    """ "go to the lobby, the pharmacy and the kitchen"."""
+    steps: Steps = []
+    for place in [d.get(node, "place"), *d.get(node, "place_list")]:
+        d.went(place)
+        steps.append(Call("goto", {"place": place}))
+    return steps
+
+
+@meaning("go_point")
+def go_point(d: Discourse, node: Node) -> Steps:
+    arguments = {name: as_value(d.get(node, name)) for name in ("x", "y", "theta")}
+    d.at = None
+    return [
+        Call("goto", {name: value for name, value in arguments.items() if node.parts.get(name)})
+    ]
+
+
+@meaning("in_place")
+def in_place(d: Discourse, node: Node) -> Steps:
+    """ "in the kitchen, count the cups": go there first."""
+    spot: Where = d.get(node, "spot")
+    going = go(d, spot.place) if spot.place is not None else []
+    d.at_furniture = spot.furniture
+    inner: Steps = d.build(node.parts["then"])
+    d.at_furniture = None
+    return [*going, *inner]
+
+
+@meaning("come_back")
+def come_back(d: Discourse, node: Node) -> Steps:
+    """Back to where the command was given."""
+    start = d.start()
+    d.went(start)
+    return [Call("goto", {"place": start})]
+
+
+@meaning("go_person")
+def go_person(d: Discourse, node: Node) -> Steps:
+    person: Thing = d.get(node, "person_ref")
+    if is_me(person):
+        return come_back(d, node)
+    return look_for(d, person)
+
+
+@meaning("move")
+def move(d: Discourse, node: Node) -> Steps:
+    metres = float(d.get(node, "metres"))
+    if node.production.fixed.get("back"):
+        metres = -metres
+    d.at = None
+    return [Call("move", {"metres": as_value(metres)})]
+
+
+@meaning("turn")
+def turn(d: Discourse, node: Node) -> Steps:
+    degrees = float(d.get(node, "degrees"))
+    side = d.get(node, "side", "left")
+    return [Call("turn", {"degrees": as_value(-degrees if side == "right" else degrees)})]
+
+
+@meaning("drive")
+def drive(d: Discourse, node: Node) -> Steps:
+    linear = float(d.get(node, "linear", 0))
+    if node.production.fixed.get("back"):
+        linear = -linear
+    angular = float(d.get(node, "angular", 0))
+    if d.get(node, "side", "left") == "right":
+        angular = -angular
+    seconds = as_value(d.get(node, "seconds"))
+    d.at = None
+    return [
+        Call(
+            "drive", {"linear": as_value(linear), "angular": as_value(angular), "seconds": seconds}
+        )
+    ]
+
+
+@meaning("dock")
+def dock(d: Discourse, node: Node) -> Steps:
+    d.at = None
+    return [Call("dock")]
+
+
+@meaning("wait")
+def wait(d: Discourse, node: Node) -> Steps:
+    return [Call("wait", {"seconds": as_value(d.get(node, "seconds"))})]
+
+
+@meaning("wait_for")
+def wait_for(d: Discourse, node: Node) -> Steps:
+    thing = noun_of(d, node)
+    timeout = d.get(node, "seconds")
+    steps = go(d, thing.place) if thing.place is not None else []
+    arguments: dict[str, Value] = {"thing": sought(d, thing)}
+    if timeout is not None:
+        arguments["timeout"] = as_value(timeout)
+    if thing.person:
+        d.person = d.person or thing
+        d.with_person = thing.value
+    return [*steps, Call("wait_for", arguments)]
+
+
+@meaning("patrol")
+def patrol(d: Discourse, node: Node) -> Steps:
+    """ "drive back and forth between the lobby and the kitchen"."""
+    places: list[Value] = [d.get(node, "place"), *d.get(node, "place_list")]
+    d.at = None
+    return [Call("goto", {"place": place}) for place in places]

@@ -1,0 +1,94 @@
+"""What meanings share: going to a place, finding somebody or something, speaking to them there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from grammar.chart import Node
+from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
+from grammar.meanings.nouns import is_me, sought
+from grammar.plan import Ask, Call, Holds, If, Text, Value
+
+
+def go(d: Discourse, place: Value) -> Steps:
+    """Drive there, unless that is where the robot is by what was said."""
+    d.place = place
+    if d.at == place:
+        return []
+    d.went(place)
+    return [Call("goto", {"place": place})]
+
+
+def noun_of(d: Discourse, node: Node) -> Thing:
+    """The thing or person of a command."""
+    thing: Thing | None = d.get(node, "thing")
+    if thing is None:
+        person: Thing = d.get(node, "person_ref")
+        thing = Thing(Text(ANYONE), person=True, here=True) if is_me(person) else person
+    spot: Where | None = d.get(node, "from")
+    if spot is not None:
+        return replace(thing, place=spot.place, furniture=spot.furniture)
+    return thing
+
+
+def found(d: Discourse, thing: Thing) -> Call:
+    """The call that looks for a thing or a person."""
+    arguments: dict[str, Value] = {"thing": sought(d, thing)}
+    if thing.place is not None:
+        arguments["place"] = thing.place
+    return Call("find", arguments)
+
+
+def look_for(d: Discourse, thing: Thing) -> Steps:
+    d.at = thing.place
+    if thing.place is not None:
+        d.place = thing.place
+    d.with_person = thing.value if thing.person else None
+    if thing.person:
+        d.person, d.thing_last = thing, False
+    else:
+        d.thing, d.thing_last = thing, True
+    return [found(d, thing)]
+
+
+def meet(d: Discourse, person: Thing) -> Steps:
+    """Find a person, unless they are here by what was said."""
+    if person.here or d.with_person == person.value:
+        return []
+    if not person.known and person.place is None:
+        return []
+    d.with_person = person.value
+    d.at = person.place
+    if person.place is not None:
+        d.place = person.place
+    return [found(d, person)]
+
+
+def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
+    """Say something to a person: here, or where they are found."""
+    if person is None or is_me(person) or person.here or person.value == d.with_person:
+        return steps
+    if not person.known and person.place is None and d.at is not None:
+        return steps  # "go to the lobby and tell the visitors ..."
+    if not person.known and person.place is None and person.plural:
+        return steps
+    if not person.known and person.place is not None and (person.plural or person.text == ANYONE):
+        return [*go(d, person.place), *steps]
+    d.at = person.place
+    d.with_person = person.value
+    return [
+        If(Holds(Ask("find", found(d, person).arguments)), tuple(steps), (not_found(d, person),))
+    ]
+
+
+def not_found(d: Discourse, thing: Thing) -> Call:
+    return d.say("not_found", thing=named(d, thing))
+
+
+def named(d: Discourse, thing: Thing) -> Value | str:
+    """A thing as it is spoken of: "the stapler", "Alice"."""
+    if not isinstance(thing.value, Text):
+        return thing.value
+    if thing.known and thing.person:
+        return thing.value.value
+    return d.language.phrase("the", noun=thing.value.value)

@@ -1,0 +1,128 @@
+"""Meeting people: guiding, following, greeting."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from grammar.chart import Leaf, Node
+from grammar.discourse import ANYONE, Ambiguous, Discourse, NotUnderstood, Steps, Thing, Where
+from grammar.language import spoken_name
+from grammar.meanings.finding import meet, named, speak_to
+from grammar.meanings.nouns import is_me, kind_places
+from grammar.meanings.registry import meaning
+from grammar.meanings.things import deliver
+from grammar.plan import Call, ForEach, Forever, Recall, Text, Value
+
+
+@meaning("guide")
+def guide(d: Discourse, node: Node) -> Steps:
+    """Lead a person to a place; go and find them first if they are somebody by name."""
+    pronoun = node.parts.get("person_ref")
+    if pronoun is not None and d.thing_last and speaks_of_things(d, pronoun):
+        return carry_it(d, node)
+    thing = led(d, node)
+    source: Where | None = d.get(node, "source")
+    if source is not None and source.place is not None:
+        thing = replace(thing, place=source.place, here=False)
+    steps = meet(d, thing)
+    spot: Where = d.get(node, "spot") or Where(d.get(node, "place"))
+    if spot.place is None:
+        raise NotUnderstood(d.language.phrase("guide_needs_place"))
+    return [*steps, lead(d, thing, spot.place)]
+
+
+def led(d: Discourse, node: Node) -> Thing:
+    """Who is to be led: "me" is whoever is here."""
+    person: Thing | None = d.get(node, "person_ref")
+    if person is None or is_me(person):
+        return Thing(Text(ANYONE), person=True, here=True)
+    return person
+
+
+def lead(d: Discourse, person: Thing, place: Value) -> Call:
+    d.at = d.place = place
+    d.with_person = person.value
+    d.person = replace(person, place=None, furniture=None, here=True)
+    d.thing_last = False
+    return Call("guide", {"person": person.value, "place": place})
+
+
+@meaning("guide_back")
+def guide_back(d: Discourse, node: Node) -> Steps:
+    """ "bring her back": to where the command was given."""
+    thing = led(d, node)
+    steps = meet(d, thing)
+    return [*steps, lead(d, thing, d.start())]
+
+
+@meaning("guide_nowhere")
+def guide_nowhere(d: Discourse, node: Node) -> Steps:
+    """ "guide Bob": asks back where to."""
+    who = named(d, led(d, node))
+    words = who if isinstance(who, str) else d.language.phrase("somebody")
+    to_place = d.language.speech["to_place"]
+    raise Ambiguous(
+        d.language.phrase("guide_where", person=words),
+        node.end,
+        node.end,
+        tuple(
+            to_place.format(place=spoken_name(place.name, d.language)) for place in d.lexicon.places
+        ),
+    )
+
+
+def speaks_of_things(d: Discourse, pronoun: Leaf | Node) -> bool:
+    """Whether a pronoun may stand for things as well as for people: "them"."""
+    return d.norms(pronoun.start, pronoun.end)[-1] in d.language.speech.get("things_too", ())
+
+
+def carry_it(d: Discourse, node: Node) -> Steps:
+    """ "take them to the kitchen", where "they" are cups."""
+    assert d.thing is not None
+    spot: Where = d.get(node, "spot") or Where(d.get(node, "place"))
+    return deliver(d, replace(d.thing, pronoun=True), None, spot)
+
+
+@meaning("guide_list")
+def guide_list(d: Discourse, node: Node) -> Steps:
+    """ "guide the visitors through all labs"."""
+    person: Thing | None = d.get(node, "person_ref")
+    who = Text(ANYONE) if person is None or is_me(person) else person.value
+    variable = d.variable("place")
+    d.at = None
+    return [
+        ForEach(
+            variable,
+            kind_places(d, d.get(node, "kinds")),
+            (Call("guide", {"person": who, "place": Recall(variable)}),),
+        )
+    ]
+
+
+@meaning("follow")
+def follow(d: Discourse, node: Node) -> Steps:
+    person = led(d, node)
+    spot: Where | None = d.get(node, "spot")
+    steps = meet(d, person)
+    arguments: dict[str, Value] = {"person": person.value}
+    d.at = None
+    if spot is not None and spot.place is not None:
+        arguments["to"] = d.at = d.place = spot.place
+    d.with_person = person.value
+    d.person = replace(person, place=None, furniture=None, here=True)
+    d.thing_last = False
+    return [*steps, Call("follow", arguments)]
+
+
+@meaning("greet")
+def greet(d: Discourse, node: Node) -> Steps:
+    person: Thing | None = d.get(node, "person_ref")
+    name = person.text if person is not None and person.known else ""
+    words = d.say("hello_name", name=name) if name else d.say("hello")
+    return speak_to(d, person, [words])
+
+
+@meaning("greet_all")
+def greet_all(d: Discourse, node: Node) -> Steps:
+    """ "greet everybody who comes in": again and again."""
+    return [Forever((Call("wait_for", {"thing": Text(ANYONE)}), d.say("hello")))]

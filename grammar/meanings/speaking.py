@@ -1,0 +1,69 @@
+"""Saying what the speaker wants said; what the robot refuses to do."""
+
+from __future__ import annotations
+
+from grammar.chart import Node
+from grammar.discourse import Discourse, NotUnderstood, Steps, capital
+from grammar.meanings.finding import speak_to
+from grammar.meanings.registry import meaning
+from grammar.plan import Call, Number, Recall, Text, Value
+
+
+@meaning("say")
+def say(d: Discourse, node: Node) -> Steps:
+    """Speak a text, in the speaker's own words."""
+    text = spoken(d, node)
+    arguments: dict[str, Value] = {"text": text}
+    language = d.get(node, "language")
+    if language:
+        arguments["language"] = Text(language)
+    return speak_to(d, d.get(node, "person_ref"), [Call("say", arguments)])
+
+
+def spoken(d: Discourse, node: Node) -> Value:
+    """What is to be said: a quotation word for word, other text as a sentence."""
+    quote = node.parts.get("quote")
+    if quote is not None:
+        return Text(str(d.build(quote)))
+    part = node.parts["text"]
+    return Text(sentence_form(d.words(part.start, part.end)))
+
+
+def sentence_form(text: str) -> str:
+    text = text.strip().strip('"“”„«»').strip()
+    return capital(text) if text[-1:] in ".!?…" else capital(text) + "."
+
+
+@meaning("say_it")
+def say_it(d: Discourse, node: Node) -> Steps:
+    """ "and say it": the answer or the code of before."""
+    name = d.answer or d.code
+    if name is None:
+        raise NotUnderstood(d.language.phrase("say_what"))
+    return speak_to(d, d.get(node, "person_ref"), [Call("say", {"text": Recall(name)})])
+
+
+@meaning("phrase")
+def phrase(d: Discourse, node: Node) -> Steps:
+    """Say what the language holds ready: "introduce yourself", "thank them"."""
+    return speak_to(d, d.get(node, "person_ref"), [d.say(str(node.production.fixed["phrase"]))])
+
+
+@meaning("set_volume")
+def set_volume(d: Discourse, node: Node) -> Steps:
+    percent = round(float(d.get(node, "percent")))
+    if not 0 <= percent <= 100:
+        raise NotUnderstood(d.language.phrase("volume_range"))
+    return [Call("set_volume", {"percent": Number(percent)})]
+
+
+@meaning("refused")
+def refused(d: Discourse, node: Node) -> Steps:
+    """A sentence that is understood as something this robot must not or cannot do."""
+    raise NotUnderstood(d.language.phrase(str(node.production.fixed["phrase"])))
+
+
+@meaning("unknown_contact")
+def unknown_contact(d: Discourse, node: Node) -> Steps:
+    words = d.words(node.parts["unknown"].start, node.parts["unknown"].end)
+    raise NotUnderstood(d.language.phrase("unknown_contact", name=words))

@@ -1,0 +1,134 @@
+"""Finding, fetching and putting things."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from grammar.chart import Node
+from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
+from grammar.meanings.finding import found, go, look_for, meet, noun_of
+from grammar.meanings.nouns import is_me, sought, thing_it
+from grammar.meanings.registry import meaning
+from grammar.plan import Call, Text, Value
+
+
+@meaning("find")
+def find(d: Discourse, node: Node) -> Steps:
+    thing = noun_of(d, node)
+    if thing.place is None and d.at is not None:
+        thing = replace(thing, place=d.at)  # "go to the kitchen and find the cup"
+    return look_for(d, thing)
+
+
+@meaning("grab")
+def grab(d: Discourse, node: Node) -> Steps:
+    thing = noun_of(d, node)
+    if thing.place is not None and thing.place != d.at:
+        return pick_up(d, thing)
+    d.holding = thing.value
+    d.thing, d.thing_last = thing, True
+    return [Call("grab", {"thing": sought(d, thing)})]
+
+
+def pick_up(d: Discourse, thing: Thing) -> Steps:
+    """Find a thing and take it; nothing if it is in the hand by what was said."""
+    if d.holding == thing.value:
+        return []
+    take_back_delivery(d, thing)
+    if d.holding == thing.value:
+        return []
+    last = d.done[-1] if d.done else None
+    looked = isinstance(last, Call) and last == found(d, thing)
+    if isinstance(last, Call) and last.method == "find" and thing.pronoun:
+        looked = True  # "find the cup and bring it to me"
+    is_here = thing.here or (d.at is not None and thing.place in (None, d.at))
+    steps: Steps = [] if looked or is_here else look_for(d, thing)
+    d.holding = thing.value
+    d.thing, d.thing_last = thing, True
+    return [*steps, Call("grab", {"thing": sought(d, thing)})]
+
+
+def take_back_delivery(d: Discourse, thing: Thing) -> None:
+    """ "get the cup and put it on the table": "get" alone would have handed it to the speaker."""
+    if d.delivered == thing.value and len(d.done) >= 2:
+        del d.done[-2:]
+        d.delivered = None
+        d.holding = thing.value
+        d.at = d.at_pick_up
+
+
+@meaning("put")
+def put(d: Discourse, node: Node) -> Steps:
+    """ "put the cup on the table", "... in the kitchen", "... down"."""
+    thing: Thing = d.get(node, "thing") or thing_it(d, node)
+    source: Where | None = d.get(node, "from")
+    if source is not None:
+        thing = replace(thing, place=source.place, furniture=source.furniture)
+    spot: Where = d.get(node, "where") or Where()
+    last = d.done[-1] if d.done else None
+    if isinstance(last, Call) and last == Call("put", {"thing": thing.value}):
+        d.done.pop()  # "carry it to the ward and put it on the table": put down once
+        d.holding = thing.value
+    take_back_delivery(d, thing)
+    if d.holding != thing.value and spot == Where():
+        return [Call("put", {"thing": thing.value})]
+    return deliver(d, thing, None, spot)
+
+
+@meaning("bring")
+def bring(d: Discourse, node: Node) -> Steps:
+    """Fetch a thing and hand it to a person, or put it down at a spot."""
+    thing: Thing = d.get(node, "thing") or thing_it(d, node)  # "and deliver to Bob"
+    source: Where | None = d.get(node, "from")
+    if source is not None:
+        thing = replace(thing, place=source.place, furniture=source.furniture)
+    person: Thing | None = d.get(node, "person_ref")
+    return deliver(d, thing, person, d.get(node, "where"))
+
+
+def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None) -> Steps:
+    """Pick a thing up, go where it is to be, and put it down or hand it over."""
+    no_way = spot is not None and spot.place is None and thing.place is None
+    if no_way and d.holding != thing.value and not thing.pronoun:
+        steps: Steps = [Call("grab", {"thing": sought(d, thing)})]  # both are here
+    else:
+        steps = pick_up(d, thing)
+    d.holding = None
+    d.thing, d.thing_last = thing, True
+    give: dict[str, Value] = {"thing": thing.value}
+    if spot is not None:
+        if spot.place is not None:
+            steps += go(d, spot.place)
+        if spot.furniture:
+            give["where"] = Text(spot.furniture)
+        return [*steps, Call("put", give)]
+    if person is None or is_me(person):
+        start = d.start()
+        steps.append(Call("goto", {"place": start}))
+        d.at_pick_up = d.at
+        d.went(start)
+        d.delivered = thing.value if person is None else None
+        return [*steps, Call("give", give)]
+    if not person.here:
+        steps += meet(d, person) or look_for(d, person)
+    d.thing, d.thing_last = thing, True
+    if person.text != ANYONE:
+        give["person"] = person.value
+    return [*steps, Call("give", give)]
+
+
+@meaning("statement")
+def statement(d: Discourse, node: Node) -> Steps:
+    """ "there is a cup on the table": nothing to do, but now it is spoken of."""
+    thing: Thing | None = d.get(node, "thing") or d.get(node, "person_ref")
+    spot: Where | None = d.get(node, "from")
+    if thing is None:  # "he is in the kitchen"
+        thing = d.person or d.thing or Thing(Text(ANYONE), person=True)
+    if spot is not None:
+        thing = replace(thing, place=spot.place, furniture=spot.furniture)
+    if thing.person:
+        d.person, d.thing_last = thing, False
+        d.with_person = None
+    else:
+        d.thing, d.thing_last = thing, True
+    return []
