@@ -10,6 +10,9 @@ Every file may hold any of these keys; those of all files are put together:
     closed        words that are no part of a thing's name ("the", "from", "and")
     plurals       how plurals are made
     kinds         words for kinds of places, where they differ from the world's
+    verbs         verbs by group, for templates with ~ (`grammar.verbs`)
+    conjugation   how their forms are made
+    orders        where they stand in a clause
     phrases       what the robot says or the application answers, by name
     speech        how reported speech becomes direct speech
     help          topics with example phrases
@@ -19,7 +22,7 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -30,6 +33,7 @@ from grammar.network import Network, Production, RuleError, compile_rules
 from grammar.templates import NOTHING, Choice, Sequence, Template, TemplateError, Word
 from grammar.templates import parse_template as _parse
 from grammar.tokens import Spelling, words_of
+from grammar.verbs import forms, ordered
 
 _FOLDER: Final = Path(__file__).parent / "languages"
 _NOT_RULES: Final = frozenset({"explain"})
@@ -80,8 +84,12 @@ def spoken_name(name: str, language: Language) -> str:
 
 
 def languages() -> list[str]:
-    """The codes of the languages there are."""
-    return sorted(path.name for path in _FOLDER.iterdir() if any(path.glob("*.yaml")))
+    """The codes of the languages there are: the folders with rules and words of explanations."""
+    return sorted(
+        path.name
+        for path in _FOLDER.iterdir()
+        if (path / "control.yaml").exists() and (path / "explain.yaml").exists()
+    )
 
 
 @functools.cache
@@ -144,14 +152,24 @@ def _language(code: str, data: Mapping[str, Any]) -> Language:
         contractions=spelling_data.get("contractions", {}),
         endings=spelling_data.get("endings", {}),
         abbreviations=frozenset(spelling_data.get("abbreviations", ())),
-        numbers=_number_words(numbers),
+        numbers=_number_words(numbers, spelling_data.get("letters", {})),
         symbols=spelling_data.get("symbols", {}),
+        letters=spelling_data.get("letters", {}),
+        accents_optional=spelling_data.get("accents") == "optional",
     )
     verbatim = frozenset(spelling.endings.values())  # "'s" stands alone in rules only
     normal = functools.cache(lambda text: (text,) if text in verbatim else words_of(text, spelling))
+    entries_of = dict(data.get("rules", {}))
+    if "verbs" in data:
+        entries_of |= forms(data["verbs"], data["conjugation"])
+    orders: list[str] = data.get("orders", [])
     rules = {
-        name: tuple(_productions(name, _entries(entries)))
-        for name, entries in data.get("rules", {}).items()
+        name: tuple(
+            _productions(
+                name, _entries(entries), functools.partial(ordered, orders=orders, rules=entries_of)
+            )
+        )
+        for name, entries in entries_of.items()
     }
     network = compile_rules(rules, normal)
     lists = {
@@ -212,7 +230,7 @@ def _language(code: str, data: Mapping[str, Any]) -> Language:
     )
 
 
-def _number_words(numbers: Mapping[str, Any]) -> dict[str, float]:
+def _number_words(numbers: Mapping[str, Any], letters: Mapping[str, str]) -> dict[str, float]:
     """One-word numbers: those listed, and compounds such as German "fünfundzwanzig"."""
     words = {str(word): float(value) for word, value in numbers.get("words", {}).items()}
     pattern = numbers.get("compound")
@@ -222,16 +240,22 @@ def _number_words(numbers: Mapping[str, Any]) -> dict[str, float]:
         for ten, much in tens.items():
             for unit, more in units.items():
                 words.setdefault(pattern.format(unit=unit, ten=ten), much + more)
+    for word, value in tuple(words.items()):
+        for letter, instead in letters.items():
+            word = word.replace(letter, instead)
+        words.setdefault(word, value)
     return words
 
 
-def _productions(rule: str, entries: list[Any]) -> Iterator[Production]:
+def _productions(
+    rule: str, entries: list[Any], ordered: Callable[[str], Iterable[str]]
+) -> Iterator[Production]:
     plain: list[str] = []
     for entry in entries:
         if isinstance(entry, str):
-            plain.append(entry)
+            plain += ordered(entry)
             continue
-        says = [str(each) for each in _entries(entry["say"])]
+        says = [each for say in _entries(entry["say"]) for each in ordered(str(say))]
         unknown = set(entry) - {"say", "means", "cost", "with"}
         if unknown:
             raise RuleError(f"the rule <{rule}> has an entry with {', '.join(sorted(unknown))}")

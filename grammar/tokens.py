@@ -31,6 +31,8 @@ class Token:
     """Of a number."""
     inner: str = ""
     """Of a quote: what stands between the quotation marks."""
+    spelled: str = ""
+    """The word in lower case as it was written, where `norm` leaves out its accents."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +49,10 @@ class Spelling:
     """"twelve" -> 12: number words that are one word."""
     symbols: Mapping[str, str] = field(default_factory=dict)
     """"&" -> "and", "%" -> "percent"."""
+    letters: Mapping[str, str] = field(default_factory=dict)
+    """"ö" -> "oe": letters that are written in two ways."""
+    accents_optional: bool = False
+    """Whether "repete" is read as "répète": words match without their accents."""
 
 
 _PATTERN = re.compile(
@@ -83,6 +89,12 @@ def words_of(text: str, spelling: Spelling) -> tuple[str, ...]:
 def plain(text: str) -> str:
     """Lower case, with composed characters and straight apostrophes."""
     return unicodedata.normalize("NFC", text).lower().replace("’", "'").replace("`", "'")
+
+
+def without_accents(word: str) -> str:
+    """ "élève" -> "eleve", "cœur" -> "coeur"."""
+    apart = unicodedata.normalize("NFD", word.replace("œ", "oe").replace("æ", "ae"))
+    return "".join(letter for letter in apart if not unicodedata.combining(letter))
 
 
 def _tokens(text: str, spelling: Spelling) -> list[Token]:
@@ -138,6 +150,13 @@ def _add_word(tokens: list[Token], raw: str, start: int, spelling: Spelling) -> 
 
 def _word(word: str, start: int, end: int, spelling: Spelling) -> Token:
     value = spelling.numbers.get(word)
+    if value is None and not word.isascii():
+        norm = word
+        for letter, letters in spelling.letters.items():
+            norm = norm.replace(letter, letters)
+        if spelling.accents_optional:
+            norm = without_accents(norm)
+        return Token(norm, start, end, spelled=word)
     if value is None:
         return Token(word, start, end)
     return Token(f"{value:g}", start, end, value=value)

@@ -1,0 +1,73 @@
+"""Verbs of a language whose commands put them first or last, and that may part in two.
+
+    verbs: {fetch: holen, ab|holen}     "hol die Tasse", "hol die Tasse ab", "die Tasse abholen"
+    say: "~fetch <thing>"
+
+`forms` makes the rules `<fetch_1>` (as a command begins), `<fetch_off>` (what a verb that parts
+leaves at the end) and `<fetch_2>` (as a clause ends); `ordered` makes the templates with them. Both
+follow patterns in the language's data, so that another language may order its clauses otherwise.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Final
+
+PARTS: Final = "|"
+"""Between the particle of a verb that may part and the rest of it."""
+
+_MARKED: Final = re.compile(r"~(\w+)")
+
+
+def forms(
+    verbs: Mapping[str, Sequence[str]], conjugation: Mapping[str, Any]
+) -> dict[str, list[str]]:
+    """The rules that a language's verbs stand for, with their words."""
+    rules: dict[str, list[str]] = {}
+    for name, infinitives in verbs.items():
+        first: dict[str, None] = {}
+        last: dict[str, None] = {}
+        particles: dict[str, None] = {}
+        for infinitive in infinitives:
+            particle, _, base = infinitive.rpartition(PARTS)
+            if particle:
+                particles[particle] = None
+            made = _conjugated(base, conjugation)
+            patterns = conjugation["last_parted" if particle else "last"]
+            first |= dict.fromkeys(pattern.format(**made) for pattern in conjugation["first"])
+            last |= dict.fromkeys(pattern.format(particle=particle, **made) for pattern in patterns)
+        rules[f"{name}_1"] = [f"({'|'.join(first)})"]
+        rules[f"{name}_2"] = [f"({'|'.join(last)})"]
+        if particles:
+            rules[f"{name}_off"] = [f"({'|'.join(particles)})"]
+    return rules
+
+
+def _conjugated(infinitive: str, conjugation: Mapping[str, Any]) -> dict[str, str]:
+    """The forms that the patterns name: `infinitive`, `stem`, and those the endings give."""
+    made = {"infinitive": infinitive}
+    changed = conjugation.get("irregular", {}).get(infinitive)
+    for name, endings in conjugation["forms"].items():
+        start = changed if changed and name in conjugation["changing"] else infinitive
+        if changed and name in conjugation["changing"]:
+            start = changed + conjugation["infinitive"]
+        made[name] = next(
+            re.sub(ending, instead, start)
+            for ending, instead in endings
+            if re.search(ending, start)
+        )
+    return made
+
+
+def ordered(say: str, orders: Sequence[str], rules: Mapping[str, Any]) -> Iterator[str]:
+    """The templates that one with a verb marked by ~ stands for; any other stands for itself."""
+    marked = _MARKED.search(say)
+    if marked is None:
+        yield say
+        return
+    before, after, name = say[: marked.start()], say[marked.end() :], marked.group(1)
+    for order in orders:
+        if "_off>" in order and f"{name}_off" not in rules:
+            order = re.sub(r"\s*\[?<VERB_off>\]?", "", order)
+        yield before + order.replace("VERB", name).replace("REST", after.strip())
