@@ -382,14 +382,15 @@ def builtin_worlds() -> list[str]:
     return sorted(path.stem for path in BUILTIN.glob("*.yaml"))
 
 
-def load_world(name_or_path: str | Path) -> World:
+def load_world(name_or_path: str | Path, *, names_only: bool = False) -> World:
     """The built-in world of that name, or the one in that file: a world's YAML, or the YAML that
     ROS's map_server writes.
 
-    Raises `WorldError` with everything that is wrong, and on which line.
+    Raises `WorldError` with everything that is wrong, and on which line. With `names_only`, for
+    translating, a map is not read, and what is wrong with where things are does not matter.
     """
     from sim.world_reader import read_world
 
     if isinstance(name_or_path, str) and name_or_path in builtin_worlds():
-        return read_world(BUILTIN / f"{name_or_path}.yaml")
-    return read_world(Path(name_or_path))
+        return read_world(BUILTIN / f"{name_or_path}.yaml", names_only)
+    return read_world(Path(name_or_path), names_only)

@@ -113,6 +113,7 @@ def check_poses(reader: NodeReader, world: World) -> None:
                 f"{what} is outside the map, which goes from ({x1 * per_metre:g}, "
                 f"{y1 * per_metre:g}) to ({x2 * per_metre:g}, {y2 * per_metre:g}). "
                 "Correct the coordinates, or the units.",
+                floor=True,
             )
 
 
@@ -121,7 +122,9 @@ def check_doors(reader: NodeReader, walls: Sequence[Segment], doors: Lined[Door]
     for line, door in doors:
         if not any(_opening(wall, door.ends) for wall in walls):
             reader.problem(
-                line, "The door lies in no wall. Both its ends must be on the line of one wall."
+                line,
+                "The door lies in no wall. Both its ends must be on the line of one wall.",
+                floor=True,
             )
 
 
@@ -162,6 +165,7 @@ class _Settling:
             line,
             f'{what} is "{name}", but there is no such place.'
             f"{hint or ' Add it to the places, or name one of them.'}",
+            floor=True,
         )
         return None
 
@@ -228,6 +232,7 @@ class _Settling:
                 else "it is not clear which one that is."
             )
             + (did_you_mean(on, pieces) or ' Say "at" which place, and list the furniture.'),
+            floor=True,
         )
         return thing
 

@@ -38,9 +38,10 @@ DEGREES_PER_RADIAN = 180 / math.pi
 _T = TypeVar("_T")
 
 
-def read_world(path: Path) -> World:
-    """The world in this file. Raises `WorldError` with all problems."""
-    reader = _Reader(str(path))
+def read_world(path: Path, names_only: bool = False) -> World:
+    """The world in this file. Raises `WorldError` with all problems; with `names_only`, those that
+    matter only to a robot which is to drive there are passed over."""
+    reader = _Reader(str(path), names_only)
     try:
         root = compose(path)
         world = reader.ros_map(root, path) if is_ros_map(root) else reader.world(root, path)
@@ -275,6 +276,8 @@ class _Reader(NodeReader):
                 'The map\'s mode is neither "trinary" nor "scale". Save the map in one of these.',
             )
         if image is None or resolution is None or not numbers or None in numbers:
+            return None
+        if self.names_only:
             return None
         from sim.maps import ImageError, image_size
 

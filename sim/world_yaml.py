@@ -192,8 +192,9 @@ class NodeReader:
     FIELDS: ClassVar[Mapping[str, str]] = {}
     """The fields that each sort of entry may have, in one text."""
 
-    def __init__(self, file: str) -> None:
+    def __init__(self, file: str, names_only: bool = False) -> None:
         self.file = file
+        self.names_only = names_only
         self.problems: list[Problem] = []
         self.factor = 1.0
         """Metres for each unit of length in the file."""
@@ -203,7 +204,11 @@ class NodeReader:
 
     # --- problems
 
-    def problem(self, line: int, message: str) -> None:
+    def problem(self, line: int, message: str, *, floor: bool = False) -> None:
+        """Note what is wrong. `floor`: it matters only to a robot that is to drive there, not to
+        the names."""
+        if floor and self.names_only:
+            return
         self.problems.append(Problem(line, printable(message)))
         if len(self.problems) >= MAX_PROBLEMS:
             raise Hopeless(None, "There are more problems than these. Correct these first.")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import msgspec
 
-from nl2robot.commands.options import add_language, add_planner, add_world, world_of
+from nl2robot.commands.options import add_language, add_planner, add_world, names_of
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.models import need
@@ -37,7 +37,7 @@ def run(options: argparse.Namespace) -> int:
         return _answers(options, model)
     from nl2robot.hearing import Ear
 
-    ear = Ear(model, Knowledge(world_of(options)), options.lang)
+    ear = Ear(model, Knowledge(names_of(options)), options.lang)
     for missing in ear.deaf_to():
         print(missing.message, file=sys.stderr)
 

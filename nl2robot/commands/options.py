@@ -99,6 +99,13 @@ def add_robot(parser: argparse.ArgumentParser) -> None:
     add_seed(parser)
 
 
+def names_of(options: argparse.Namespace) -> World:
+    """The world as far as translating needs it: what goes by a name."""
+    from sim.world import load_world
+
+    return load_world(options.world, names_only=True)
+
+
 def world_of(options: argparse.Namespace) -> World:
     from sim.world import load_world
 
@@ -114,14 +121,14 @@ def open_log(debug: bool = False) -> RunLog:
     from nl2robot.runlog import RunLog
 
     logging.raiseExceptions = debug  # a full disk is told of elsewhere
-    logger = logging.getLogger("robot_api")
-    if not debug and not logger.handlers:
-        logger.addHandler(
-            RotatingFileHandler(
-                data_folder() / "faults.log", maxBytes=1_000_000, backupCount=2, delay=True
-            )
+    if not debug:
+        faults = RotatingFileHandler(
+            data_folder() / "faults.log", maxBytes=1_000_000, backupCount=2, delay=True
         )
-        logger.propagate = False
+        for name in ("robot_api", "nl2robot"):
+            logger = logging.getLogger(name)
+            logger.handlers = [faults]
+            logger.propagate = False
     return RunLog(data_folder() / "runs.sqlite")
 
 

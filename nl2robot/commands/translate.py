@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from nl2robot.commands.options import add_language, add_planner, add_world, words, world_of
+from nl2robot.commands.options import add_language, add_planner, add_world, names_of, words
 from nl2robot.errors import ExitStatus
 from nl2robot.knowledge import Knowledge
 from nl2robot.translation import translate
@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    knowledge = Knowledge(world_of(options))
+    knowledge = Knowledge(names_of(options))
     lines = (
         (line.rstrip("\n") for line in sys.stdin) if options.words == "-" else iter([options.words])
     )

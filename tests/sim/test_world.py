@@ -288,3 +288,28 @@ def test_loading_needs_nothing_heavy() -> None:
 
 def test_the_builtin_worlds_are_these() -> None:
     assert builtin_worlds() == ["city-hospital", "lab-tour", "ward"]
+
+
+def test_translating_needs_only_the_names(tmp_path) -> None:
+    file = tmp_path / "sketch.yaml"
+    file.write_text(
+        "name: sketch\n"
+        "map: {image: not-drawn-yet.pgm, resolution: 0.05, origin: [0, 0, 0]}\n"
+        "robot: {start: charger}\n"
+        "places: [{name: pharmacy, pose: [12, 3, 90]}]\n"
+        "people: [{name: Alice, at: her office}]\n"
+        "objects: [{name: stapler, at: pharmacy, on: a shelf}]\n"
+    )
+    world = load_world(str(file), names_only=True)
+    assert [place.name for place in world.places] == ["pharmacy"]
+    assert [person.name for person in world.people] == ["Alice"]
+    with pytest.raises(WorldError) as wrong:
+        load_world(str(file))
+    assert [problem.line for problem in wrong.value.problems] == [2, 3, 5, 6]
+
+
+def test_a_misspelt_field_matters_even_for_the_names(tmp_path) -> None:
+    file = tmp_path / "sketch.yaml"
+    file.write_text("name: sketch\nplaces: [{name: pharmacy, colour: red}]\n")
+    with pytest.raises(WorldError, match=r":2:.*colour"):
+        load_world(str(file), names_only=True)
