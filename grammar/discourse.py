@@ -185,6 +185,28 @@ class Discourse:
     def norms(self, start: int, end: int) -> list[str]:
         return [token.norm for token in self.tokens[start:end]]
 
+    def noun_words(self, start: int, end: int) -> str:
+        """Some tokens as the words of a noun phrase that things are looked for by: in lower case,
+        but for languages that write nouns with capitals."""
+        keep = bool(self.language.speech.get("capital_nouns"))
+        return " ".join(
+            self.text[token.start : token.end]
+            if keep and token.kind == "word"
+            else token.spelled or token.norm
+            for token in self.tokens[start:end]
+        )
+
+    def described_by(self, part: Leaf | Node) -> str:
+        """The words for what a part says of a thing: from a list where one has them, else as they
+        were said."""
+        if isinstance(part, Node):
+            words: str = self.build(part)
+            return words
+        if isinstance(part.value, tuple):
+            first = part.value[0]
+            return first.name if isinstance(first, Name) else str(first)
+        return self.noun_words(part.start, part.end)
+
     # --- making steps
 
     def call_of(self, node: Node) -> Call:

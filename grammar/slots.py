@@ -7,6 +7,7 @@ and from the lists of the language; they are found along a trie, misspelt ones t
 from __future__ import annotations
 
 import functools
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
@@ -52,14 +53,13 @@ class Names:
         for name in lexicon.people:
             self._add_name("person", name)
         for thing in lexicon.objects:
-            for form in self._forms(thing.name):
-                self._add("object", form, thing.name)
-            for alias in thing.aliases:
-                for form in self._forms(alias):
+            for text in (thing.name, *thing.aliases):
+                for form in self._forms(text):
                     self._add("object", form, thing.name)
         for furniture in lexicon.furniture:
             for text in (furniture.name, *furniture.aliases):
-                self._add("furniture", text, furniture.name)
+                for variant in self._variants(text):
+                    self._add("furniture", variant, furniture.name)
             if furniture.kind:
                 self._add("furniture", furniture.kind, furniture.kind)
         for contact in lexicon.contacts:
@@ -100,8 +100,12 @@ class Names:
                 self._add(slot, variant, name)
 
     def _variants(self, text: str) -> Iterable[str]:
-        """ "Alice's office" is also "the office of Alice", and written "Alices office"."""
+        """ "Alice's office" is also "the office of Alice", and written "Alices office";
+        names may be inflected."""
         yield text
+        for pattern, *others in self.language.speech.get("name_forms", ()):
+            if re.search(pattern, text):
+                yield from (re.sub(pattern, other, text) for other in others)
         mark = self.language.speech.get("possessive")
         if mark and mark in text:
             owner, _, owned = text.partition(mark)
@@ -109,7 +113,8 @@ class Names:
                 yield pattern.format(owner=owner, owned=owned.strip())
 
     def _forms(self, text: str) -> tuple[str, ...]:
-        return tuple(dict.fromkeys((text, plural(text, self.language))))
+        forms = (text, plural(text, self.language))
+        return tuple(dict.fromkeys(each for form in forms for each in self._variants(form)))
 
     def _add(self, slot: str, text: str, value: Any) -> None:
         self._add_words(slot, self.language.tokens_of(text), value)
@@ -203,16 +208,18 @@ class Slots:
         total, current, position, any_digit = 0.0, None, at, False
         while position < len(self.tokens):
             token = self.tokens[position]
-            if token.value is not None:
+            value, more = self._compound(position) or (token.value, 1)
+            if value is not None:
                 if (
                     current is not None
-                    and not (current % 10 == 0 and current >= 20 and 0 < token.value < 10)
-                    and not (current % 100 == 0 and current >= 100 and token.value < 100)
+                    and not (current % 10 == 0 and current >= 20 and 0 < value < 10)
+                    and not (current % 100 == 0 and current >= 100 and value < 100)
                 ):
                     break
                 if current is not None and self.tokens[position - 1].kind == "number":
                     break
-                current = (current or 0.0) + token.value
+                current = (current or 0.0) + value
+                position += more - 1
             elif token.norm in scales:
                 scale = scales[token.norm]
                 current = (1.0 if current is None else current) * scale
@@ -237,6 +244,16 @@ class Slots:
             if self._reads(words, at):
                 matches.append((at + len(words), 0.2, value))
         return matches
+
+    def _compound(self, at: int) -> tuple[float, int] | None:
+        """A number said in several words that do not add up one by one, "quatre-vingt-dix", and
+        how many words it has."""
+        if at >= len(self.tokens) or self.tokens[at].kind != "word":
+            return None
+        for words, value in _compounds(self.language).get(self.tokens[at].norm, ()):
+            if self._reads(words, at):
+                return value, len(words)
+        return None
 
     def _fractions(self) -> Iterable[tuple[tuple[str, ...], float]]:
         for phrase, value in self.language.numbers.get("and_fractions", {}).items():
@@ -334,6 +351,18 @@ class Slots:
                 break
             matches.append((position + 1, UNKNOWN_NAME + FREE_WORD * (position + 1 - at), None))
         return matches
+
+
+@functools.cache
+def _compounds(language: Language) -> dict[str, list[tuple[tuple[str, ...], float]]]:
+    """The numbers of several words by their first one, the longest first."""
+    found: dict[str, list[tuple[tuple[str, ...], float]]] = {}
+    for phrase, value in language.numbers.get("compounds", {}).items():
+        words = language.tokens_of(phrase)
+        found.setdefault(words[0], []).append((words, float(value)))
+    for each in found.values():
+        each.sort(key=lambda compound: -len(compound[0]))
+    return found
 
 
 @functools.cache

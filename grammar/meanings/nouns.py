@@ -120,11 +120,13 @@ def descriptor(d: Discourse, node: Node) -> str:
     """What stands after a noun and tells it from others: "waving", "with a red shirt"."""
     form: str = node.production.fixed.get("form", "{what}")
     part = node.parts.get("what")
-    what = "" if part is None else " ".join(d.norms(part.start, part.end))
-    if isinstance(part, Leaf) and isinstance(part.value, tuple):
-        first = part.value[0]
-        what = first.name if isinstance(first, Name) else str(first)
-    return form.format(what=what)
+    return form.format(what="" if part is None else d.described_by(part))
+
+
+@meaning("attributes")
+def attributes(d: Discourse, node: Node) -> str:
+    """Adjectives one after the other."""
+    return " ".join(d.described_by(part) for part in node.parts.values())
 
 
 @meaning("descriptor_fixed")
@@ -165,7 +167,7 @@ def described(d: Discourse, noun: str, node: Node) -> Thing:
         before.append(superlative)
     adjectives = node.parts.get("adjectives")
     if adjectives is not None:
-        before.append(" ".join(d.norms(adjectives.start, adjectives.end)))
+        before.append(d.described_by(adjectives))
     after: list[str] = []
     place: Value | None = None
     furniture: str | None = None
@@ -200,7 +202,7 @@ def thing(d: Discourse, node: Node) -> Thing:
     """A noun with its adjectives and what follows it."""
     head = node.parts.get("head")
     if isinstance(head, Leaf):
-        words = " ".join(d.norms(head.start, head.end))
+        words = d.noun_words(head.start, head.end)
         name = head.value[0] if isinstance(head.value, tuple) else words
         one = singular(name, d.language)
         known = head.slot == "object"
