@@ -55,7 +55,8 @@ class Operator:
         }
         if translation is not None:
             parameters["utterance"] = translation.utterance
-            parameters["plan"] = msgspec.json.encode(translation.plan).decode()
+            if review.program == translation.program:  # edited, it is no longer what was planned
+                parameters["plan"] = msgspec.json.encode(translation.plan).decode()
         return self._request("program.approve", parameters, Approval)
 
     def run(self, approval: Approval) -> int:

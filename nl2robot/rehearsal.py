@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import msgspec
 
 from robot_api.driver import StopFlag
+from robot_api.errors import Stopped
 
 if TYPE_CHECKING:
     from sim.simulation import Simulation
@@ -24,8 +25,9 @@ class DryRun(msgspec.Struct, frozen=True, kw_only=True):
     status: Literal["done", "failed", "stopped", "limit", "unfinished"]
     """As an outcome of `sandbox.execution`, or "unfinished" if it was cut short."""
     message: str | None
+    """Why it would not be done."""
     line: int | None
-    """Where it failed or was cut short."""
+    """Where it would end, if it would not be done."""
     seconds: float
     """How long it would take, in simulated time."""
     metres: float
@@ -62,6 +64,8 @@ def rehearse(program: str, simulation: Simulation, real_seconds: float = REAL_SE
         stop.check()
         if method == "ask":
             asks.append(arguments["question"])
+        if method == "stop":
+            raise Stopped  # as the real robot's stop ends every program
         return driver.call(method, arguments, stop)
 
     def cut() -> None:
@@ -87,7 +91,7 @@ def rehearse(program: str, simulation: Simulation, real_seconds: float = REAL_SE
     path = _thinned([(sample.x, sample.y) for sample in record.samples])
     return DryRun(
         status="unfinished" if cut_short.is_set() else outcome.status,
-        message=None if cut_short.is_set() else outcome.message,
+        message=None if cut_short.is_set() or outcome.status == "done" else outcome.message,
         line=outcome.line,
         seconds=round(simulation.time - began, 1),
         metres=round(record.distance, 1),

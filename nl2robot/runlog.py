@@ -32,12 +32,13 @@ CREATE TABLE IF NOT EXISTS runs (
     sha256 TEXT NOT NULL,            -- of exactly this program, which is what was approved
     approved_by TEXT NOT NULL,
     approved_at REAL NOT NULL,
-    world TEXT,
+    world TEXT,                      -- a built-in world's name, or the path of its file
     seed INTEGER,
     robot TEXT,
     status TEXT,                     -- done | failed | stopped | limit; NULL while it runs
     message TEXT,
-    picture TEXT                     -- path of the picture of the run
+    picture TEXT,                    -- path of the picture of the run
+    start TEXT                       -- JSON: x, y (metres), theta (degrees) of a simulated robot
 );
 CREATE TABLE IF NOT EXISTS calls (
     run INTEGER NOT NULL REFERENCES runs(id),
@@ -56,8 +57,11 @@ CREATE TABLE IF NOT EXISTS output (
     time REAL NOT NULL,
     text TEXT NOT NULL
 );
-PRAGMA user_version = 1;
 """
+
+_VERSION = 2
+_ADDED = {"start": "TEXT"}
+"""Columns of `runs` that a log of an older version has not got."""
 
 
 class LogError(UserError):
@@ -84,6 +88,10 @@ class Run(msgspec.Struct, frozen=True, kw_only=True):
     status: str | None
     message: str | None
     picture: str | None
+    start: str | None
+
+
+_COLUMNS = ", ".join(Run.__struct_fields__)
 
 
 class LoggedCall(msgspec.Struct, frozen=True, kw_only=True):
@@ -111,7 +119,7 @@ class RunLog:
             self._db = sqlite3.connect(path, check_same_thread=False, isolation_level=None)
             self._db.execute("PRAGMA journal_mode=WAL")
             self._db.execute("PRAGMA busy_timeout=5000")
-            self._db.executescript(_SCHEMA)
+            self._bring_up_to_date()
 
     def close(self) -> None:
         with self._lock:
@@ -185,6 +193,11 @@ class RunLog:
             *(time.time(), status, message, run),
         )
 
+    def starts_at(self, run: int, x: float, y: float, theta: float) -> None:
+        """Note where a simulated robot stands when the run begins."""
+        start = msgspec.json.encode({"x": x, "y": y, "theta": theta}).decode()
+        self._write("UPDATE runs SET start = ? WHERE id = ?", start, run)
+
     def picture(self, run: int, path: str) -> None:
         self._write("UPDATE runs SET picture = ? WHERE id = ?", path, run)
 
@@ -192,11 +205,11 @@ class RunLog:
 
     def runs(self, last: int = 20) -> list[Run]:
         """The newest runs, newest first."""
-        rows = self._read("SELECT * FROM runs ORDER BY id DESC LIMIT ?", last)
+        rows = self._read(f"SELECT {_COLUMNS} FROM runs ORDER BY id DESC LIMIT ?", last)
         return [Run(**row) for row in rows]
 
     def run(self, number: int) -> Run | None:
-        rows = self._read("SELECT * FROM runs WHERE id = ?", number)
+        rows = self._read(f"SELECT {_COLUMNS} FROM runs WHERE id = ?", number)
         return Run(**rows[0]) if rows else None
 
     def calls(self, run: int) -> list[LoggedCall]:
@@ -212,6 +225,19 @@ class RunLog:
         return [row["text"] for row in rows]
 
     # --- the file
+
+    def _bring_up_to_date(self) -> None:
+        """Make what is missing; a log of this version is not written to."""
+        [version] = self._db.execute("PRAGMA user_version").fetchone()
+        if version >= _VERSION:
+            return
+        self._db.executescript(f"BEGIN IMMEDIATE; {_SCHEMA}")
+        there = {row[1] for row in self._db.execute("PRAGMA table_info(runs)")}
+        for name, kind in _ADDED.items():
+            if name not in there:
+                self._db.execute(f"ALTER TABLE runs ADD COLUMN {name} {kind}")
+        self._db.execute(f"PRAGMA user_version = {_VERSION}")
+        self._db.execute("COMMIT")
 
     def _write(self, sql: str, *values: Any) -> sqlite3.Cursor:
         with self._lock, self._trouble():

@@ -11,11 +11,13 @@ An approval is bound to the hash of exactly one program and is used up by one ru
 
 from __future__ import annotations
 
+import logging
 import secrets
 import threading
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any, Literal
 
 import msgspec
@@ -27,6 +29,9 @@ from robot_api.client import Robot
 from robot_api.errors import AccessDenied, NotPossible, RobotError, Stopped
 from sandbox.execution import Execution, Outcome
 from sim.simulation import Simulation
+from sim.world import World, builtin_worlds
+
+_log = logging.getLogger("nl2robot.runner")
 
 State = Literal["running", "paused", "done", "failed", "stopped", "limit"]
 
@@ -56,6 +61,9 @@ class Status(msgspec.Struct, frozen=True, kw_only=True):
     state: State
     line: int | None
     message: str | None
+    """Why it is not done, if it is over and is not."""
+    error: str | None
+    """What it failed with, as `sandbox.execution.Outcome.error`."""
     program: str
     sha256: str
     calls: int
@@ -85,6 +93,7 @@ class _Activity:
             state=self.state,
             line=self.line,
             message=self.message,
+            error=self.outcome.error if self.outcome else None,
             program=self.approval.program,
             sha256=self.approval.sha256,
             calls=self.calls,
@@ -233,7 +242,7 @@ class Runner:
                 heard=approval.heard,
                 language=approval.language,
                 plan=approval.plan,
-                world=self.knowledge.world.name,
+                world=_where_from(self.knowledge.world),
                 seed=self._seed,
                 robot=self.knowledge.capabilities.name if self.knowledge.capabilities else None,
             )
@@ -249,7 +258,9 @@ class Runner:
                     robot.stop()
         except RobotError as error:  # the robot cannot be reached
             if activity.outcome is None:
-                activity.outcome = Outcome(status="failed", message=str(error))
+                activity.outcome = Outcome("failed", str(error), error=type(error).__name__)
+        except Exception:  # noqa: BLE001 - told as a fault of this software
+            _log.exception("run %s ended through a fault", activity.run)
         finally:
             self._end(activity)
 
@@ -300,6 +311,8 @@ class Runner:
         told = msgspec.json.encode(result).decode()
         self._logged(self.log.call_ends, activity.run, number, seconds, result=told)
         self._tell(activity, "result", **about, result=msgspec.to_builtins(result), seconds=seconds)
+        if method == "stop":
+            raise Stopped  # whoever stops the robot, its program is over
         return result
 
     def _logged(self, write: Callable[..., None], *values: Any, **more: Any) -> None:
@@ -314,16 +327,18 @@ class Runner:
             status="failed", message="The run ended through a fault of this software."
         )
         activity.state = outcome.status
-        activity.message = outcome.message
+        activity.message = None if outcome.status == "done" else outcome.message
         if outcome.line is not None:
             activity.line = outcome.line
         try:
             self.log.end(activity.run, activity.state, activity.message)
         except LogError as error:
-            activity.message = f"{activity.message or ''} {error}".strip()
-        # Those who watch hear of the end before those who wait are told.
-        self._tell(activity, "state")
-        activity.over.set()
+            activity.message = str(error)
+        try:
+            # Those who watch hear of the end before those who wait are told.
+            self._tell(activity, "state")
+        finally:
+            activity.over.set()
 
     # --- helpers
 
@@ -351,3 +366,8 @@ class Runner:
             "message": activity.message,
         }
         self._publish("program", {**data, **more})
+
+
+def _where_from(world: World) -> str:
+    """What `load_world` finds this world by again, whatever folder it is called in."""
+    return world.name if world.name in builtin_worlds() else str(Path(world.file).absolute())

@@ -8,11 +8,20 @@ This is the main path as the operator meets it; its stations are, in order, `Ope
 from __future__ import annotations
 
 import secrets
+import threading
+from collections.abc import Mapping
+from typing import Any
 
-from nl2robot.errors import ExitStatus
+from nl2robot.errors import ExitStatus, UserError
 from nl2robot.operator import Operator
+from nl2robot.runner import Approval, Status
 from nl2robot.terminal import Terminal
 from nl2robot.translation import Translation
+from robot_api.errors import LostConnection
+from sandbox.limits import MAX_PROGRAM
+
+LAST_WORDS = 2.0
+"""Seconds to wait for the events of a run that is over."""
 
 
 class Session:
@@ -34,7 +43,10 @@ class Session:
         self.approve_all = approve_all
         self.last_run: int | None = None
         self._talk = secrets.token_hex(8)
-        operator.watch(terminal.show_event, "program")
+        self._watching = threading.Event()
+        """While a run of this session goes on; others may use the same robot in between."""
+        self._told_end = threading.Event()
+        operator.watch(self._show, "program")
 
     def perform(self, utterance: str, heard: str | None = None) -> ExitStatus:
         """Understand an utterance, have its program approved, run it."""
@@ -62,10 +74,15 @@ class Session:
         """Review a program, have it approved, run it."""
         explanation = translation.explanation if translation else ""
         while True:
+            if len(program.encode()) > MAX_PROGRAM:
+                raise UserError(
+                    f"The program is longer than {MAX_PROGRAM // 1000} kB. Make it shorter."
+                )
             review = self.operator.check(program)
             edited = translation is None or program != translation.program
             self.terminal.show_review(review, "" if edited else explanation)
             if self.approve_all and not review.acceptable:
+                self.terminal.console.print("The program cannot be approved. Nothing was run.")
                 return ExitStatus.NOT_APPROVED
             decision = "approve" if self.approve_all else self.terminal.decide(review)
             if decision == "reject":
@@ -74,20 +91,47 @@ class Session:
             if decision == "approve":
                 break
             program = self.terminal.edit(program)
-        approval = self.operator.approve(review, translation, heard)
-        return self._watch(self.operator.run(approval))
+        return self._run(self.operator.approve(review, translation, heard))
 
-    def _watch(self, run: int) -> ExitStatus:
-        self.last_run = run
+    def _run(self, approval: Approval) -> ExitStatus:
+        """Run what was approved, in view, to its end. Ctrl-C stops the robot."""
+        self._told_end.clear()
+        self._watching.set()
         try:
-            status = self.operator.wait(run)
+            status, interrupted = self._finish(approval)
+            self._told_end.wait(LAST_WORDS)
+        except LostConnection as error:
+            raise UserError(
+                f"{error} If the robot still moves, stop it by its own button."
+                " Then see whether its server is running.",
+                ExitStatus.NO_ROBOT,
+            ) from error
+        finally:
+            self._watching.clear()
+        self.terminal.show_end(status.state, status.message)
+        if interrupted:
+            return ExitStatus.INTERRUPTED
+        if status.error == LostConnection.__name__:
+            return ExitStatus.NO_ROBOT
+        return ExitStatus.OK if status.state == "done" else ExitStatus.FAILED
+
+    def _finish(self, approval: Approval) -> tuple[Status, bool]:
+        """Start the run and wait for its end; tells whether Ctrl-C ended it."""
+        run = None
+        try:
+            run = self.last_run = self.operator.run(approval)
+            return self.operator.wait(run), False
         except KeyboardInterrupt:
             self.operator.stop()
-            status = self.operator.wait(run)
-            self.terminal.show_end(status.state, status.message)
-            return ExitStatus.INTERRUPTED
-        self.terminal.show_end(status.state, status.message)
-        return ExitStatus.OK if status.state == "done" else ExitStatus.FAILED
+            if run is None:
+                raise
+            return self.operator.wait(run), True
+
+    def _show(self, kind: str, data: Mapping[str, Any]) -> None:
+        if self._watching.is_set():
+            self.terminal.show_event(kind, data)
+            if data["what"] == "state" and data["state"] not in ("running", "paused"):
+                self._told_end.set()
 
     def _translate(self, utterance: str) -> Translation:
         return self.operator.translate(utterance, self.language, self.planner, self._talk)

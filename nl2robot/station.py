@@ -6,9 +6,12 @@ the address of another.
 
 from __future__ import annotations
 
+import errno
 import math
+import os
+import threading
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -19,10 +22,14 @@ from nl2robot.runner import Runner
 from nl2robot.services import EVENTS, services
 from robot_api.client import Robot
 from robot_api.driver import Driver, Event
-from robot_api.server import Server
+from robot_api.errors import AccessDenied, RobotError
+from robot_api.server import CannotListen, Server
 from sim.record import Record
 from sim.simulation import Simulation
 from sim.world import World
+
+ANSWERS_WITHIN = 5.0
+"""Seconds that a server has to say what it can do."""
 
 
 class Station:
@@ -68,26 +75,42 @@ class SimulatedStation(Station):
         return True
 
 
+def check_picture(file: Path) -> None:
+    """Raise `UserError` if no picture can be saved there, before anything runs for it."""
+    if file.suffix.lower() not in (".svg", ".png", ".webp", ".gif"):
+        raise UserError(
+            f"A picture cannot be saved as {str(file)!r}. Choose a name that ends in"
+            " .svg, .png, .webp or .gif."
+        )
+    with _saving(file):
+        file.parent.mkdir(parents=True, exist_ok=True)
+        if file.is_dir() or not os.access(file if file.exists() else file.parent, os.W_OK):
+            raise PermissionError(errno.EACCES, "it may not be written")
+
+
 def draw(record: Record, world: World, file: Path) -> None:
-    """Draw a run; the file's ending says how."""
+    """Draw a run; the file's ending says how. Raises `UserError`."""
     from sim import pictures
 
-    ending = file.suffix.lower()
+    check_picture(file)
+    with _saving(file):
+        match file.suffix.lower():
+            case ".svg":
+                file.write_text(pictures.svg(world, record), encoding="utf-8")
+            case ".png":
+                pictures.png(world, record, file)
+            case _:
+                pictures.animate(world, record, file)
+
+
+@contextmanager
+def _saving(file: Path) -> Iterator[None]:
     try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        if ending == ".svg":
-            file.write_text(pictures.svg(world, record), encoding="utf-8")
-        elif ending == ".png":
-            pictures.png(world, record, file)
-        elif ending in (".webp", ".gif"):
-            pictures.animate(world, record, file)
-        else:
-            raise UserError(
-                f"A picture cannot be saved as {file.name}. Choose a name that ends in"
-                " .svg, .png, .webp or .gif."
-            )
+        yield
     except OSError as error:
-        raise UserError(f"The picture {file} cannot be saved ({error.strerror}).") from error
+        raise UserError(
+            f"The picture {file} cannot be saved ({error.strerror}). Choose another place for it."
+        ) from error
 
 
 @contextmanager
@@ -118,6 +141,7 @@ def simulated_station(
         run, state = data["run"], data["state"]
         if station.note(run, state):
             driver.begin()
+            _note_start(station, log, run)
         if pictures is not None and state not in ("running", "paused"):
             _keep_picture(station, log, run, pictures / f"run-{run}.svg")
 
@@ -134,6 +158,12 @@ def simulated_station(
     ) as server:
         station = SimulatedStation(server, simulation)
         yield station
+
+
+def _note_start(station: SimulatedStation, log: RunLog, run: int) -> None:
+    robot = station.simulation.robot
+    with suppress(LogError):  # the first call will find the disk full, too, and stop the run
+        log.starts_at(run, robot.x, robot.y, robot.theta)
 
 
 def _keep_picture(station: SimulatedStation, log: RunLog, run: int, file: Path) -> None:
@@ -156,18 +186,36 @@ def remote_station(
     address = address.removeprefix("ws://").rstrip("/")
     if not address:
         raise UserError("The robot's address is missing. Write it as ws://HOST:9090.")
-    with Robot(address, token=token) as robot:
-        methods = {method["name"] for method in robot.request("rpc.discover", {})["methods"]}
+    try:
+        robot = Robot(address, token=token)
+    except AccessDenied as error:
+        raise UserError(f"{error} Give the token with --token.", ExitStatus.NO_ROBOT) from error
+    with robot:
+        methods = _methods_of(robot)
         if "program.run" in methods:
             yield Station(address, token)
             return
         if "robot.capabilities" not in methods:
             raise UserError(
-                f"There is a server at {address}, but it is no robot's.", ExitStatus.NO_ROBOT
+                f"There is a server at {address}, but it is no robot's. Check the address.",
+                ExitStatus.NO_ROBOT,
             )
         driver = RemoteDriver(robot)
         with _open(driver, world, log, lambda: Simulation(world), lambda data: None) as server:
             yield Station(server.address, server.token)
+
+
+def _methods_of(robot: Robot) -> set[str]:
+    """What the server can do; nothing if it does not say so in time, as no robot's server might."""
+    patience = threading.Timer(ANSWERS_WITHIN, robot.close)
+    patience.daemon = True
+    patience.start()
+    try:
+        return {method["name"] for method in robot.request("rpc.discover", {})["methods"]}
+    except (RobotError, TypeError, KeyError):
+        return set()
+    finally:
+        patience.cancel()
 
 
 @contextmanager
@@ -211,6 +259,8 @@ def _open(
         with server:
             yield server
             runner.stop("nl2robot was closed.")
+    except CannotListen as error:
+        raise UserError(str(error)) from error
     finally:
         unsubscribe()
         driver.close()

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shlex
+import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
@@ -18,18 +20,29 @@ from rich.syntax import Syntax
 from rich.table import Table
 
 from nl2robot.errors import ExitStatus, UserError
+from nl2robot.plain import visible
 from nl2robot.rehearsal import DryRun
 from nl2robot.review import Review
 from nl2robot.translation import Translation
 
 Decision = Literal["approve", "edit", "reject"]
 
+NARROWEST = 20
+"""Columns; a terminal that says it has fewer does not know."""
+
+
+class _Console(Console):
+    def on_broken_pipe(self) -> None:
+        raise BrokenPipeError  # for `cli.main`; without this, rich would exit here and now
+
 
 class Terminal:
     """What an operator sees and answers at a terminal."""
 
     def __init__(self, console: Console | None = None) -> None:
-        self.console = console or Console(highlight=False)
+        self.console = console or _Console(highlight=False, emoji=False)
+        if self.console.width < NARROWEST:
+            self.console.width = 80
 
     @property
     def somebody_is_there(self) -> bool:
@@ -39,22 +52,22 @@ class Terminal:
 
     def show_refusal(self, translation: Translation) -> None:
         """Say why there is no program, and what could be said instead."""
-        self.console.print(escape(translation.message or "This was not understood."))
+        self.console.print(_plain(translation.message or "This was not understood."))
         if translation.suggestions:
             self.console.print("You could say:")
             for phrase in translation.suggestions:
-                self.console.print(f"  [bold]{escape(phrase)}[/]")
+                self.console.print(f"  [bold]{_plain(phrase)}[/]")
 
     def show_phrases(self, phrases: Mapping[str, Sequence[str]]) -> None:
         for topic, sentences in phrases.items():
-            self.console.print(f"[bold]{escape(topic.capitalize())}[/]")
+            self.console.print(f"[bold]{_plain(topic.capitalize())}[/]")
             for sentence in sentences:
-                self.console.print(f"  {escape(sentence)}")
+                self.console.print(f"  {_plain(sentence)}")
 
     def show_program(self, program: str) -> None:
         self.console.print(
             Panel(
-                Syntax(program.rstrip("\n"), "python", line_numbers=True, word_wrap=True),
+                Syntax(visible(program).rstrip("\n"), "python", line_numbers=True, word_wrap=True),
                 title="Program",
                 title_align="left",
                 border_style="dim",
@@ -64,11 +77,15 @@ class Terminal:
     def show_review(self, review: Review, explanation: str) -> None:
         self.show_program(review.program)
         if explanation:
-            self.console.print(f"[bold]In words:[/] {escape(explanation)}")
+            self.console.print(f"[bold]In words:[/] {_plain(explanation)}")
+        elif review.reading:
+            self.console.print("[bold]In words:[/]")
+            for told in review.reading:
+                self.console.print(f"[dim]{told.line:>4}[/] {'  ' * told.depth}{_plain(told.text)}")
         for finding in review.findings:
             style, word = ("red", "Error") if finding.severity == "error" else ("yellow", "Note")
             self.console.print(
-                f"[{style}]{word}, line {finding.line}:[/] {escape(finding.message)}"
+                f"[{style}]{word}, line {finding.line}:[/] {_plain(finding.message)}"
             )
         if review.dry_run is not None:
             self._show_dry_run(review.dry_run)
@@ -82,11 +99,11 @@ class Terminal:
             "unfinished": "It would still be going on after",
         }[dry_run.status]
         text = f"{ends} {_duration(dry_run.seconds)} and drive {dry_run.metres:g} m."
-        self.console.print(f"[bold]Dry run:[/] {text} {escape(dry_run.message or '')}".rstrip())
+        self.console.print(f"[bold]Dry run:[/] {text} {_plain(dry_run.message or '')}".rstrip())
         if dry_run.places:
-            self.console.print(f"  way: {escape(' → '.join(dry_run.places))}")
+            self.console.print(f"  way: {_plain(' → '.join(dry_run.places))}")
         for words in dict.fromkeys(dry_run.says):
-            self.console.print(f"  says: {escape(words)}")
+            self.console.print(f"  says: {_plain(words)}")
 
     def decide(self, review: Review) -> Decision:
         """Ask whether the program may run. What cannot be approved is not offered for it."""
@@ -105,28 +122,34 @@ class Terminal:
         try:
             return input(question)
         except EOFError:
+            print()
             raise UserError(
-                "Nobody is there to answer. Add --yes to approve the program beforehand.",
+                "Nobody is there to answer, so nothing was run. Answer here,"
+                " or approve beforehand: nl2robot run --yes.",
                 ExitStatus.NOT_APPROVED,
             ) from None
 
     def edit(self, program: str) -> str:
-        """Let the operator change the program in $VISUAL or $EDITOR; returns the new text."""
+        """Let the operator change the program in $VISUAL or $EDITOR; returns the new text, or the
+        old one (and says why) if that fails."""
         editor = os.environ.get("VISUAL") or os.environ.get("EDITOR") or "nano"
         with tempfile.TemporaryDirectory(prefix="nl2robot-") as folder:
             file = Path(folder) / "program.py"
-            file.write_text(program, encoding="utf-8")
             try:
-                status = subprocess.run([*shlex.split(editor), str(file)], check=False).returncode
-            except OSError as error:
-                raise UserError(
-                    f"The editor {editor!r} cannot be started ({error.strerror})."
-                    " Set $EDITOR to one that is installed."
-                ) from error
-            if status != 0:
-                self.console.print("The editor reported a failure; the program stays as it was.")
-                return program
-            return file.read_text(encoding="utf-8")
+                file.write_text(program, encoding="utf-8")
+                with _left_to_the_editor(signal.SIGINT):
+                    subprocess.run([*shlex.split(editor), str(file)], check=True)
+                return file.read_text(encoding="utf-8-sig")
+            except UnicodeDecodeError:
+                reason = "it did not save text in UTF-8"
+            except (subprocess.CalledProcessError, ValueError, OSError) as error:
+                reason = getattr(error, "strerror", None) or str(error)
+        self.console.print(
+            f"The editor {editor!r} did not work: {reason}. The program stays as it was."
+            " Set $EDITOR to an editor that is installed.",
+            markup=False,
+        )
+        return program
 
     # --- during the run
 
@@ -139,14 +162,14 @@ class Terminal:
                 if value is not None
             )
             call = f"{data['method']}({arguments})"
-            self.console.print(f"[dim]{data['line']:>4}[/] {escape(call)}")
+            self.console.print(f"[dim]{data['line']:>4}[/] {_plain(call)}")
         elif kind == "program" and data["what"] == "result":
             if data.get("error"):
-                self.console.print(f"     [red]{escape(str(data['error']))}[/]")
+                self.console.print(f"     [red]{_plain(str(data['error']))}[/]")
             elif data.get("result") is not None:
-                self.console.print(f"     [green]→ {escape(_short(data['result']))}[/]")
+                self.console.print(f"     [green]→ {_plain(_short(data['result']))}[/]")
         elif kind == "program" and data["what"] == "print":
-            self.console.print(f"     {escape(data['text'].rstrip())}")
+            self.console.print(f"     {_plain(data['text'].rstrip())}")
 
     def show_end(self, state: str, message: str | None) -> None:
         words = {
@@ -155,13 +178,30 @@ class Terminal:
             "stopped": "[yellow]Stopped.[/]",
             "limit": "[red]The program was ended.[/]",
         }
-        self.console.print(f"{words.get(state, state)} {escape(message or '')}".rstrip())
+        # The reader of a pipe may have left; how it ended is in the exit status, too.
+        with contextlib.suppress(BrokenPipeError):
+            self.console.print(f"{words.get(state, state)} {_plain(message or '')}".rstrip())
 
     def table(self, *headings: str) -> Table:
         table = Table(box=None, pad_edge=False, header_style="bold")
         for heading in headings:
             table.add_column(heading, overflow="fold")
         return table
+
+
+def _plain(text: str) -> str:
+    """Text of others, for rich to print as it is."""
+    return escape(visible(text))
+
+
+@contextlib.contextmanager
+def _left_to_the_editor(number: signal.Signals) -> Iterator[None]:
+    """Ctrl-C in an editor is the editor's."""
+    before = signal.signal(number, lambda *_: None)  # not SIG_IGN, which the editor would inherit
+    try:
+        yield
+    finally:
+        signal.signal(number, before)
 
 
 def _short(value: Any, longest: int = 70) -> str:

@@ -15,6 +15,7 @@ from grammar.plan import Plan, to_data
 from grammar.understand import Context, understand
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
+from nl2robot.plain import visible
 
 Planner = Literal["auto", "grammar", "model"]
 
@@ -44,11 +45,11 @@ class Translation(msgspec.Struct, frozen=True, kw_only=True):
     def readable(self) -> str:
         """For people at a terminal: the program with its explanation, or why there is none."""
         if self.program is not None:
-            return f"{self.program}# {self.explanation}\n"
+            return visible(f"{self.program}# {self.explanation}\n")
         lines = [self.message or "This was not understood."]
         if self.suggestions:
             lines += ["You could say:", *(f"  {phrase}" for phrase in self.suggestions)]
-        return "\n".join(lines)
+        return visible("\n".join(lines))
 
 
 class Talk:

@@ -12,6 +12,7 @@ import msgspec
 
 from nl2robot.commands.options import open_log, whole
 from nl2robot.errors import ExitStatus, UserError
+from nl2robot.plain import visible
 from nl2robot.runlog import Run, RunLog
 from nl2robot.terminal import Terminal
 
@@ -33,8 +34,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     log = open_log()
     terminal = Terminal()
+    if options.picture is not None and not options.replay:
+        raise UserError("A picture is made of a replay. Add --replay.")
     if options.run is None:
-        if options.replay or options.picture:
+        if options.replay:
             raise UserError("Say which run to replay: nl2robot log NUMBER --replay.")
         _list(log, terminal, options)
         return ExitStatus.OK
@@ -62,7 +65,7 @@ def _list(log: RunLog, terminal: Terminal, options: argparse.Namespace) -> None:
     table = terminal.table("run", "when", "who", "how", "what")
     for row in reversed(runs):
         what = row.utterance or row.program.strip().partition("\n")[0]
-        table.add_row(str(row.id), _when(row.started), row.approved_by, _how(row), what)
+        table.add_row(str(row.id), _when(row.started), row.approved_by, _how(row), visible(what))
     terminal.console.print(table, markup=False)
 
 
@@ -79,27 +82,34 @@ def _show(log: RunLog, row: Run, terminal: Terminal) -> None:
     }
     for name, value in about.items():
         if value:
-            terminal.console.print(f"{name + ':':<12}{value}", markup=False, soft_wrap=True)
+            line = visible(f"{name + ':':<12}{value}")
+            terminal.console.print(line, markup=False, soft_wrap=True)
     terminal.show_program(row.program)
     table = terminal.table("", "line", "call", "result", "seconds")
     for call in log.calls(row.id):
-        given = ", ".join(f"{n}={v!r}" for n, v in json.loads(call.arguments).items())
+        values = json.loads(call.arguments).items()
+        given = ", ".join(f"{name}={value!r}" for name, value in values if value is not None)
         result = call.error or ("" if call.result in (None, "null") else call.result)
         seconds = "never came back" if call.seconds is None else f"{call.seconds:.2f}"
         table.add_row(str(call.number), str(call.line), f"{call.method}({given})", result, seconds)
     terminal.console.print(table, markup=False)
     for text in log.output(row.id):
-        terminal.console.print(f"printed: {text.rstrip()}", markup=False)
+        terminal.console.print(f"printed: {visible(text).rstrip()}", markup=False)
 
 
 def _replay(log: RunLog, row: Run, terminal: Terminal, picture: str | None) -> int:
     from nl2robot.replay import replay
-    from nl2robot.station import draw
+    from nl2robot.station import check_picture, draw
     from sim.simulation import Simulation
     from sim.world import load_world
 
     if row.seed is None or row.world is None:
-        raise UserError(f"Run {row.id} was not simulated, so it cannot be replayed.")
+        raise UserError(
+            f"Run {row.id} was not simulated, so it cannot be replayed."
+            f" See what happened in it with: nl2robot log {row.id}."
+        )
+    if picture is not None:
+        check_picture(Path(picture))
     world = load_world(row.world)
     simulation = Simulation(world, seed=row.seed)
 
@@ -113,9 +123,9 @@ def _replay(log: RunLog, row: Run, terminal: Terminal, picture: str | None) -> i
         terminal.console.print(difference, style="yellow", markup=False)
     if not again.differences:
         terminal.console.print("Every call came out as it did the first time.")
-    if picture:
+    if picture is not None:
         draw(simulation.record, world, Path(picture))
-        terminal.console.print(f"Picture: {picture}", soft_wrap=True)
+        terminal.console.print(f"Picture: {picture}", soft_wrap=True, markup=False)
     return ExitStatus.OK if not again.differences else ExitStatus.FAILED
 
 

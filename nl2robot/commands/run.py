@@ -20,7 +20,7 @@ from nl2robot.errors import UserError
 from nl2robot.operator import Operator
 from nl2robot.paths import pictures_folder
 from nl2robot.session import Session
-from nl2robot.station import Station, remote_station, simulated_station
+from nl2robot.station import Station, check_picture, remote_station, simulated_station
 from nl2robot.terminal import Terminal
 
 
@@ -39,14 +39,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     if (options.words is None) == (options.program is None):
         raise UserError('Say what to do: nl2robot run "go to the pharmacy", or --program FILE.')
-    program = _read(options.program) if options.program else None
+    program = _read(options.program) if options.program is not None else None
+    picture = Path(options.picture) if options.picture is not None else None
+    if picture is not None:
+        if options.robot != "sim":
+            raise UserError(
+                "Only a robot simulated here can be drawn. Leave --picture or --robot out."
+            )
+        check_picture(picture)
     with open_session(options, approve_all=options.yes) as (session, station):
         if program is None:
             status = session.perform(options.words)
         else:
             status = session.perform_program(program)
-        if options.picture and session.last_run is not None:
-            save_picture(session, station, Path(options.picture))
+        if picture is not None and session.last_run is not None:
+            station.picture(session.last_run, picture)
+            session.terminal.console.print(f"Picture: {picture}", soft_wrap=True, markup=False)
         return status
 
 
@@ -77,17 +85,12 @@ def open_session(
         )
 
 
-def save_picture(session: Session, station: Station, file: Path) -> None:
-    """Save the picture of the session's last run and say where it is."""
-    assert session.last_run is not None
-    if station.picture(session.last_run, file):
-        session.terminal.console.print(f"Picture: {file}", soft_wrap=True)
-    else:
-        session.terminal.console.print("No picture: the run was not simulated here.")
-
-
 def _read(file: str) -> str:
     try:
-        return Path(file).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise UserError(f"The program {file} cannot be read ({error}).") from error
+        return Path(file).read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise UserError(f"The program {file} is no text in UTF-8. Save it as UTF-8.") from error
+    except OSError as error:
+        raise UserError(
+            f"The program {file} cannot be read ({error.strerror}). Check its name and rights."
+        ) from error
