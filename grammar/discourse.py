@@ -116,6 +116,10 @@ class Discourse:
     answer_options: tuple[str, ...] = ()
     code: str | None = None
     heard: str | None = None
+    report: Any = None
+    """What was told last (`grammar.meanings.reports.Report`), so that it can be told to others."""
+    report_step: Step | None = None
+    """The step that tells it."""
     variables: set[str] = field(default_factory=set)
     assumptions: list[str] = field(default_factory=list)
     """What was assumed without being said; each lowers the confidence."""
@@ -189,12 +193,16 @@ class Discourse:
         """Some tokens as the words of a noun phrase that things are looked for by: in lower case,
         but for languages that write nouns with capitals."""
         keep = bool(self.language.speech.get("capital_nouns"))
-        return " ".join(
-            self.text[token.start : token.end]
-            if keep and token.kind == "word"
-            else token.spelled or token.norm
-            for token in self.tokens[start:end]
-        )
+        words = ""
+        before = 0
+        for token in self.tokens[start:end]:
+            if words:
+                elided = self.text[before : token.start] in ("'", "’")  # "verre d'eau"
+                words += "'" if elided else " "
+            whole = keep and token.kind == "word"
+            words += self.text[token.start : token.end] if whole else token.spelled or token.norm
+            before = token.end
+        return words
 
     def described_by(self, part: Leaf | Node) -> str:
         """The words for what a part says of a thing: from a list where one has them, else as they

@@ -11,7 +11,7 @@ is what is done.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Final, assert_never
 
@@ -45,14 +45,20 @@ NUMBERS: Final = frozenset(
 )
 
 
-def explain(plan: p.Plan, language: str = "en") -> str:
-    """The plan in sentences."""
-    return sentences(tell(plan, speech(language)), speech(language))
+def explain(plan: p.Plan, language: str = "en", called: Callable[[str], str] | None = None) -> str:
+    """The plan in sentences. `called` gives what a name of the plan is called in the language
+    (`grammar.naming`); without it, names stand as the world spells them."""
+    words = speech(language)
+    return words.joined_up(sentences(tell(plan, words, called), words))
 
 
-def explain_steps(plan: p.Plan, language: str = "en") -> list[tuple[int, str]]:
+def explain_steps(
+    plan: p.Plan, language: str = "en", called: Callable[[str], str] | None = None
+) -> list[tuple[int, str]]:
     """The plan as a list of (depth, text), a line for each thing that is done."""
-    return listed(tell(plan, speech(language)), speech(language))
+    words = speech(language)
+    lines = listed(tell(plan, words, called), words)
+    return [(depth, words.joined_up(text)) for depth, text in lines]
 
 
 @dataclass(frozen=True)
@@ -78,7 +84,8 @@ def explain_program(source: str, language: str = "en") -> list[LineTold]:
             spot = first if each.continues and id(each.step) in begun else each.step
             line = reading.lines.get(id(spot), line)
             begun.add(id(each.step))
-            yield LineTold(line, depth, f"{each.text}:" if each.is_clause else each.text)
+            text = words.joined_up(each.text)
+            yield LineTold(line, depth, f"{text}:" if each.is_clause else text)
             yield from lines(each.steps, depth + 1, line)
 
     return list(lines(tell(reading.plan, words), 0, 1))
@@ -97,9 +104,11 @@ class Told:
     """The step that it tells of."""
 
 
-def tell(plan: p.Plan, words: Speech) -> tuple[Told, ...]:
+def tell(
+    plan: p.Plan, words: Speech, called: Callable[[str], str] | None = None
+) -> tuple[Told, ...]:
     """The steps of a plan in words."""
-    return tuple(_Teller(words, plan).told(plan.steps))
+    return tuple(_Teller(words, plan, called or str).told(plan.steps))
 
 
 # --- putting together ----------------------------------------------------------------------------
@@ -195,6 +204,7 @@ def _capital(text: str) -> str:
 class _Teller:
     words: Speech
     plan: p.Plan
+    called: Callable[[str], str]
     types: Types = field(init=False)
     results: dict[str, str] = field(init=False, default_factory=dict)
     """What each remembered name is called wherever it is spoken of."""
@@ -413,13 +423,13 @@ class _Teller:
         nouns = self.words.nouns
         match value:
             case p.Text(value=text) if form == "plural":
-                return nouns.many(text)
+                return nouns.many(self.called(text))
             case p.Text(value=text) if form == "the" or role == "place":
-                return nouns.the(text)
+                return nouns.the(self.called(text))
             case p.Text(value=text) if role == "thing":
-                return nouns.indefinite(text)
+                return nouns.indefinite(self.called(text))
             case p.Text(value=text) if role == "bare":
-                return text
+                return self.called(text)
             case p.Items() if role == "options":
                 return self.series(value.items, "or")
             case p.Recall() if role == "place" and self._is_answer(value.name):

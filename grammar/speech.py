@@ -17,6 +17,7 @@ import msgspec
 FOLDER = Path(__file__).with_name("languages")
 
 _GAP = re.compile(r"\{(\w+)(?:!(\w+))?\}")
+_QUOTED = re.compile(r"(“[^”]*”|«[^»]*»|`[^`]*`)")
 
 
 class Words(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -49,6 +50,9 @@ class Nouns(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     vowels: str
     plural: tuple[tuple[str, str], ...]
     singular: tuple[tuple[str, str], ...]
+    articles: tuple[tuple[str, str, str], ...] = ()
+    """Where nouns differ in gender: (nouns, with their definite, their indefinite article); the
+    first that fits stands in the place of `place` and `thing`."""
 
     def indefinite(self, noun: str) -> str:
         if re.fullmatch(self.definite, noun):
@@ -61,6 +65,9 @@ class Nouns(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     def _with_article(self, noun: str, patterns: tuple[str, ...]) -> str:
         if re.fullmatch(self.bare, noun):
             return noun
+        for nouns, definite, indefinite in self.articles:
+            if re.match(nouns, noun):
+                return fill(definite if patterns is self.place else indefinite, {"noun": noun})
         before_vowel = noun[:1].lower() in self.vowels
         return fill(patterns[-1 if before_vowel else 0], {"noun": noun})
 
@@ -91,6 +98,18 @@ class Speech(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     nouns: Nouns
     conditions: dict[str, str]
     methods: dict[str, Words]
+    joined: tuple[tuple[str, str], ...] = ()
+    """Little words that run together ("à le" -> "au"), as patterns and what stands for them."""
+
+    def joined_up(self, text: str) -> str:
+        """The text with the little words run together, but for what is quoted in it."""
+        if not self.joined:
+            return text
+        parts = _QUOTED.split(text)  # every other part is a quotation
+        for number in range(0, len(parts), 2):
+            for pattern, replacement in self.joined:
+                parts[number] = re.sub(pattern, replacement, parts[number])
+        return "".join(parts)
 
 
 def languages() -> list[str]:

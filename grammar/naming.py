@@ -1,0 +1,82 @@
+"""What the names of a plan are called in the language spoken.
+
+A plan has the world's own names in it, and the canonical words for kinds and looks ("nurse",
+"red"). In a language whose speakers call them otherwise (`speech: {aliases_first: true}`) they go
+by their first alias, and by the words that the language lists under `speech: {names: ...}`.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from grammar.language import Language, spoken_name
+from grammar.lexicon import Lexicon
+from grammar.speech import Speech, speech
+
+
+@dataclass(frozen=True)
+class Naming:
+    """The words of one language for the names of one lexicon."""
+
+    names: Mapping[str, str] = field(default_factory=dict)
+    """The world's name or canonical word -> what speakers say."""
+
+    def called(self, text: str) -> str:
+        """A name, or a noun phrase around one ("red cup" -> "tasse de couleur rouge"): what stands
+        before the noun is said after it."""
+        if not self.names or text in self.names:
+            return self.names.get(text, text)
+        words = text.split()
+        for length in range(len(words) - 1, 0, -1):
+            for start in range(len(words) - length, -1, -1):
+                noun = self.names.get(" ".join(words[start : start + length]))
+                if noun is not None:
+                    rest = (words[:start], words[start + length :])
+                    return " ".join((noun, *(self.called(" ".join(each)) for each in rest if each)))
+        return text
+
+
+@functools.lru_cache(maxsize=16)
+def naming(lexicon: Lexicon, language: Language) -> Naming:
+    """The naming of a lexicon, made once."""
+    if not language.speech.get("aliases_first"):
+        return Naming()
+    names: dict[str, str] = dict(language.speech.get("names", {}))
+    known = (*lexicon.objects, *lexicon.furniture, *lexicon.people, *lexicon.places)
+    names |= {name.name: name.aliases[0] for name in known if name.aliases}
+    return Naming(names)
+
+
+def _words(language: Language) -> Speech | None:
+    """How the language puts nouns into sentences, if it says so for single nouns."""
+    words = speech(language.code)
+    return words if words.nouns.articles else None
+
+
+def the(noun: str, language: Language) -> str:
+    """The noun with its definite article, as the phrases of the application have it."""
+    words = _words(language)
+    return words.joined_up(words.nouns.the(noun)) if words else language.phrase("the", noun=noun)
+
+
+def some(noun: str, language: Language) -> str:
+    """The noun with its indefinite article."""
+    words = _words(language)
+    if words is None:
+        return language.phrase("a", noun=noun)
+    return words.joined_up(words.nouns.indefinite(noun))
+
+
+def place_called(name: str, lexicon: Lexicon, language: Language) -> str:
+    """A place as it stands in a sentence: "the kitchen", "la cuisine"."""
+    called = naming(lexicon, language).called(name)
+    words = _words(language)
+    return words.joined_up(words.nouns.the(called)) if words else spoken_name(called, language)
+
+
+def joined_up(text: str, language: Language) -> str:
+    """A text put together from parts, its little words run together as people do: "au bureau"."""
+    words = _words(language)
+    return words.joined_up(text) if words else text
