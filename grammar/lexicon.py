@@ -39,6 +39,16 @@ class Question:
 
 
 @dataclass(frozen=True)
+class Routine:
+    """Something to do that goes by a name."""
+
+    name: str
+    """ "evening round"."""
+    sentence: str
+    """What to do, as it was said."""
+
+
+@dataclass(frozen=True)
 class Lexicon:
     """Everything that has a name. All parts may be empty."""
 
@@ -54,6 +64,8 @@ class Lexicon:
     """The robot's own extra skills, for `do`."""
     languages: tuple[str, ...] = ("en", "de", "fr")
     questions: tuple[Question, ...] = ()
+    routines: tuple[Routine, ...] = ()
+    """Commands that people gave a name."""
     robot_name: str = ""
     """What people may call it: "hey Cruzr"."""
     _kinds: dict[str, tuple[Name, ...]] = field(

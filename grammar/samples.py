@@ -64,6 +64,7 @@ def _names(slot: str, lexicon: Lexicon) -> list[str]:
         "kind": [kind for kind, places in lexicon.place_kinds.items() if len(places) > 1],
         "joint": [joint.replace("_", " ") for joint in lexicon.joints],
         "skill": list(lexicon.skills),
+        "routine": [routine.name for routine in lexicon.routines],
         "question": [question.question.rstrip("?") for question in lexicon.questions],
         "robot_name": [lexicon.robot_name] if lexicon.robot_name else [],
     }.get(slot, [])
@@ -98,11 +99,21 @@ class _Sampler:
         return _SPACE_BEFORE.sub("", " ".join(self.rule("steps", 0)))
 
     def rule(self, name: str, depth: int) -> list[str]:
-        productions = [each for each in self.language.rules[name] if each.cost < 2]
+        productions = [
+            each for each in self.language.rules[name] if each.cost < 2 and self.sayable(each)
+        ]
         if depth > 2:
             productions = sorted(productions, key=self.depth)[:3]
         production = self.chance.choice(productions)
         return self.template(self.chance.choice(production.templates), depth + 1)
+
+    def sayable(self, production: Production) -> bool:
+        """Whether there are routines, for a sentence about them."""
+        return bool(self.lexicon.routines) or not any(
+            part.name == "routine"
+            for template in production.templates
+            for part in parts_of(template)
+        )
 
     def template(self, template: Template, depth: int) -> list[str]:
         match template:

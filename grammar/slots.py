@@ -75,6 +75,8 @@ class Names:
         ):
             for each in known:
                 self._add(slot, each.replace("_", " "), each)
+        for routine in lexicon.routines:
+            self._add("routine", routine.name, routine)
         if lexicon.robot_name:
             self._add("robot_name", lexicon.robot_name, lexicon.robot_name)
         for name_of_list, values in language.lists.items():

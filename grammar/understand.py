@@ -18,6 +18,7 @@ from grammar.discourse import Ambiguous, Discourse, NotUnderstood, Thing
 from grammar.language import Language, load_language, spoken_name
 from grammar.lexicon import Lexicon
 from grammar.plan import Plan, Text, Value
+from grammar.requests import Request
 from grammar.slots import Names, Slots, names_of
 from grammar.tidy import without_unused
 from grammar.tokens import COMMA, Token, tokenise
@@ -89,6 +90,8 @@ class Understanding:
     """Sentences that would be understood."""
     reading: list[tuple[str, str]] = field(default_factory=list)
     """Which words were read as what: (words, meaning), in their order."""
+    request: Request | None = None
+    """What is asked of the application instead; such a sentence has no plan."""
     context: Context = field(default_factory=Context)
     """What to pass with the next sentence of the conversation."""
 
@@ -171,6 +174,16 @@ class _Reader:
             person=self.context.person,
             place=self.context.place,
         )
+        if "request" in tree.parts:
+            asked: Request = discourse.build(tree.parts["request"])
+            return Understanding(
+                self.text,
+                "ok",
+                confidence=self._confidence(tree, discourse),
+                reading=self._reading(tree),
+                request=asked,
+                context=self.context,
+            )
         try:
             steps = discourse.build(tree.parts["steps"])
         except NotUnderstood as reason:
@@ -180,12 +193,11 @@ class _Reader:
         if not steps:
             return self._not_understood(chart)
         plan = without_unused(Plan((*discourse.prologue(), *steps), self.language.code))
-        confidence = max(0.1, 1.0 - 0.15 * len(tree.corrections) - 0.1 * len(discourse.assumptions))
         return Understanding(
             self.text,
             "ok",
             plan,
-            round(confidence, 2),
+            self._confidence(tree, discourse),
             reading=self._reading(tree),
             context=Context(
                 plan,
@@ -195,6 +207,10 @@ class _Reader:
                 place=discourse.place if isinstance(discourse.place, Text) else None,
             ),
         )
+
+    def _confidence(self, tree: Node, discourse: Discourse) -> float:
+        doubts = 0.15 * len(tree.corrections) + 0.1 * len(discourse.assumptions)
+        return round(max(0.1, 1.0 - doubts), 2)
 
     def correction(self) -> str | None:
         """ "no, the pharmacy": the last sentence with this in the place of what it corrects."""

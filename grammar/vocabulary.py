@@ -23,6 +23,7 @@ def vocabulary(lexicon: Lexicon, language: str = "en") -> list[str]:
         texts += [name.name, *name.aliases, *name.attributes, name.kind or ""]
     texts += [*lexicon.contacts, *lexicon.gestures, *lexicon.emotions, *lexicon.skills]
     texts += [joint.replace("_", " ") for joint in lexicon.joints]
+    texts += [routine.name for routine in lexicon.routines]
     for question in lexicon.questions:
         texts += [question.question, *question.aliases]
     texts += names_of(pack, lexicon).words

@@ -15,6 +15,7 @@ import grammar.meanings.nouns
 import grammar.meanings.people
 import grammar.meanings.questions
 import grammar.meanings.reports
+import grammar.meanings.requests
 import grammar.meanings.speaking
 import grammar.meanings.things  # noqa: F401 (each enters its meanings)
 from grammar.meanings.registry import MEANINGS

@@ -1,0 +1,123 @@
+"""Routines: commands that go by a name, and what is asked of the application about them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import msgspec
+
+from grammar.chart import Leaf, Node
+from grammar.discourse import START, Discourse, NotUnderstood, Steps
+from grammar.lexicon import Routine
+from grammar.meanings.registry import meaning
+from grammar.plan import Call, ForEach, Plan, Remember, Text
+from grammar.requests import Kind, Request
+from grammar.tidy import nodes
+
+
+@meaning("routine")
+def routine(d: Discourse, node: Node) -> Steps:
+    """A routine's name stands for the steps of its sentence, understood in the world as it is now.
+    In there the routine itself is unknown, so that none can go round in circles."""
+    from grammar.understand import understand
+
+    called: Routine = d.get(node, "routine")
+    others = tuple(each for each in d.lexicon.routines if each.name != called.name)
+    inner = understand(called.sentence, replace(d.lexicon, routines=others), d.language.code)
+    if inner.plan is None:
+        reason = inner.message or d.language.phrase("not_understood_at_all")
+        raise NotUnderstood(d.language.phrase("routine_broken", name=called.name, reason=reason))
+    if inner.confidence < 1:
+        d.assumptions.append(called.name)
+    if d.needs_start or node.end < len(d.tokens) - 1:
+        d.variables.add(START)  # the sentence around may need the name
+    steps = with_own_names(d, inner.plan)
+    d.at = d.place = d.thing = d.person = d.with_person = None
+    if steps and isinstance(steps[-1], Call) and steps[-1].method == "goto":
+        place = steps[-1].arguments.get("place")
+        if isinstance(place, Text):
+            d.went(place)
+    return steps
+
+
+def with_own_names(d: Discourse, plan: Plan) -> Steps:
+    """The steps with names that the sentence around does not use."""
+    names: dict[str, str] = {}
+    for each in nodes(plan.steps):
+        match each:
+            case Call(save_as=str() as name) | Remember(name=name) | ForEach(variable=name):
+                if name not in names:
+                    names[name] = d.variable(name)
+            case _:
+                pass
+    return [_renamed(step, names) for step in plan.steps]
+
+
+def _renamed(value: Any, names: dict[str, str]) -> Any:
+    if isinstance(value, tuple):
+        return tuple(_renamed(each, names) for each in value)
+    if isinstance(value, dict):
+        return {key: _renamed(each, names) for key, each in value.items()}
+    if not isinstance(value, msgspec.Struct):
+        return value
+    changed = {field: _renamed(getattr(value, field), names) for field in value.__struct_fields__}
+    for field in ("name", "save_as", "variable"):
+        if changed.get(field) in names:
+            changed[field] = names[changed[field]]
+    return type(value)(**changed)
+
+
+# --- asked of the application
+
+
+def request(d: Discourse, node: Node, kind: Kind) -> Request:
+    """What is asked, with the original words of its parts."""
+
+    def said(name: str) -> str:
+        part = node.parts.get(name)
+        if part is None:
+            return ""
+        if isinstance(part, Leaf) and isinstance(part.value, tuple):
+            known: Routine = part.value[0]
+            return known.name
+        if part.end == part.start + 1 and d.tokens[part.start].kind == "quote":
+            return d.tokens[part.start].inner
+        return d.words(part.start, part.end)
+
+    return Request(kind, said("name"), said("sentence"), said("part"))
+
+
+@meaning("ask_help")
+def ask_help(d: Discourse, node: Node) -> Request:
+    return request(d, node, "help")
+
+
+@meaning("learn_routine")
+def learn_routine(d: Discourse, node: Node) -> Request:
+    return request(d, node, "learn")
+
+
+@meaning("list_routines")
+def list_routines(d: Discourse, node: Node) -> Request:
+    return request(d, node, "list")
+
+
+@meaning("explain_routine")
+def explain_routine(d: Discourse, node: Node) -> Request:
+    return request(d, node, "explain")
+
+
+@meaning("change_routine")
+def change_routine(d: Discourse, node: Node) -> Request:
+    return request(d, node, "change")
+
+
+@meaning("forget_routine")
+def forget_routine(d: Discourse, node: Node) -> Request:
+    return request(d, node, "forget")
+
+
+@meaning("schedule_routine")
+def schedule_routine(d: Discourse, node: Node) -> Request:
+    return request(d, node, "schedule")

@@ -1,0 +1,43 @@
+"""What people ask of the application instead of the robot: to learn a routine, to tell them what
+they can say.
+
+Such a request is read by the same rules as a command (the rule <request>), so that it may be put
+as freely; what becomes of it is the application's business.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from grammar.language import load_language
+from grammar.tokens import tokenise
+
+Kind = Literal["help", "learn", "list", "explain", "change", "forget", "schedule"]
+
+
+@dataclass(frozen=True)
+class Request:
+    """Something asked of the application."""
+
+    kind: Kind
+    """What to do: all but "help" are about routines; "schedule" is to do something at set times."""
+    name: str = ""
+    """The routine's name, as it was said."""
+    sentence: str = ""
+    """What the routine does, or what is to be done at those times, as it was said; to learn
+    without a sentence is to keep the command before."""
+    part: str = ""
+    """The words that say at what times; of "help", what the help shall be about."""
+
+
+def agreed(text: str, language: str = "en") -> bool | None:
+    """Whether an answer is a yes or a no; None if it is neither."""
+    pack = load_language(language)
+    fillers = {filler for filler in pack.fillers if len(filler) == 1}
+    words = [token.norm for token in tokenise(text, pack.spelling) if token.kind != "mark"]
+    said = tuple(word for word in words if (word,) not in fillers) or tuple(words)
+    for answer, mark in ((True, "agree"), (False, "refuse")):
+        if said in {pack.tokens_of(way) for way in pack.speech[mark]}:
+            return answer
+    return None
