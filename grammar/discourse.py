@@ -278,6 +278,7 @@ class Discourse:
     def went(self, place: Value) -> None:
         """The robot is at this place now."""
         self.at = self.place = place
+        self.at_furniture = None
         self.with_person = None
 
     def prologue(self) -> Steps:

@@ -71,14 +71,28 @@ def _names(slot: str, lexicon: Lexicon) -> list[str]:
 
 
 def nearest_phrases(text: str, lexicon: Lexicon, language: Language) -> list[str]:
-    """One to three example phrases most like a text, the nearest first."""
+    """Up to three example phrases like a text, the nearest first: those that at least half of
+    their own words are in."""
     from rapidfuzz import fuzz, process
 
-    phrases = [phrase for each in _samples(lexicon, language).values() for phrase in each]
-    found = process.extract(
-        text.lower(), phrases, scorer=fuzz.token_set_ratio, limit=3, score_cutoff=45
-    )
-    return [phrase for phrase, _, _ in found]
+    said = _telling_words(text, language)
+    near: list[tuple[float, str]] = []
+    for phrase in (phrase for each in _samples(lexicon, language).values() for phrase in each):
+        words = _telling_words(phrase, language)
+        shared = [
+            process.extractOne(word, said, scorer=fuzz.ratio, score_cutoff=80) for word in words
+        ]
+        part = sum(found is not None for found in shared) / max(1, len(words))
+        if part >= 0.5:
+            near.append((part + fuzz.token_sort_ratio(text.lower(), phrase) / 1000, phrase))
+    return [phrase for _, phrase in sorted(near, key=lambda each: -each[0])[:3]]
+
+
+def _telling_words(text: str, language: Language) -> list[str]:
+    """The words of a text that say something."""
+    return [
+        word for word in language.tokens_of(text) if word.isalpha() and word not in language.closed
+    ]
 
 
 def random_sentence(lexicon: Lexicon, language: str = "en", seed: int = 0) -> str:

@@ -1,13 +1,150 @@
-"""Small tidying of a finished plan."""
+"""Tidying of a finished plan: names that nothing uses, steps that hang on what may not happen."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, Final
 
 import msgspec
 
-from grammar.plan import Call, Node, Plan, Recall, Remember, Step
+from grammar.plan import (
+    Call,
+    ForEach,
+    Forever,
+    If,
+    Node,
+    Number,
+    Plan,
+    Recall,
+    Remember,
+    Repeat,
+    RepeatUntil,
+    Step,
+    Try,
+    While,
+)
+
+BODIES: Final = ("steps", "then", "otherwise")
+"""Parts of a step that are steps themselves."""
+
+
+class Unbound(Exception):
+    """A step uses a name that nothing before it gives; `name` is the name."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(f"nothing gives {name!r}")
+        self.name = name
+
+
+def scoped(plan: Plan) -> Plan:
+    """The plan with every step where all that it refers to is known: what needs the answer of
+    somebody who may not be found, or of a loop that may have no round, is moved in there, with all
+    that stands between. Raises `Unbound` if a name is given nowhere."""
+    return msgspec.structs.replace(plan, steps=_scoped(plan.steps, frozenset()))
+
+
+def _scoped(steps: tuple[Step, ...], known: frozenset[str]) -> tuple[Step, ...]:
+    done: list[Step] = []
+    bound = [known]
+    for step in steps:
+        done.append(step)
+        while (missing := _missing(done[-1], bound[-1])) is not None:
+            giver = max(
+                (at for at, each in enumerate(done[:-1]) if missing in _gives(each)), default=None
+            )
+            if giver is None:
+                raise Unbound(missing)
+            done[giver:] = [_taking_in(done[giver], missing, tuple(done[giver + 1 :]))]
+            del bound[giver + 1 :]
+        bound.append(bound[-1] | _surely(done[-1]))
+    result: list[Step] = []
+    for step, before in zip(done, bound, strict=False):
+        inside = before | ({step.variable} if isinstance(step, ForEach) else set())
+        inner = {name: _scoped(body, inside) for name in BODIES if (body := _body(step, name))}
+        result.append(msgspec.structs.replace(step, **inner) if inner else step)
+    return tuple(result)
+
+
+def _missing(step: Step, known: frozenset[str]) -> str | None:
+    """A name that a step uses before it or anything inside it could have given it."""
+    given = known | _gives(step)
+    own = [value for value in _heads(step) if isinstance(value, Recall)]
+    inner = [value for value in nodes(step) if isinstance(value, Recall)]
+    for value in own:
+        if value.name not in known and not isinstance(step, RepeatUntil):
+            return value.name
+    for value in inner:
+        if value.name not in given:
+            return value.name
+    return None
+
+
+def _heads(step: Step) -> Iterator[Node]:
+    """All values in a step itself, not in the steps inside it."""
+    for name in step.__struct_fields__:
+        if name not in BODIES:
+            yield from nodes(getattr(step, name))
+
+
+def _body(step: Step, name: str) -> tuple[Step, ...]:
+    body: tuple[Step, ...] = getattr(step, name, ())
+    return body
+
+
+def _gives(step: Step) -> frozenset[str]:
+    """The names that a step or a step inside it gives."""
+    found: set[str] = set()
+    for each in nodes(step):
+        if isinstance(each, Call) and each.save_as:
+            found.add(each.save_as)
+        elif isinstance(each, Remember):
+            found.add(each.name)
+        elif isinstance(each, ForEach):
+            found.add(each.variable)
+    return frozenset(found)
+
+
+def _surely(step: Step) -> frozenset[str]:
+    """The names that are given after a step, whatever happens."""
+    match step:
+        case Call(save_as=str(name)) | Remember(name=name):
+            return frozenset({name})
+        case If():
+            return _all_of(step.then) & _all_of(step.otherwise)
+        case Repeat(times=Number(value=times)) if times >= 1:
+            return _all_of(step.steps)
+        case RepeatUntil() | Forever():
+            return _all_of(step.steps)
+        case _:
+            return frozenset()
+
+
+def _all_of(steps: tuple[Step, ...]) -> frozenset[str]:
+    return frozenset().union(*(_surely(step) for step in steps))
+
+
+def _taking_in(step: Step, name: str, more: tuple[Step, ...]) -> Step:
+    """A step with others put at the end of the steps inside it that give a name."""
+    match step:
+        case If() if name not in _all_given(step.then):
+            return msgspec.structs.replace(step, otherwise=(*step.otherwise, *more))
+        case If():
+            back = tuple(each for each in more if _goes_back(each))[:1]
+            otherwise = (*back, *step.otherwise) if step.otherwise else back
+            return msgspec.structs.replace(step, then=(*step.then, *more), otherwise=otherwise)
+        case Repeat() | ForEach() | While() | RepeatUntil() | Forever() | Try():
+            return msgspec.structs.replace(step, steps=(*step.steps, *more))
+        case _:
+            raise Unbound(name)
+
+
+def _all_given(steps: tuple[Step, ...]) -> frozenset[str]:
+    return frozenset().union(*(_gives(step) for step in steps))
+
+
+def _goes_back(step: Step) -> bool:
+    """Whether it goes to a remembered place: news of a failure are told there, too."""
+    return isinstance(step, Call) and step == Call("goto", {"place": Recall("start")})
 
 
 def without_unused(plan: Plan) -> Plan:
@@ -43,9 +180,5 @@ def _forget_in(step: Step, used: set[str]) -> Step:
         if step.save_as is not None and step.save_as not in used:
             return msgspec.structs.replace(step, save_as=None)
         return step
-    inner = {
-        name: _forget(value, used)
-        for name in ("steps", "then", "otherwise")
-        if (value := getattr(step, name, None))
-    }
+    inner = {name: _forget(value, used) for name in BODIES if (value := getattr(step, name, None))}
     return msgspec.structs.replace(step, **inner) if inner else step

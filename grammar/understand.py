@@ -13,6 +13,7 @@ import functools
 from dataclasses import dataclass, field, replace
 from typing import Final, Literal
 
+from grammar.accounts import left_out
 from grammar.chart import Chart, Leaf, Node, TooMuch
 from grammar.discourse import Ambiguous, Discourse, NotUnderstood, Thing
 from grammar.language import Language, load_language, spoken_name
@@ -20,7 +21,7 @@ from grammar.lexicon import Lexicon
 from grammar.plan import Plan, Text, Value
 from grammar.requests import Request
 from grammar.slots import Names, Slots, names_of
-from grammar.tidy import without_unused
+from grammar.tidy import Unbound, scoped, without_unused
 from grammar.tokens import COMMA, Token, tokenise
 
 LONGEST_TEXT: Final = 2000
@@ -192,7 +193,15 @@ class _Reader:
             return self._ask_back(which)
         if not steps:
             return self._not_understood(chart)
-        plan = without_unused(Plan((*discourse.prologue(), *steps), self.language.code))
+        try:
+            plan = scoped(Plan((*discourse.prologue(), *steps), self.language.code))
+        except Unbound:
+            return _rejected(self.text, self.language.phrase("too_complicated"), self.context)
+        lost = left_out(tree, self.tokens, plan, self.language, self.lexicon)
+        if lost:
+            part = self.language.phrase("not_understood", part=" ".join(lost))
+            return _rejected(self.text, part, self.context)
+        plan = without_unused(plan)
         return Understanding(
             self.text,
             "ok",
@@ -296,6 +305,8 @@ class _Reader:
     def _refused(self, reason: NotUnderstood) -> Understanding:
         message = reason.message
         suggestions: list[str] = []
+        if reason.span != (0, 0) and not reason.nearest:
+            message = f"{message} {self.language.phrase('ask_for_names')}"
         if reason.nearest:
             names = [spoken_name(name, self.language) for name in reason.nearest]
             choices = self.language.phrase("did_you_mean", choices=self._listed(names))
@@ -328,19 +339,25 @@ class _Reader:
         """Name the first words that no reading could use."""
         from grammar.samples import nearest_phrases
 
-        suggestions = nearest_phrases(self.text, self.lexicon, self.language)
         part = self._ununderstood_part(chart)
-        message = (
-            self.language.phrase("not_understood", part=part)
-            if part
-            else self.language.phrase("not_understood_at_all")
-        )
+        suggestions = nearest_phrases(part or self.text, self.lexicon, self.language)
+        message = self._why_not(part)
         if suggestions:
             examples = self._listed([f"“{each}”" for each in suggestions])
             message = f"{message} {self.language.phrase('try_this', examples=examples)}"
         return Understanding(
             self.text, "rejected", message=message, suggestions=suggestions, context=self.context
         )
+
+    def _why_not(self, part: str) -> str:
+        """Which part was not understood; of a sentence that is none of its business, why."""
+        if part:
+            return self.language.phrase("not_understood", part=part)
+        words = {token.norm for token in self.tokens}
+        for phrase, signs in self.language.speech.get("refusals", {}).items():
+            if words.intersection(signs):
+                return self.language.phrase(phrase)
+        return self.language.phrase("not_understood_at_all")
 
     def _ununderstood_part(self, chart: Chart) -> str:
         try:

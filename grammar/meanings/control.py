@@ -54,7 +54,7 @@ def steps(d: Discourse, node: Node) -> Steps:
             joint = str(each.production.fixed.get("joint", "and"))
             rest = each.parts.get("rest")
             each = rest if isinstance(rest, Node) else None
-        d.done[:] = speak_codes(d, guard_finds(d, d.done))
+        d.done[:] = guard_finds(d, speak_codes(d, d.done))
 
     return d.sequence(make)
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, Steps, Thing, Where, as_value
+from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, Where, as_value
 from grammar.meanings.finding import go, look_for, noun_of
 from grammar.meanings.nouns import is_me, sought
 from grammar.meanings.registry import meaning
 from grammar.plan import Call, Text, Value
+from grammar.tidy import nodes
 
 
 @meaning("go")
@@ -17,6 +18,7 @@ def go_to(d: Discourse, node: Node) -> Steps:
     if spot.place is None:
         return look_for(d, Thing(Text(str(spot.furniture))))
     d.went(spot.place)
+    d.at_furniture = spot.furniture
     return [Call("goto", {"place": spot.place})]
 
 
@@ -54,7 +56,14 @@ def in_place(d: Discourse, node: Node) -> Steps:
     d.at_furniture = spot.furniture
     inner: Steps = d.build(node.parts["then"])
     d.at_furniture = None
+    if spot.furniture and not going and not speaks_of(inner, spot.furniture):
+        raise NotUnderstood(d.language.phrase("where_is_thing", thing=spot.furniture))
     return [*going, *inner]
+
+
+def speaks_of(steps: Steps, name: str) -> bool:
+    """Whether some steps use a name."""
+    return any(isinstance(each, Text) and name in each.value for each in nodes(steps))
 
 
 @meaning("come_back")

@@ -66,11 +66,7 @@ def meet(d: Discourse, person: Thing) -> Steps:
 
 def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
     """Say something to a person: here, or where they are found."""
-    if person is None or is_me(person) or person.here or person.value == d.with_person:
-        return steps
-    if not person.known and person.place is None and d.at is not None:
-        return steps  # "go to the lobby and tell the visitors ..."
-    if not person.known and person.place is None and person.plural:
+    if person is None or is_here(d, person):
         return steps
     if not person.known and person.place is not None and (person.plural or person.text == ANYONE):
         return [*go(d, person.place), *steps]
@@ -79,6 +75,14 @@ def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
     return [
         If(Holds(Ask("find", found(d, person).arguments)), tuple(steps), (not_found(d, person),))
     ]
+
+
+def is_here(d: Discourse, person: Thing) -> bool:
+    """Whether a person can be spoken to without looking for them."""
+    if is_me(person) or person.here or person.value == d.with_person:
+        return True
+    # "go to the lobby and tell the visitors ..."
+    return not person.known and person.place is None and (d.at is not None or person.plural)
 
 
 def not_found(d: Discourse, thing: Thing) -> Call:

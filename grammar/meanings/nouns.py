@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Thing, Where, as_value
@@ -11,6 +11,9 @@ from grammar.lexicon import Name
 from grammar.meanings.registry import meaning
 from grammar.plan import Ask, Number, Text, Value
 from grammar.wordforms import singular
+
+LIKE_ENOUGH: Final = 55
+"""Percent that two names have to be alike for one to be offered in the place of the other."""
 
 # --- places
 
@@ -66,7 +69,9 @@ def nearest(words: str, names: tuple[Name, ...]) -> tuple[str, ...]:
     from rapidfuzz import fuzz, process
 
     choices = {text: name.name for name in names for text in (name.name, *name.aliases)}
-    found = process.extract(words.lower(), list(choices), scorer=fuzz.ratio, limit=6)
+    found = process.extract(
+        words.lower(), list(choices), scorer=fuzz.ratio, limit=6, score_cutoff=LIKE_ENOUGH
+    )
     return tuple(dict.fromkeys(choices[text] for text, _, _ in found))[:3]
 
 
@@ -191,6 +196,10 @@ def sought(d: Discourse, thing: Thing) -> Value:
     if thing.furniture and isinstance(thing.value, Text) and not thing.person:
         on = d.language.phrase("on_furniture", furniture=thing.furniture)
         return Text(f"{thing.value.value} {on}")
+    if thing.furniture and isinstance(thing.value, Text) and not thing.known and not thing.place:
+        return Text(
+            f"{thing.value.value} {d.language.phrase('at_furniture', furniture=thing.furniture)}"
+        )
     return thing.value
 
 

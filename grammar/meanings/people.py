@@ -117,7 +117,11 @@ def follow(d: Discourse, node: Node) -> Steps:
 @meaning("greet")
 def greet(d: Discourse, node: Node) -> Steps:
     person: Thing | None = d.get(node, "person_ref")
-    name = person.text if person is not None and person.known else ""
+    name: Value | str = person.text if person is not None and person.known else ""
+    if not name and node.production.fixed.get("by_name"):
+        if d.answer is None:
+            raise NotUnderstood(d.language.phrase("whose_name"))
+        name = Recall(d.answer)
     words = d.say("hello_name", name=name) if name else d.say("hello")
     return speak_to(d, person, [words])
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 from grammar.chart import Leaf, Node
@@ -59,6 +60,7 @@ def remember_answer(d: Discourse, options: tuple[str, ...], name: str) -> str:
         variable = d.variable(name)
     d.answer = variable
     d.answer_options = options
+    d.report = None
     return variable
 
 
@@ -208,8 +210,10 @@ def answer(d: Discourse, node: Node) -> Steps:
     if isinstance(known, Leaf):
         arguments["question"] = Text(known.value[0].question)
     steps = [Call("answer", arguments)]
+    spot: Where | None = d.get(node, "from") or d.get(node, "where")
+    if person is not None and spot is not None:
+        person = replace(person, place=spot.place, here=False)
     if person is None or is_me(person):
-        spot: Where | None = d.get(node, "where")
         if spot is not None and spot.place is not None:
             d.went(spot.place)
             return [Call("goto", {"place": spot.place}), *steps]

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from grammar.chart import Leaf, Node
 from grammar.discourse import (
     ANYONE,
+    START,
     Ambiguous,
     Discourse,
     NotUnderstood,
@@ -20,7 +21,7 @@ from grammar.discourse import (
     as_value,
 )
 from grammar.language import spoken_name
-from grammar.meanings.finding import not_found, speak_to
+from grammar.meanings.finding import is_here, look_for, meet, not_found, speak_to
 from grammar.meanings.nouns import described, is_me, kind_places, sought
 from grammar.meanings.registry import meaning
 from grammar.plan import (
@@ -87,20 +88,31 @@ def report(d: Discourse, node: Node) -> Steps:
         steps += [Remember(name, found.value), Call("goto", {"place": start})]
         d.went(start)
         return [*steps, *told(d, replace(found, value=Recall(name)), None)]
+    if person is not None and not is_here(d, person) and found.about_here and found.value:
+        name = d.variable(found.name)  # found out here, told there
+        steps.append(Remember(name, found.value))
+        found = replace(found, value=Recall(name))
     return [*steps, *told(d, found, person)]
 
 
 def told(d: Discourse, found: Report, person: Thing | None) -> Steps:
     """Say it."""
+    saying = _saying(d, found)
+    d.report, d.report_step = found, saying
+    d.answer = None
+    return speak_to(d, person, [saying])
+
+
+def _saying(d: Discourse, found: Report) -> Call | If:
     words = dict(found.words)
     if found.otherwise is not None:
         assert found.value is not None
         yes, no = d.say(found.phrase, **words), d.say(found.otherwise, **words)
-        return speak_to(d, person, [If(Holds(found.value), (yes,), (no,))])
+        return If(Holds(found.value), (yes,), (no,))
     values: dict[str, Value | str] = {**words}
     if found.value is not None:
         values["value"] = found.value
-    return speak_to(d, person, [d.say(found.phrase, **values)])
+    return d.say(found.phrase, **values)
 
 
 # --- about the robot
@@ -218,10 +230,23 @@ def counted_info(d: Discourse, node: Node) -> Report:
         furniture=thing.furniture or more.furniture or (first.furniture if first else None),
     )
     phrase_words = thing.text
+    spot = _spot_words(d, thing)
     noun, _, rest = phrase_words.partition(" ") if thing.person else (phrase_words, "", "")
     things = f"{plural(noun, d.language)} {rest}".strip()
     count = Ask("count", {"thing": sought(d, thing)})
-    return Report("counted", count, thing.place, (("things", things),), name="count")
+    phrase = "counted_at" if spot and "counted_at" in d.language.phrases else "counted"
+    words = (
+        (("things", things), ("place", spot)) if phrase == "counted_at" else (("things", things),)
+    )
+    return Report(phrase, count, thing.place, words, name="count")
+
+
+def _spot_words(d: Discourse, thing: Thing) -> str:
+    """Where things were counted, as a name."""
+    if thing.furniture:
+        return spoken_name(thing.furniture, d.language)
+    place = thing.place or d.at
+    return spoken_name(place.value, d.language) if isinstance(place, Text) else ""
 
 
 @meaning("whether_seen")
@@ -262,10 +287,46 @@ def where_found(d: Discourse, node: Node) -> Steps:
     return [If(Holds(Ask("find", arguments)), (found,), (not_found(d, thing),))]
 
 
+def known_words(d: Discourse) -> Call:
+    """Say the last answer, or what the last code says."""
+    if d.answer is not None:
+        return Call("say", {"text": Recall(d.answer)})
+    if d.code is not None:
+        return d.say("code_is", value=Recall(d.code))
+    raise NotUnderstood(d.language.phrase("say_what"))
+
+
+@meaning("tell_that")
+def tell_that(d: Discourse, node: Node) -> Steps:
+    """ "and tell Alice how many there are": what was found out before, told to somebody else."""
+    person: Thing = d.get(node, "person_ref")
+    if d.report is None:
+        return speak_to(d, person, [known_words(d)])
+    found: Report = d.report
+    at = next((at for at, step in enumerate(d.done) if step is d.report_step), None)
+    if at is not None and not isinstance(found.value, Recall) and found.value is not None:
+        name = d.variable(found.name)
+        d.done[at] = Remember(name, found.value)
+        found = replace(found, value=Recall(name))
+    elif at is not None and at == len(d.done) - 1:
+        d.done.pop()  # it is told to them and not to the speaker
+        if d.done and d.done[-1] == Call("goto", {"place": Recall(START)}):
+            d.done.pop()
+            d.at = found.place
+    return told(d, found, person)
+
+
 @meaning("tell_me_that")
 def tell_me_that(d: Discourse, node: Node) -> Steps:
     """ "and tell me": what was found out just before, brought back to the speaker."""
     last = d.done[-1] if d.done else None
+    if d.report is not None and d.report_step is last and d.at is not None:
+        start = d.start()
+        if d.at == start:
+            return []
+        told_there = tell_that(d, node)
+        d.went(start)
+        return [Call("goto", {"place": start}), *told_there]
     if d.answer is not None and not isinstance(last, If):
         start = d.start()
         moved = d.at is not None
@@ -279,10 +340,18 @@ def tell_me_that(d: Discourse, node: Node) -> Steps:
 
 @meaning("scan")
 def scan(d: Discourse, node: Node) -> Steps:
-    """Scan a code; where nothing is done with it, it is read out."""
+    """Scan a code, of a thing or on a person that is looked for first if it is not here; where
+    nothing is done with the code, it is read out."""
+    steps: Steps = []
+    person: Thing | None = d.get(node, "person_ref")
+    thing: Thing | None = d.get(node, "thing")
+    if person is not None:
+        steps = meet(d, person)
+    elif thing is not None and not thing.here and not thing.pronoun:
+        steps = look_for(d, thing)
     d.code = d.variable("code")
-    d.answer = None
-    return [Call("scan", {}, save_as=d.code)]
+    d.answer = d.report = None
+    return [*steps, Call("scan", {}, save_as=d.code)]
 
 
 @meaning("tell")

@@ -37,10 +37,13 @@ def sentence_form(text: str) -> str:
 @meaning("say_it")
 def say_it(d: Discourse, node: Node) -> Steps:
     """ "and say it": the answer or the code of before."""
-    name = d.answer or d.code
-    if name is None:
+    if d.answer is None and d.code is not None:
+        words = d.say("code_is", value=Recall(d.code))
+    elif d.answer is not None:
+        words = Call("say", {"text": Recall(d.answer)})
+    else:
         raise NotUnderstood(d.language.phrase("say_what"))
-    return speak_to(d, d.get(node, "person_ref"), [Call("say", {"text": Recall(name)})])
+    return speak_to(d, d.get(node, "person_ref"), [words])
 
 
 @meaning("phrase")

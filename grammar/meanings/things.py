@@ -88,6 +88,7 @@ def bring(d: Discourse, node: Node) -> Steps:
 
 def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None) -> Steps:
     """Pick a thing up, go where it is to be, and put it down or hand it over."""
+    before = d.at
     no_way = spot is not None and spot.place is None and thing.place is None
     if no_way and d.holding != thing.value and not thing.pronoun:
         steps: Steps = [Call("grab", {"thing": sought(d, thing)})]  # both are here
@@ -109,8 +110,13 @@ def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None
         d.went(start)
         d.delivered = thing.value if person is None else None
         return [*steps, Call("give", give)]
-    if not person.here:
-        steps += meet(d, person) or look_for(d, person)
+    left = any(isinstance(step, Call) and step.method == "find" for step in steps)
+    if left and person.here and not person.known:  # back to where they are
+        place = before or d.start()
+        d.went(place)
+        steps.append(Call("goto", {"place": place}))
+    elif left or not person.here:
+        steps += meet(d, replace(person, here=False)) or look_for(d, person)
     d.thing, d.thing_last = thing, True
     if person.text != ANYONE:
         give["person"] = person.value

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import grammar
 from grammar.explain import explain
 from grammar.language import languages, load_language
 from grammar.lexicon import Lexicon
@@ -51,3 +55,12 @@ def test_what_the_rules_can_say_they_understand(language: str, seed: int) -> Non
     program = write_program(understood.plan)
     assert not [finding for finding in check(program, STUB) if finding.severity == "error"], program
     assert explain(understood.plan, language)
+
+
+@pytest.mark.parametrize("language", languages())
+def test_every_phrase_that_the_code_says_exists(language: str) -> None:
+    code = "".join(
+        path.read_text(encoding="utf-8") for path in Path(grammar.__file__).parent.rglob("*.py")
+    )
+    said = set(re.findall(r'(?:\.phrase|\bd\.say|\.sentence)\(\s*"(\w+)"', code))
+    assert said <= load_language(language).phrases.keys()

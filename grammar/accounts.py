@@ -1,0 +1,86 @@
+"""Whether every word of a sentence had a say in its plan: nothing is left out in silence.
+
+Words that stand in a rule are the rule's own affair. What this looks at are the words that come
+from the speaker: names, nouns, free text. A meaning that loses one is a mistake; the sentence is
+then refused, with the word, rather than obeyed in part.
+"""
+
+from __future__ import annotations
+
+import unicodedata
+from collections.abc import Iterator
+from typing import Any, Final
+
+from grammar.chart import Leaf, Node
+from grammar.language import Language
+from grammar.lexicon import Lexicon, Name, Question
+from grammar.plan import Plan
+from grammar.tidy import nodes
+from grammar.tokens import Token
+
+NAMES: Final = frozenset({"noun", "object", "person", "place", "furniture"})
+TEXTS: Final = frozenset({"text", "word", "quote"})
+NO_PART: Final = frozenset({"corrected", "place_corrected", "statement", "refused"})
+"""Meanings whose words need not be in the plan: taken back, or said for what follows."""
+ALIKE: Final = 3
+"""Letters that a word and its form in the plan share: "wants" and "want"."""
+
+
+def left_out(
+    tree: Node,
+    tokens: tuple[Token, ...],
+    plan: Plan,
+    language: Language,
+    lexicon: Lexicon,
+    slots: frozenset[str] = NAMES,
+) -> list[str]:
+    """The words in these slots that the plan knows nothing of."""
+    known = {_stem(word) for text in _texts(plan) for word in language.tokens_of(text)}
+    silent = language.closed | {word for filler in language.fillers for word in filler}
+    base_forms = language.speech.get("base_forms", {})
+    # Who is sent to a piece of furniture is sent to where it stands.
+    homes = {each.name: each.inside for each in lexicon.furniture if each.inside}
+    missing: list[str] = []
+    for leaf in _leaves(tree, slots):
+        if isinstance(leaf.value, tuple):
+            names = [_name_of(value) for value in leaf.value]
+            names += [homes[name] for name in names if name in homes]
+            words = {_stem(word) for name in names for word in language.tokens_of(name)}
+            if not words & known:
+                missing.append(names[0])
+            continue
+        for token in tokens[leaf.start : leaf.end]:
+            forms = {_stem(token.norm), _stem(str(base_forms.get(token.norm, token.norm)))}
+            if token.kind == "word" and token.norm not in silent and not forms & known:
+                missing.append(token.norm)
+    return missing
+
+
+def _stem(word: str) -> str:
+    """The beginning of a word, without accents."""
+    letters = unicodedata.normalize("NFD", word)[: ALIKE + 2]
+    return "".join(each for each in letters if not unicodedata.combining(each))[:ALIKE].lower()
+
+
+def _name_of(value: object) -> str:
+    if isinstance(value, Name):
+        return value.name
+    return value.question if isinstance(value, Question) else str(value)
+
+
+def _leaves(tree: Node, slots: frozenset[str]) -> Iterator[Leaf]:
+    for part in tree.parts.values():
+        if isinstance(part, Leaf):
+            if part.slot in slots:
+                yield part
+        elif not NO_PART & {part.production.means, part.production.rule}:
+            yield from _leaves(part, slots)
+
+
+def _texts(value: Any) -> Iterator[str]:
+    """All texts and names in a plan."""
+    for node in nodes(value.steps):
+        for name in node.__struct_fields__:
+            inside = getattr(node, name)
+            if isinstance(inside, str):
+                yield inside

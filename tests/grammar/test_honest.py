@@ -1,0 +1,183 @@
+"""Nothing is done that was not said, nothing said is left out in silence, no program trips over a
+name that was never given."""
+
+from __future__ import annotations
+
+import ast
+import builtins
+from pathlib import Path
+
+import pytest
+import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grammar.accounts import NAMES, TEXTS, left_out
+from grammar.chart import Node
+from grammar.language import languages, load_language
+from grammar.program import write_program
+from grammar.samples import random_sentence
+from grammar.understand import Context, _Reader, understand
+from tests.grammar.ward import WARD, program
+
+HERE = Path(__file__).parent
+SAID = [
+    row["say"]
+    for file in sorted(HERE.glob("sentences_en*.yaml"))
+    for rows in yaml.load(file.read_text(encoding="utf-8"), Loader=yaml.BaseLoader).values()
+    for row in rows
+]
+
+
+def unbound(source: str) -> set[str]:
+    """The names that a program may use before they are given: in a branch that was not taken, in a
+    loop that had no round."""
+    missing: set[str] = set()
+
+    def uses(node: ast.AST | None, known: set[str]) -> None:
+        inner = set(known)
+        for each in ast.walk(node) if node is not None else ():
+            if isinstance(each, ast.comprehension):
+                inner |= {t.id for t in ast.walk(each.target) if isinstance(t, ast.Name)}
+        for each in ast.walk(node) if node is not None else ():
+            if (
+                isinstance(each, ast.Name)
+                and isinstance(each.ctx, ast.Load)
+                and each.id not in inner
+            ):
+                missing.add(each.id)
+
+    def block(body: list[ast.stmt], known: set[str]) -> set[str]:
+        known = set(known)
+        for statement in body:
+            match statement:
+                case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                    uses(value, known)
+                    known.add(name)
+                case ast.AugAssign(target=ast.Name(id=name), value=value):
+                    uses(value, known)
+                    if name not in known:
+                        missing.add(name)
+                case ast.If(test, then, otherwise):
+                    uses(test, known)
+                    known = block(then, known) & block(otherwise, known)
+                case ast.For(target=ast.Name(id=name), iter=items, body=inner):
+                    uses(items, known)
+                    after = block(inner, known | {name})
+                    match items:
+                        case ast.Call(
+                            func=ast.Name(id="range"), args=[ast.Constant(value=int(times))]
+                        ):
+                            known = after - {name} if times > 0 else known
+                case ast.While(test, inner):
+                    uses(test, known)
+                    after = block(inner, known)
+                    if isinstance(test, ast.Constant):
+                        known = after
+                case ast.Try(body=inner, handlers=handlers):
+                    known = block(inner, known).intersection(
+                        *(block(handler.body, known) for handler in handlers)
+                    )
+                case ast.FunctionDef(name=name):
+                    known.add(name)
+                case ast.Import(names=names):
+                    known |= {each.name for each in names}
+                case _:
+                    uses(statement, known)
+        return known
+
+    block(ast.parse(source).body, {"robot", *dir(builtins)})
+    return missing
+
+
+def test_the_check_sees_a_name_that_may_be_missing() -> None:
+    assert unbound("if robot.find('Bob'):\n    answer = 1\nrobot.say(answer)") == {"answer"}
+    assert unbound("for x in robot.people():\n    y = x\nrobot.say(y)") == {"y"}
+    assert unbound("for x in range(2):\n    y = x\nrobot.say(y)") == set()
+
+
+@pytest.mark.parametrize("sentence", SAID)
+def test_programs_know_all_names_and_sentences_lose_no_word(sentence: str) -> None:
+    understood = understand(sentence, WARD)
+    if understood.plan is None:
+        return
+    assert not unbound(write_program(understood.plan)), program(understood.plan)
+    language = load_language("en")
+    reader = _Reader(sentence, WARD, language, Context())
+    tree = reader.chart().best("utterance")
+    assert isinstance(tree, Node)
+    lost = left_out(tree, reader.tokens, understood.plan, language, WARD, NAMES | TEXTS)
+    assert not lost, program(understood.plan)
+
+
+@settings(max_examples=80, deadline=None)
+@given(st.sampled_from(languages()), st.integers(0, 10**9))
+def test_no_program_uses_a_name_that_may_be_missing(language: str, seed: int) -> None:
+    understood = understand(random_sentence(WARD, language, seed), WARD, language)
+    if understood.plan is not None:
+        assert not unbound(write_program(understood.plan)), program(understood.plan)
+
+
+@pytest.mark.parametrize(
+    ("sentence", "meaning"),
+    [
+        (
+            "count the people in the waiting room and tell Alice how many there are",
+            'goto("waiting room"); count = count("person"); if find("Alice") '
+            '{ say("Number of people in the waiting room: {count}.") } '
+            'else { say("I could not find Alice.") }',
+        ),
+        (
+            "scan the code of the medicine box and tell me what it says",
+            'if find("medicine box") { code = scan(); say("The code says {code}.") } '
+            'else { say("I could not find the medicine box.") }',
+        ),
+        (
+            "ask for their name and say hello to them by name",
+            'answer = ask("What is your name?"); say("Hello, {answer}!")',
+        ),
+        (
+            "ask Bob if he wants coffee; if he says yes bring him a cup",
+            'if find("Bob") { answer = ask("Do you want coffee?", ["yes", "no"], "Bob"); '
+            'if answer == "yes" { find("cup"); grab("cup"); find("Bob"); give("cup", "Bob") } } '
+            'else { say("I could not find Bob.") }',
+        ),
+        (
+            "ask Bob if he wants coffee and come back and tell me what he said",
+            'start = location(); if find("Bob") '
+            '{ answer = ask("Do you want coffee?", ["yes", "no"], "Bob"); '
+            "goto(start); say(answer) } "
+            'else { goto(start); say("I could not find Bob.") }',
+        ),
+    ],
+)
+def test_what_hangs_on_something_is_done_only_where_that_is_so(sentence: str, meaning: str) -> None:
+    understood = understand(sentence, WARD)
+    assert understood.plan is not None, understood.message
+    assert program(understood.plan) == meaning
+
+
+def test_a_word_that_no_meaning_used_is_named() -> None:
+    understood = understand("give the cup to Alice at the counter on the side", WARD)
+    assert understood.status == "rejected"
+    assert understood.message is not None
+    assert "counter" in understood.message or "side" in understood.message
+
+
+@pytest.mark.parametrize(
+    ("sentence", "word"),
+    [
+        ("kill all humans", "hurt"),
+        ("rm -rf /", "Files"),
+        ("give Bob 5 mg of morphine", "nurse"),
+        ("never mind", "All right"),
+        ("cancel that", "All right"),
+        ("I love you", "errands"),
+    ],
+)
+def test_what_is_none_of_its_business_gets_a_fitting_answer(sentence: str, word: str) -> None:
+    understood = understand(sentence, WARD)
+    assert understood.status == "rejected"
+    assert understood.message is not None
+    assert word in understood.message
+    assert not understood.suggestions
