@@ -35,6 +35,8 @@ _log = logging.getLogger("nl2robot.runner")
 
 State = Literal["running", "paused", "done", "failed", "stopped", "limit"]
 
+BREAK_OFF_EVERY = 0.02
+"""Seconds between two attempts to break off a robot call of a program that was stopped."""
 APPROVALS_KEPT = 100
 """An approval that was not used is forgotten when so many newer ones were given."""
 
@@ -222,12 +224,14 @@ class Runner:
     def stop(self, because: str = "The program was stopped.") -> None:
         """Stop the program that runs, if any. `robot.stop` does this and stops the robot."""
         activity = self._activity
-        if activity is not None and activity.outcome is None:
-            activity.stop_because = because
-            if activity.execution is not None:
-                activity.execution.stop(because)
-            if activity.robot is not None:
-                activity.robot.cancel()
+        if activity is None or activity.outcome is not None or activity.stop_because is not None:
+            return
+        activity.stop_because = because
+        if activity.execution is not None:
+            activity.execution.stop(because)
+        if activity.robot is not None:
+            activity.robot.cancel()
+        threading.Thread(target=_break_off, args=(activity,), name="break off", daemon=True).start()
 
     # --- the run itself
 
@@ -300,6 +304,8 @@ class Runner:
         self._tell(activity, "call", **about)
         began = time.perf_counter()
         try:
+            if activity.stop_because is not None:
+                raise Stopped(activity.stop_because)
             result = getattr(robot, method)(**arguments)
         except (RobotError, Stopped) as error:
             seconds = time.perf_counter() - began
@@ -366,6 +372,14 @@ class Runner:
             "message": activity.message,
         }
         self._publish("program", {**data, **more})
+
+
+def _break_off(activity: _Activity) -> None:
+    """Break off the calls of a stopped program until it is over: one may just be on its way to the
+    robot, and reach it after the stop."""
+    while not activity.over.wait(BREAK_OFF_EVERY):
+        if activity.robot is not None and activity.outcome is None:
+            activity.robot.cancel()
 
 
 def _where_from(world: World) -> str:

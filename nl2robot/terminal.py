@@ -58,8 +58,16 @@ class Terminal:
             for phrase in translation.suggestions:
                 self.console.print(f"  [bold]{_plain(phrase)}[/]")
 
-    def show_phrases(self, phrases: Mapping[str, Sequence[str]]) -> None:
-        for topic, sentences in phrases.items():
+    def show_message(self, translation: Translation) -> None:
+        """Show an answer that is no program."""
+        self.console.print(_plain(translation.message or ""))
+
+    def show_phrases(self, phrases: Mapping[str, Sequence[str]], about: str = "") -> None:
+        """What can be said, by topic; only the topic `about`, if there is one like it."""
+        from nl2robot.teaching import topic_of
+
+        found = topic_of(about, list(phrases)) if about else None
+        for topic, sentences in {found: phrases[found]}.items() if found else phrases.items():
             self.console.print(f"[bold]{_plain(topic.capitalize())}[/]")
             for sentence in sentences:
                 self.console.print(f"  {_plain(sentence)}")
@@ -142,8 +150,12 @@ class Terminal:
                 return file.read_text(encoding="utf-8-sig")
             except UnicodeDecodeError:
                 reason = "it did not save text in UTF-8"
-            except (subprocess.CalledProcessError, ValueError, OSError) as error:
-                reason = getattr(error, "strerror", None) or str(error)
+            except subprocess.CalledProcessError as error:
+                reason = f"it ended with status {error.returncode}"
+            except OSError as error:
+                reason = str(error.strerror)
+            except ValueError as error:  # a quotation mark that is not closed
+                reason = str(error)
         self.console.print(
             f"The editor {editor!r} did not work: {reason}. The program stays as it was."
             " Set $EDITOR to an editor that is installed.",

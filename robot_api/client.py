@@ -37,6 +37,9 @@ DEFAULT_PORT: Final = 9090
 FIRST_PAUSE: Final = 0.05
 """Seconds between the first two attempts to connect again; each pause is twice the one before."""
 LONGEST_PAUSE: Final = 1.0
+NOTICE_SIGNALS: Final = 0.1
+"""Seconds after which a waiting main thread looks up: a Ctrl-C does not always wake it, for the
+system may hand the signal to another thread."""
 
 _log = logging.getLogger("robot_api.client")
 
@@ -239,7 +242,9 @@ class _Pending:
         self._ended.release()
 
     def wait(self) -> Any:
-        self._ended.acquire()
+        main = threading.current_thread() is threading.main_thread()
+        while not self._ended.acquire(timeout=NOTICE_SIGNALS if main else -1):
+            pass
         if self.reply.error is not None:
             raise self.reply.error
         return self.reply.result

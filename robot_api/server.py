@@ -44,6 +44,10 @@ MAX_WAITING: Final = 512
 PING_SECONDS: Final = 5.0
 """How often a client is asked for a sign of life, and how long it has to answer."""
 
+NOTICE_SIGNALS: Final = 0.1
+"""Seconds after which the main thread looks up: a signal does not always wake it, for the system
+may hand it to another thread."""
+
 _log = logging.getLogger("robot_api.server")
 # It says so of every connection that is refused with a sentence.
 logging.getLogger("uvicorn.error").addFilter(
@@ -194,7 +198,8 @@ class Server:
             try:
                 if started:
                     started(self)
-                ended.wait()
+                while not ended.wait(NOTICE_SIGNALS):
+                    pass
             finally:
                 self.close()
 
