@@ -57,6 +57,19 @@ def joint(d: Discourse, node: Node) -> Steps:
     ]
 
 
+@meaning("joint_turn")
+def joint_turn(d: Discourse, node: Node) -> Steps:
+    """ "turn your head to the left by thirty degrees": the joint that turns that part that way."""
+    way = str(d.get(node, "side"))
+    part = str(d.get(node, "part"))
+    axis = way.removeprefix("-")
+    degrees = float(d.get(node, "degrees"))
+    usual = f"{part}_{axis}"
+    named = (each for each in d.lexicon.joints if part in each.lower() and axis in each.lower())
+    angle = -degrees if way != axis else degrees
+    return [Call("joint", {"name": Text(next(named, usual)), "degrees": as_value(angle)})]
+
+
 @meaning("gesture")
 def gesture(d: Discourse, node: Node) -> Steps:
     call = Call("gesture", {"name": as_value(d.get(node, "gesture"))})

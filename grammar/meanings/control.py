@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, Final
 
-from grammar.chart import Node
+from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, as_value
 from grammar.meanings.finding import not_found
 from grammar.meanings.nouns import kind_places
@@ -218,6 +219,27 @@ def repeat(d: Discourse, node: Node) -> Steps:
     return [Repeat(as_value(times), tuple(body))]
 
 
+@meaning("at_intervals")
+def at_intervals(d: Discourse, node: Node) -> Steps:
+    """ "every ten minutes, ...": again and again, with a pause in between."""
+    seconds = as_value(d.get(node, "seconds"))
+    return [Forever((*d.build(node.parts["steps"]), Call("wait", {"seconds": seconds})))]
+
+
+@meaning("delayed")
+def delayed(d: Discourse, node: Node) -> Steps:
+    """ "in five minutes, ...", "at three o'clock, ..."."""
+    waiting: Steps = d.build(node.parts["delay"])
+    return [*waiting, *d.build(node.parts["then"])]
+
+
+@meaning("at_time")
+def at_time(d: Discourse, node: Node) -> Steps:
+    """Wait until it is that late."""
+    time = Compare(Ask("clock", field="time"), ">=", Text(d.get(node, "clock_time")))
+    return wait_until(time)
+
+
 @meaning("forever")
 def forever(d: Discourse, node: Node) -> Steps:
     return [Forever(tuple(d.build(node.parts["steps"])))]
@@ -298,24 +320,65 @@ def for_each_place(d: Discourse, node: Node) -> Steps:
     kind = d.get(node, "kinds")
     listed: list[Value] | None = d.get(node, "place_list")
     items: Value = Items((d.get(node, "place"), *listed)) if listed else kind_places(d, kind)
+    return each_place(d, items, node.parts.get("steps"), bool(node.production.fixed.get("go")))
+
+
+def each_place(d: Discourse, items: Value, steps: Leaf | Node | None, goes: bool) -> Steps:
+    """Do some steps for each of the places; there, if that is how it was said."""
     variable = d.variable("place")
     here = Recall(variable)
     going = Call("goto", {"place": here})
     before = d.at
     d.place = here
-    d.at = here if node.production.fixed.get("go") else None
+    d.at = here if goes else None
     body: Steps = []
-    if "steps" in node.parts:
+    if steps is not None:
         outer, d.in_loop = d.in_loop, True
-        body = d.build(node.parts["steps"])
+        body = d.build(steps)
         d.in_loop = outer
     first = body[0] if body else None
-    goes = isinstance(first, Call) and first.method in ("goto", "guide", "find")
-    if (node.production.fixed.get("go") and not goes) or (not goes and not mentions(body, here)):
+    moves = isinstance(first, Call) and first.method in ("goto", "guide", "find")
+    if not moves and (goes or not mentions(body, here)):
         body = [going, *body]
     d.at = None if body else before
     d.with_person = None
     return [ForEach(variable, items, tuple(body))]
+
+
+@meaning("for_each_of_them")
+def for_each_of_them(d: Discourse, node: Node) -> Steps:
+    """ "go to the lobby and to ward 3, and in each of them ...": done at all these."""
+    going: list[Call] = []
+    while d.done and isinstance(d.done[-1], Call) and _goes_to_name(d.done[-1]):
+        last = d.done.pop()
+        assert isinstance(last, Call)
+        going.insert(0, last)
+    if len(going) < 2:
+        d.done.extend(going)
+        raise NotUnderstood(d.language.phrase("which_places"))
+    places = Items(tuple(call.arguments["place"] for call in going))
+    return each_place(d, places, node.parts["steps"], goes=True)
+
+
+def _goes_to_name(step: Call) -> bool:
+    return step.method == "goto" and isinstance(step.arguments.get("place"), Text)
+
+
+@meaning("check_each_place")
+def check_each_place(d: Discourse, node: Node) -> Steps:
+    """ "check every ward for visitors and tell them ...": go there, and if one is seen, do it."""
+    sought_for: Thing = d.get(node, "person_ref") or d.get(node, "thing")
+    variable = d.variable("place")
+    d.at = d.place = Recall(variable)
+    if sought_for.person:
+        d.person, d.with_person = replace(sought_for, here=True), sought_for.value
+    outer, d.in_loop = d.in_loop, True
+    body = d.build(node.parts["steps"])
+    d.in_loop = outer
+    d.at = d.with_person = None
+    seen = If(Holds(Ask("sees", {"thing": sought_for.value})), tuple(body))
+    going = Call("goto", {"place": Recall(variable)})
+    return [ForEach(variable, kind_places(d, d.get(node, "kinds")), (going, seen))]
 
 
 def mentions(body: Steps, value: Recall) -> bool:

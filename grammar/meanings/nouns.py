@@ -15,6 +15,9 @@ from grammar.wordforms import singular
 LIKE_ENOUGH: Final = 55
 """Percent that two names have to be alike for one to be offered in the place of the other."""
 
+LAST_HOUR_MEANT_PM: Final = 6
+"""Up to "six o'clock" is in the afternoon where nothing else is said."""
+
 # --- places
 
 
@@ -33,6 +36,27 @@ def place_of_kind(d: Discourse, node: Node) -> Value:
     if len(places) > 1:
         raise d.which(node.start, node.end, tuple(place.name for place in places))
     d.place = Text(places[0].name)
+    return d.place
+
+
+@meaning("place_own")
+def place_own(d: Discourse, node: Node) -> Value:
+    """ "his office", after Bob: Bob's office; of nobody by name, the only office there is."""
+    kind = d.get(node, "kind")
+    mark = d.language.speech["possessive"]
+    owner = d.person.text.lower() if d.person is not None and d.person.known else None
+    places = d.lexicon.place_kinds[kind]
+    own = [each for each in places if owner and each.name.lower().startswith(owner + mark)]
+    if owner and not own:
+        words = f"{d.person.text if d.person else ''}{mark}{kind}"
+        raise NotUnderstood(
+            d.language.phrase("unknown_place", name=words),
+            tuple(each.name for each in places[:3]),
+            (node.start, node.end),
+        )
+    if len(own or places) > 1:
+        raise d.which(node.start, node.end, tuple(each.name for each in own or places))
+    d.place = Text((own or places)[0].name)
     return d.place
 
 
@@ -338,6 +362,9 @@ def clock_time(d: Discourse, node: Node) -> str:
         hours += 12
     if half == "am" and hours == 12:
         hours = 0
+    if half is None and not given and 1 <= hours <= LAST_HOUR_MEANT_PM:
+        hours += 12  # "at three": nobody has visitors at night
+        d.assumptions.append("pm")
     if not (0 <= hours < 24 and 0 <= minutes < 60):
         raise NotUnderstood(d.language.phrase("no_such_time", time=d.words(node.start, node.end)))
     return f"{hours:02}:{minutes:02}"

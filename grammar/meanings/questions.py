@@ -12,6 +12,7 @@ from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.speaking import sentence_form
 from grammar.plan import Ask, Call, ForEach, Items, Recall, Text, Value
+from grammar.tokens import COLON, COMMA
 
 MOST_OPTIONS: Final = 20
 
@@ -121,10 +122,22 @@ def options_of(d: Discourse, node: Node) -> tuple[str, ...]:
     joins = set(d.language.speech.get("or", ()))
     rest = node.parts.get("rest")
     if rest is not None and joins & set(d.norms(rest.start, rest.end)):
-        return split_options(d, rest.start, rest.end)
+        start = rest.start
+        if "wh" in node.parts and d.tokens[start - 1].norm != COMMA:
+            start = _end_of_question(d, start, rest.end)
+        return split_options(d, start, rest.end)
     if fixed.get("yes_no"):
         return (d.language.phrase("yes"), d.language.phrase("no"))
     return ()
+
+
+def _end_of_question(d: Discourse, start: int, end: int) -> int:
+    """Where the choices begin in "to drink, coffee, tea or water"."""
+    marks = [at for at in range(start, end) if d.tokens[at].norm in (COMMA, COLON)]
+    if not marks:
+        return start
+    asked = [token for token in d.tokens[start : marks[0]] if token.norm not in d.language.closed]
+    return start if len(asked) > 1 else marks[0] + 1
 
 
 def split_options(d: Discourse, start: int, end: int) -> tuple[str, ...]:
