@@ -25,6 +25,7 @@ COMMANDS = {
     "translate": "turn words into a program; never moves anything",
     "chat": "the same as a conversation in the terminal",
     "listen": "turn a recording into a program, or into an answer",
+    "routines": "commands with a name: list, explain, learn, change, forget",
     "serve": "the robot server on one port, a simulated hospital by default",
     "log": "show past runs, and replay them in the simulator",
     "test": "check canned utterances against what they should do",

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from functools import cache
+from dataclasses import replace
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
-from grammar.lexicon import Lexicon, Name, Question
+from grammar.lexicon import Lexicon, Name, Question, Routine
 from sim.world import World
 
 if TYPE_CHECKING:
+    from nl2robot.routines import Routines
     from robot_api.driver import Capabilities
 
 DEFAULT_WORLD = "city-hospital"
@@ -20,11 +22,28 @@ class Knowledge:
     Without capabilities (`nl2robot translate`, which knows no robot) everything counts as possible.
     """
 
-    def __init__(self, world: World, capabilities: Capabilities | None = None) -> None:
+    def __init__(
+        self,
+        world: World,
+        capabilities: Capabilities | None = None,
+        routines: Routines | None = None,
+    ) -> None:
         self.world = world
         self.capabilities = capabilities
-        self.lexicon = cache(self._lexicon)
-        """The names of the world and the robot as they are said in a language ("en")."""
+        self.routines = routines
+        self._names = cache(self._lexicon)
+        self._with = lru_cache(maxsize=8)(self._lexicon_with)
+
+    def lexicon(self, language: str) -> Lexicon:
+        """The names of the world and the robot as they are said in a language ("en"), and the
+        routines in it. Raises `UserError` where the routines cannot be read."""
+        if self.routines is None:
+            return self._names(language)
+        known = self.routines.known(language)
+        return self._with(language, tuple((each.name, each.sentence) for each in known))
+
+    def _lexicon_with(self, language: str, routines: tuple[tuple[str, str], ...]) -> Lexicon:
+        return replace(self._names(language), routines=tuple(Routine(*each) for each in routines))
 
     def _lexicon(self, language: str) -> Lexicon:
         world, robot = self.world, self.capabilities
@@ -49,8 +68,6 @@ class Knowledge:
         if robot is None:
             return lexicon
         # A robot may declare less than people suggest; what it cannot do, the review refuses.
-        from dataclasses import replace
-
         return replace(
             lexicon,
             gestures=tuple(dict.fromkeys((*robot.gestures, *lexicon.gestures))),

@@ -1,4 +1,5 @@
-"""Where nl2robot keeps what it must remember: run log, pictures, speech models."""
+"""Where nl2robot keeps what it must remember: run log, pictures, speech models,
+routines."""
 
 from __future__ import annotations
 
@@ -11,22 +12,30 @@ from nl2robot.errors import UserError
 def data_folder() -> Path:
     """`$NL2ROBOT_HOME`, else the user's data folder of this system; made if missing. Raises
     `UserError`."""
-    chosen = os.environ.get("NL2ROBOT_HOME")
-    if chosen:
-        folder = Path(chosen).expanduser()
-    else:
-        from platformdirs import user_data_path
+    return made(_data_folder())
 
-        folder = user_data_path("nl2robot")
-    return _made(folder)
+
+def data_file(name: str) -> Path:
+    """A file in the data folder; neither need be there."""
+    return _data_folder() / name
 
 
 def pictures_folder() -> Path:
     """Where a picture of every run is kept; made if missing. Raises `UserError`."""
-    return _made(data_folder() / "pictures")
+    return made(data_folder() / "pictures")
 
 
-def _made(folder: Path) -> Path:
+def _data_folder() -> Path:
+    chosen = os.environ.get("NL2ROBOT_HOME")
+    if chosen:
+        return Path(chosen).expanduser()
+    from platformdirs import user_data_path
+
+    return user_data_path("nl2robot")
+
+
+def made(folder: Path) -> Path:
+    """The folder, made if missing. Raises `UserError`."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -52,21 +52,34 @@ class Session:
         """Understand an utterance, have its program approved, run it."""
         translation = self.understand(utterance)
         if translation.program is None:
-            self.terminal.show_refusal(translation)
-            return ExitStatus.NOT_UNDERSTOOD
+            self._show_answer(translation)
+            return ExitStatus.OK if translation.status == "ok" else ExitStatus.NOT_UNDERSTOOD
         return self.perform_program(translation.program, translation, heard)
 
     def understand(self, utterance: str) -> Translation:
         """Translate, asking back once where a question is open and somebody is there to answer."""
         translation = self._translate(utterance)
+        if translation.status == "clarify" and translation.request and self.approve_all:
+            self._show_answer(translation)
+            return self._translate(translation.suggestions[0])  # "yes", and so it is learned
         if translation.status == "clarify" and self.terminal.somebody_is_there:
             self.terminal.show_refusal(translation)
             translation = self._translate(self.terminal.ask("> "))
         return translation
 
-    def show_help(self) -> None:
-        """What can be said here, by topic."""
-        self.terminal.show_phrases(self.operator.phrases(self.language))
+    def _show_answer(self, translation: Translation) -> None:
+        """What was said instead of a program."""
+        request = translation.request
+        if request is not None and request.kind == "help":
+            self.show_help(request.part)
+        elif translation.status == "ok":
+            self.terminal.show_message(translation)
+        else:
+            self.terminal.show_refusal(translation)
+
+    def show_help(self, about: str = "") -> None:
+        """What can be said here, by topic, or about one."""
+        self.terminal.show_phrases(self.operator.phrases(self.language), about)
 
     def perform_program(
         self, program: str, translation: Translation | None = None, heard: str | None = None

@@ -17,6 +17,7 @@ from typing import Any
 
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
+from nl2robot.routines import open_routines
 from nl2robot.runlog import LogError, RunLog
 from nl2robot.runner import Runner
 from nl2robot.services import EVENTS, services
@@ -239,7 +240,7 @@ def _open(
         server.publish(kind, data)
 
     runner = Runner(
-        knowledge=Knowledge(world, driver.capabilities()),
+        knowledge=Knowledge(world, driver.capabilities(), open_routines()),
         connect=lambda: Robot(server.address, token=server.token),
         log=log,
         publish=publish,

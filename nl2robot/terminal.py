@@ -194,6 +194,11 @@ class Terminal:
         with contextlib.suppress(BrokenPipeError):
             self.console.print(f"{words.get(state, state)} {_plain(message or '')}".rstrip())
 
+    @staticmethod
+    def plain(text: str) -> str:
+        """Text of others, for a table."""
+        return _plain(text)
+
     def table(self, *headings: str) -> Table:
         table = Table(box=None, pad_edge=False, header_style="bold")
         for heading in headings:

@@ -7,15 +7,19 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import msgspec
 
 from grammar.plan import Plan, to_data
+from grammar.requests import Request, agreed
 from grammar.understand import Context, understand
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.plain import visible
+
+if TYPE_CHECKING:
+    from nl2robot.teaching import Pending, Reply
 
 Planner = Literal["auto", "grammar", "model"]
 
@@ -38,6 +42,9 @@ class Translation(msgspec.Struct, frozen=True, kw_only=True):
     """Sentences that would be understood."""
     ms: float
     """Milliseconds it took."""
+    request: Request | None = None
+    """What is asked of the application instead of the robot, such as to learn a routine; there
+    is no program then, and the message is the answer."""
 
     def to_json(self) -> str:
         return msgspec.json.encode(self).decode()
@@ -56,6 +63,8 @@ class Talk:
     """A conversation: "no, the pharmacy" refers to what was said before in it."""
 
     context: Context | None = None
+    pending: Pending | None = None
+    """What waits for a yes."""
 
 
 def translate(
@@ -68,9 +77,9 @@ def translate(
     """Understand an utterance and write it as a program. Never moves anything, never raises for
     words that are not understood: the status says so. A `talk` remembers it.
     Raises `UserError` for a language or a planner that there is not."""
-    from grammar.explain import explain
     from grammar.language import UnknownLanguage
     from grammar.program import write_program
+    from nl2robot.teaching import told
 
     if planner == "model":
         raise UserError(
@@ -79,14 +88,25 @@ def translate(
         )
     started = time.perf_counter()
     talk = talk or Talk()
+    answered = _settled(utterance, knowledge, talk)
+    if answered is not None:
+        return _answer(utterance, answered, None, started)
     try:
-        understood = understand(utterance, knowledge.lexicon(language), language, talk.context)
+        lexicon = knowledge.lexicon(language)
+        understood = understand(utterance, lexicon, language, talk.context)
     except UnknownLanguage as error:
         raise UserError(str(error)) from error
+    before = talk.context.text if talk.context else ""
     talk.context = understood.context
+    if understood.request is not None:
+        from nl2robot.teaching import reply
+
+        answer = reply(understood.request, knowledge, language, before)
+        talk.pending = answer.pending
+        return _answer(utterance, answer, understood.request, started)
     plan: Plan | None = understood.plan
     program = write_program(plan) if plan else None
-    explanation = explain(plan, language) if plan else ""
+    explanation = told(plan, lexicon, language) if plan else ""
     return Translation(
         utterance=utterance,
         status=understood.status,
@@ -98,4 +118,33 @@ def translate(
         message=understood.message,
         suggestions=understood.suggestions,
         ms=round((time.perf_counter() - started) * 1000, 3),
+    )
+
+
+def _settled(utterance: str, knowledge: Knowledge, talk: Talk) -> Reply | None:
+    """What became of the change that was waiting for a yes; None if this is no answer to it."""
+    pending, talk.pending = talk.pending, None
+    if pending is None:
+        return None
+    yes = agreed(utterance, pending.language)
+    if yes is None:
+        return None
+    from nl2robot.teaching import settle
+
+    return settle(pending, yes, knowledge)
+
+
+def _answer(utterance: str, answer: Reply, request: Request | None, started: float) -> Translation:
+    return Translation(
+        utterance=utterance,
+        status=answer.status,
+        program=None,
+        plan=None,
+        source="grammar",
+        confidence=1.0,
+        explanation="",
+        message=answer.message,
+        suggestions=answer.suggestions,
+        ms=round((time.perf_counter() - started) * 1000, 3),
+        request=request,
     )

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+from pathlib import Path
+
+import yaml
 
 from nl2robot.commands.options import add_language, add_planner, add_robot
 from nl2robot.commands.run import open_session
@@ -14,7 +17,7 @@ from robot_api.errors import LostConnection, RobotError
 GREETING = """\
 Tell the robot what to do, in your own words. Nothing moves before you have approved it.
 help shows what you can say, Ctrl-C stops the robot, quit (or Ctrl-D) ends the conversation."""
-ENDINGS = {"quit", "exit", "bye", "goodbye"}
+DATA = Path(__file__).parents[1] / "data" / "chat.yaml"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -26,16 +29,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     with contextlib.suppress(ImportError):
         import readline  # noqa: F401  (arrow keys and history in input())
+    endings = _endings(options.lang)
     with open_session(options) as (session, _):
         session.terminal.console.print(GREETING)
         while (line := _next_line()) is not None:
             words = line.strip()
-            if words.lower() in ENDINGS:
+            if words.lower().rstrip(".!") in endings:
                 break
             if words:
                 _answer(session, words)
     session.terminal.console.print("Goodbye.")
     return ExitStatus.OK
+
+
+def _endings(language: str) -> set[str]:
+    """The words that end the conversation."""
+    words = yaml.safe_load(DATA.read_text(encoding="utf-8"))["endings"]
+    return {*words["any"], *words.get(language, ())}
 
 
 def _next_line() -> str | None:
@@ -49,7 +59,7 @@ def _next_line() -> str | None:
 
 
 def _answer(session: Session, words: str) -> None:
-    if words.lower() in ("help", "?", "what can i say", "what can i say?"):
+    if words == "?":  # in every language; in words, it is a command like others
         session.show_help()
         return
     try:

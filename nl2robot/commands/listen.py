@@ -14,6 +14,7 @@ from nl2robot.commands.options import add_language, add_planner, add_world, name
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.models import need
+from nl2robot.routines import open_routines
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -37,7 +38,7 @@ def run(options: argparse.Namespace) -> int:
         return _answers(options, model)
     from nl2robot.hearing import Ear
 
-    ear = Ear(model, Knowledge(names_of(options)), options.lang)
+    ear = Ear(model, Knowledge(names_of(options), routines=open_routines()), options.lang)
     for missing in ear.deaf_to():
         print(missing.message, file=sys.stderr)
 

@@ -8,6 +8,7 @@ import sys
 from nl2robot.commands.options import add_language, add_planner, add_world, names_of, words
 from nl2robot.errors import ExitStatus
 from nl2robot.knowledge import Knowledge
+from nl2robot.routines import open_routines
 from nl2robot.translation import translate
 
 
@@ -22,7 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    knowledge = Knowledge(names_of(options))
+    knowledge = Knowledge(names_of(options), routines=open_routines())
     lines = (
         (line.rstrip("\n") for line in sys.stdin) if options.words == "-" else iter([options.words])
     )
