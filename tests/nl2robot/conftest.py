@@ -1,9 +1,20 @@
 """A small ward, a log and an operator for the stories of this folder."""
 
 import contextlib
+import fcntl
+import os
+import pty
+import resource
+import select
+import signal
+import subprocess
+import sys
+import termios
+import time
 
 import pytest
 
+from nl2robot import cli
 from nl2robot.operator import Operator
 from nl2robot.runlog import RunLog
 from nl2robot.station import simulated_station
@@ -57,3 +68,134 @@ def operator(station, sit_down):
 @pytest.fixture
 def slow_operator(slow_station, sit_down):
     return sit_down(slow_station)
+
+
+# --- the commands ----------------------------------------------------------------------------
+
+NL2ROBOT = [sys.executable, "-m", "nl2robot.cli"]
+SOON = 30.0
+"""Seconds in which even a busy machine has done what it does at once."""
+
+
+@pytest.fixture
+def nl2robot(capsys):
+    """Run a command in this process: `status, output, errors = nl2robot("log", "1")`."""
+    before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP)}
+
+    def run(*arguments: str) -> tuple[int, str, str]:
+        capsys.readouterr()
+        try:
+            status = cli.main(arguments)
+        except SystemExit as end:  # argparse: wrong usage
+            status = int(end.code or 0)
+        said = capsys.readouterr()
+        return int(status), said.out, said.err
+
+    yield run
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+class Command:
+    """A command in a process of its own, at a terminal of its own (`at_terminal`) or with its input
+    closed and its output in a pipe."""
+
+    def __init__(
+        self, arguments: tuple[str, ...], at_terminal: bool, largest_file: int | None, editor: str
+    ) -> None:
+        self.output = ""
+        self._read_to = 0
+        more = {"TERM": "dumb", "COLUMNS": "100", "PYTHONUNBUFFERED": "1", "EDITOR": editor}
+        ours, theirs = pty.openpty() if at_terminal else os.pipe()
+        self._terminal = ours
+
+        def prepare() -> None:
+            if at_terminal:
+                fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+            if largest_file is not None:
+                resource.setrlimit(resource.RLIMIT_FSIZE, (largest_file, largest_file))
+
+        self.process = subprocess.Popen(
+            [*NL2ROBOT, *arguments],
+            stdin=theirs if at_terminal else subprocess.DEVNULL,
+            stdout=theirs,
+            stderr=theirs,
+            env={**os.environ, **more},
+            start_new_session=True,
+            preexec_fn=prepare,
+        )
+        os.close(theirs)
+
+    def until(self, words: str) -> str:
+        """Wait until it says these words; returns what it said up to them."""
+        before = self._read_to
+        ends = time.monotonic() + SOON
+        while words not in self.output[before:]:
+            assert self._read(ends), f"never said {words!r}:\n{self.output[before:]}"
+        self._read_to = self.output.index(words, before) + len(words)
+        return self.output[before : self._read_to]
+
+    def type(self, keys: str) -> None:
+        os.write(self._terminal, keys.encode())
+
+    def hang_up(self) -> None:
+        """Close our end: the terminal's window, or the pipe that was read from."""
+        os.close(self._terminal)
+        self._terminal = -1
+
+    def signal(self, number: int) -> None:
+        """To it and its children, as a terminal does with Ctrl-C."""
+        os.killpg(self.process.pid, number)
+
+    def end(self) -> int:
+        """Wait for its end; returns the exit status."""
+        ends = time.monotonic() + SOON
+        while self._read(ends):
+            pass
+        return self.process.wait(max(0.1, ends - time.monotonic()))
+
+    def close(self) -> None:
+        with contextlib.suppress(ProcessLookupError):
+            self.signal(signal.SIGKILL)
+        self.process.wait()
+        if self._terminal >= 0:
+            self.hang_up()
+
+    def _read(self, ends: float) -> bool:
+        ready, _, _ = select.select([self._terminal], [], [], max(0.0, ends - time.monotonic()))
+        assert ready, f"it hangs after:\n{self.output}"
+        with contextlib.suppress(OSError):  # how a terminal says that its other end is closed
+            if data := os.read(self._terminal, 65_536):
+                self.output += data.decode(errors="replace").replace("\r\n", "\n")
+                return True
+        return False
+
+
+@pytest.fixture
+def start():
+    """Start commands in processes of their own; none outlives the test."""
+    with contextlib.ExitStack() as stop:
+
+        def start(
+            *arguments: str,
+            at_terminal: bool = False,
+            largest_file: int | None = None,
+            editor: str = "false",
+        ) -> Command:
+            command = Command(arguments, at_terminal, largest_file, editor)
+            stop.callback(command.close)
+            return command
+
+        yield start
+
+
+@pytest.fixture
+def serve(start):
+    """Start a robot server in the ward: `server, address = serve("--speed", "1")`."""
+
+    def serve(*arguments: str) -> tuple[Command, str]:
+        server = start("serve", "--world", "ward", "--port", "0", *arguments)
+        address = server.until("ends the server").split("ws://")[1].split()[0]
+        return server, f"ws://{address}"
+
+    return serve

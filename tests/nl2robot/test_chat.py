@@ -1,0 +1,133 @@
+"""A conversation at the terminal: nothing moves before it was approved, nothing ends it but you."""
+
+import pytest
+
+from nl2robot.errors import ExitStatus
+from nl2robot.runlog import RunLog
+
+CHAT = ("chat", "--world", "ward")
+CTRL_C, CTRL_D = "\x03", "\x04"
+
+
+@pytest.fixture
+def log_of(home):
+    def log_of() -> list[tuple[str | None, str | None]]:
+        log = RunLog(home / "runs.sqlite")
+        runs = [(row.utterance, row.status) for row in reversed(log.runs())]
+        log.close()
+        return runs
+
+    return log_of
+
+
+def test_a_nurse_talks_with_the_robot(start, log_of) -> None:
+    chat = start(*CHAT, at_terminal=True)
+    chat.until("you: ")
+    chat.type("help\n")
+    assert "go to the corridor" in chat.until("you: ")
+    chat.type("go to the attic\n")
+    assert "attic" in chat.until("you: ")
+    chat.type("go to ward a\n")
+    assert "It would take" in chat.until("eject? ")
+    chat.type("what?\n")  # no answer to the question
+    chat.until("eject? ")
+    chat.type("approve\n")
+    assert "goto(place='ward a')" in chat.until("Done.")
+    chat.until("you: ")
+    chat.type("no, ward b\n")
+    assert 'robot.goto("ward b")' in chat.until("eject? ")
+    chat.type("a\n")
+    chat.until("you: ")
+    chat.type("wave\n")
+    chat.until("eject? ")
+    chat.type("reject\n")
+    assert "Nothing was run" in chat.until("you: ")
+    chat.type("bye\n")
+    chat.until("Goodbye.")
+    assert chat.end() == ExitStatus.OK
+    assert log_of() == [("go to ward a", "done"), ("no, ward b", "done")]
+
+
+def test_ctrl_c_stops_what_is_going_on_and_the_talk_goes_on(start, log_of) -> None:
+    chat = start(*CHAT, "--speed", "1", at_terminal=True)
+    chat.until("you: ")
+    chat.type("half a line" + CTRL_C)
+    chat.until("you: ")
+    chat.type("go to ward b\n")
+    chat.until("eject? ")
+    chat.type(CTRL_C)
+    assert "Nothing was run" in chat.until("you: ")
+    chat.type("go to ward b\n")
+    chat.until("eject? ")
+    chat.type("a\n")
+    chat.until("goto(place='ward b')")
+    chat.type(CTRL_C)
+    chat.until("Stopped.")
+    chat.until("you: ")
+    chat.type(CTRL_D)
+    assert chat.end() == ExitStatus.OK
+    assert "Traceback" not in chat.output
+    assert log_of() == [("go to ward b", "stopped")]
+
+
+def test_an_edited_program_is_reviewed_again_and_logged_as_it_ran(start, home) -> None:
+    editor = 'sh -c \'echo "robot.say(\\"Good night.\\")" > $0\''
+    command = start("run", "--world", "ward", "go to ward a", at_terminal=True, editor=editor)
+    command.until("eject? ")
+    command.type("e\n")
+    assert 'robot.say("Good night.")' in command.until("eject? ")
+    command.type("a\n")
+    assert command.end() == ExitStatus.OK
+    log = RunLog(home / "runs.sqlite")
+    [row] = log.runs()
+    assert row.program == 'robot.say("Good night.")\n'
+    assert (row.utterance, row.plan) == ("go to ward a", None)
+    assert [call.method for call in log.calls(row.id)] == ["say"]
+    log.close()
+
+
+def test_an_edit_that_breaks_the_program_cannot_be_approved(start, log_of) -> None:
+    command = start(
+        *("run", "--world", "ward", "go to ward a"),
+        at_terminal=True,
+        editor="sh -c 'echo \"import os\" > $0'",
+    )
+    command.until("eject? ")
+    command.type("e\n")
+    assert "[a]pprove" not in command.until("[e]dit or [r]eject? ")
+    command.type("a\n")  # is not offered
+    command.until("[e]dit or [r]eject? ")
+    command.type("r\n")
+    assert command.end() == ExitStatus.NOT_APPROVED
+    assert log_of() == []
+
+
+@pytest.mark.parametrize(
+    ("editor", "reason"),
+    [
+        ("/no/such/editor", "No such file"),
+        ("false", "ended with status 1"),
+        ("sh -c 'rm $0'", "No such file"),
+        ("sh -c 'printf \"\\377\\376\" > $0'", "text in UTF-8"),
+        ("'", "closing quotation"),
+    ],
+)
+def test_an_editor_that_fails_leaves_the_program_as_it_was(start, editor, reason) -> None:
+    command = start("run", "--world", "ward", "wave", at_terminal=True, editor=editor)
+    command.until("eject? ")
+    command.type("e\n")
+    told = " ".join(command.until("eject? ").split())
+    assert "did not work" in told
+    assert reason.lower() in told.lower()
+    assert "stays as it was" in told
+    command.type("r\n")
+    assert command.end() == ExitStatus.NOT_APPROVED
+
+
+def test_the_end_of_the_input_is_no_approval(start, log_of) -> None:
+    command = start("run", "--world", "ward", "wave", at_terminal=True)
+    command.until("eject? ")
+    command.type(CTRL_D)
+    assert command.end() == ExitStatus.NOT_APPROVED
+    assert "Nobody is there to answer" in command.output
+    assert log_of() == []
