@@ -14,11 +14,12 @@ from dataclasses import dataclass, field, replace
 from typing import Final, Literal
 
 from grammar.accounts import left_out
-from grammar.chart import Chart, Leaf, Node, TooMuch
+from grammar.chart import Chart, Node, TooMuch
 from grammar.discourse import Ambiguous, Discourse, NotUnderstood, Thing
 from grammar.language import Language, load_language, spoken_name
 from grammar.lexicon import Lexicon
 from grammar.plan import Plan, Text, Value
+from grammar.readings import Read, read
 from grammar.requests import Request
 from grammar.slots import Names, Slots, names_of
 from grammar.tidy import Unbound, scoped, without_unused
@@ -89,12 +90,19 @@ class Understanding:
     """Why it was not understood, or the question back."""
     suggestions: list[str] = field(default_factory=list)
     """Sentences that would be understood."""
-    reading: list[tuple[str, str]] = field(default_factory=list)
-    """Which words were read as what: (words, meaning), in their order."""
+    parts: list[Read] = field(default_factory=list)
+    """Which words were read as what, as far as the sentence was understood."""
+    unclear: str = ""
+    """The words that were not understood, or could mean several things."""
     request: Request | None = None
     """What is asked of the application instead; such a sentence has no plan."""
     context: Context = field(default_factory=Context)
     """What to pass with the next sentence of the conversation."""
+
+    @property
+    def reading(self) -> list[tuple[str, str]]:
+        """Which words were read as what: (words, meaning), in their order."""
+        return [(part.words, part.meaning) for part in self.parts]
 
 
 def understand(
@@ -166,6 +174,11 @@ class _Reader:
             return _rejected(self.text, self.language.phrase("too_complicated"), self.context)
         if tree is None:
             return self._not_understood(chart)
+        understood = self._meant(tree, chart)
+        return replace(understood, parts=read(tree, self.tokens, self.text))
+
+    def _meant(self, tree: Node, chart: Chart) -> Understanding:
+        """What a reading means."""
         discourse = Discourse(
             self.language,
             self.lexicon,
@@ -181,7 +194,6 @@ class _Reader:
                 self.text,
                 "ok",
                 confidence=self._confidence(tree, discourse),
-                reading=self._reading(tree),
                 request=asked,
                 context=self.context,
             )
@@ -199,15 +211,15 @@ class _Reader:
             return _rejected(self.text, self.language.phrase("too_complicated"), self.context)
         lost = left_out(tree, self.tokens, plan, self.language, self.lexicon)
         if lost:
-            part = self.language.phrase("not_understood", part=" ".join(lost))
-            return _rejected(self.text, part, self.context)
+            words = " ".join(lost)
+            message = self.language.phrase("not_understood", part=words)
+            return replace(_rejected(self.text, message, self.context), unclear=words)
         plan = without_unused(plan)
         return Understanding(
             self.text,
             "ok",
             plan,
             self._confidence(tree, discourse),
-            reading=self._reading(tree),
             context=Context(
                 plan,
                 self.text,
@@ -315,7 +327,12 @@ class _Reader:
             start, end = self.tokens[first].start, self.tokens[last - 1].end
             suggestions = [self.text[:start] + name + self.text[end:] for name in names]
         return Understanding(
-            self.text, "rejected", message=message, suggestions=suggestions, context=self.context
+            self.text,
+            "rejected",
+            message=message,
+            suggestions=suggestions,
+            unclear=self._words(*reason.span),
+            context=self.context,
         )
 
     def _listed(self, names: list[str]) -> str:
@@ -332,6 +349,7 @@ class _Reader:
             "clarify",
             message=which.question,
             suggestions=[question.completed(choice) for choice in which.choices[:MOST_SUGGESTIONS]],
+            unclear=self.text[start:end],
             context=replace(self.context, question=question),
         )
 
@@ -339,14 +357,21 @@ class _Reader:
         """Name the first words that no reading could use."""
         from grammar.samples import nearest_phrases
 
-        part = self._ununderstood_part(chart)
+        begun = self._begun(chart)
+        part = self._ununderstood_part(begun)
         suggestions = nearest_phrases(part or self.text, self.lexicon, self.language)
         message = self._why_not(part)
         if suggestions:
             examples = self._listed([f"“{each}”" for each in suggestions])
             message = f"{message} {self.language.phrase('try_this', examples=examples)}"
         return Understanding(
-            self.text, "rejected", message=message, suggestions=suggestions, context=self.context
+            self.text,
+            "rejected",
+            message=message,
+            suggestions=suggestions,
+            parts=read(begun, self.tokens, self.text) if begun and part else [],
+            unclear=part or self.text.strip(),
+            context=self.context,
         )
 
     def _why_not(self, part: str) -> str:
@@ -359,11 +384,14 @@ class _Reader:
                 return self.language.phrase(phrase)
         return self.language.phrase("not_understood_at_all")
 
-    def _ununderstood_part(self, chart: Chart) -> str:
+    def _begun(self, chart: Chart) -> Node | None:
+        """The longest beginning that is a sentence in itself."""
         try:
-            begun = chart.longest("utterance", 0)
+            return chart.longest("utterance", 0)
         except TooMuch:
-            begun = None
+            return None
+
+    def _ununderstood_part(self, begun: Node | None) -> str:
         first = begun.end if begun is not None else 0
         while first < len(self.tokens) and self.tokens[first].kind == "mark":
             first += 1
@@ -373,23 +401,6 @@ class _Reader:
         while last < len(self.tokens) and self.tokens[last].kind != "mark":
             last += 1
         return self.text[self.tokens[first].start : self.tokens[last - 1].end]
-
-    def _reading(self, tree: Node) -> list[tuple[str, str]]:
-        reading: list[tuple[str, str]] = []
-
-        def visit(node: Node) -> None:
-            if node.production.means and node.production.means != "steps":
-                reading.append((self._words(node.start, node.end), node.production.means))
-            for part in node.parts.values():
-                if isinstance(part, Node):
-                    visit(part)
-                elif isinstance(part, Leaf):
-                    reading.append((self._words(part.start, part.end), part.slot))
-
-        visit(tree)
-        for at, word in tree.corrections:
-            reading.append((self._words(at, at + 1), f"“{word}”"))
-        return reading
 
     def _words(self, start: int, end: int) -> str:
         return self.text[self.tokens[start].start : self.tokens[end - 1].end] if end > start else ""
