@@ -20,10 +20,10 @@ class Read:
 
     words: str
     meaning: str
-    """What a rule makes of them ("goto"), or the slot they are in ("place")."""
+    """What a rule makes of them ("goto"), or the slot they are in ("place"); of a misspelt word,
+    the word it was read as, in quotation marks."""
     value: str | None
-    """What they stand for, where that is known: "pharmacy" for "the drugstore"; of a misspelt
-    word, the word it was read as."""
+    """What they stand for, where that is known: "pharmacy" for "the drugstore"."""
     start: int
     """The first character."""
     depth: int
@@ -51,7 +51,7 @@ def read(tree: Node, tokens: tuple[Token, ...], text: str) -> list[Read]:
                 yield part(each.start, each.end, each.slot, _stands_for(each), depth)
 
     found = list(visit(tree, 0))
-    found += [part(at, at + 1, f"“{word}”", word, 0) for at, word in tree.corrections]
+    found += [part(at, at + 1, f"“{word}”", None, 0) for at, word in tree.corrections]
     return found
 
 

@@ -23,6 +23,8 @@ from nl2robot.errors import ExitStatus, UserError
 COMMANDS = {
     "run": "translate, show, ask for approval, run",
     "translate": "turn words into a program; never moves anything",
+    "explain": "show how a sentence is read, and why not",
+    "phrases": "what can be said here, by topic",
     "chat": "the same as a conversation in the terminal",
     "listen": "turn a recording into a program, or into an answer",
     "routines": "commands with a name: list, explain, learn, change, forget",
