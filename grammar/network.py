@@ -102,8 +102,7 @@ class _Compiler:
             self.productions.append(production)
             end = self._node()
             for template in production.templates:
-                last = self._add(template, 0, name)
-                self.empty[last].append(end)
+                self._add(template, 0, name, end)
             finals[end] = (production.cost, number)
         return self._deterministic(finals, name)
 
@@ -112,31 +111,43 @@ class _Compiler:
         self.empty.append([])
         return len(self.edges) - 1
 
-    def _add(self, template: Template, at: int, rule: str) -> int:
+    def _add(self, template: Template, at: int, rule: str, to: int | None = None) -> int:
+        """Add what a template reads, from the node `at`; returns the node behind it, which is `to`
+        if one is given: alternatives end in the same node, so that long lists of words stay small.
+        """
         match template:
             case Word(text):
-                for word in self.words_of(text):
-                    following = self._node()
-                    self.edges[at].append((word, following))
-                    at = following
-                return at
+                words = self.words_of(text)
+                for word in words[:-1]:
+                    at = self._edge(at, word, None)
+                return self._edge(at, words[-1], to) if words else self._skip(at, to)
             case TemplateSequence(parts):
-                for part in parts:
+                for part in parts[:-1]:
                     at = self._add(part, at, rule)
-                return at
+                return self._add(parts[-1], at, rule, to) if parts else self._skip(at, to)
             case Choice(alternatives):
-                end = self._node()
+                end = self._node() if to is None else to
                 for alternative in alternatives:
-                    self.empty[self._add(alternative, at, rule)].append(end)
+                    self._add(alternative, at, rule, end)
                 return end
             case Part(name, binding, True) if binding is None and self._inline(name, rule):
                 inlined = self.inlined[name]
                 assert inlined is not None
-                return self._add(inlined, at, rule)
+                return self._add(inlined, at, rule, to)
             case Part(name, binding, is_rule):
-                following = self._node()
-                self.edges[at].append((self._callee(name, binding, is_rule, rule), following))
-                return following
+                return self._edge(at, self._callee(name, binding, is_rule, rule), to)
+
+    def _edge(self, at: int, symbol: Any, to: int | None) -> int:
+        following = self._node() if to is None else to
+        self.edges[at].append((symbol, following))
+        return following
+
+    def _skip(self, at: int, to: int | None) -> int:
+        """Nothing to read on the way to a node."""
+        if to is None:
+            return at
+        self.empty[at].append(to)
+        return to
 
     def _callee(
         self, name: str, binding: str | None, is_rule: bool, rule: str

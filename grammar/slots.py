@@ -334,10 +334,19 @@ class Slots:
                 continue  # "glass of water"
             if token.kind not in ("word", "quote") or token.norm in self.language.closed:
                 break
+            if self._noun_over(at, position):
+                break
             length = position + 1 - at
             matches.append((position + 1, FREE_WORD * length, None))
         named = {end for slot in ("person", "place") for end in self._named(slot, at)}
         return [match for match in matches if match[0] not in named]  # a name is no thing
+
+    def _noun_over(self, at: int, position: int) -> bool:
+        """Whether a small letter shows that the noun before is at an end: "Tasse leer"."""
+        if position == at or not self.language.speech.get("capital_nouns"):
+            return False
+        before, here = self.tokens[position - 1], self.tokens[position]
+        return before.capital and not here.capital
 
     def _named(self, slot: str, at: int) -> list[int]:
         """Where names of this slot end that begin here, spelled right."""

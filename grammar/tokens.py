@@ -33,6 +33,8 @@ class Token:
     """Of a quote: what stands between the quotation marks."""
     spelled: str = ""
     """The word in lower case as it was written, where `norm` leaves out its accents."""
+    capital: bool = False
+    """Whether it was written with a capital letter."""
 
 
 @dataclass(frozen=True)
@@ -145,10 +147,10 @@ def _add_word(tokens: list[Token], raw: str, start: int, spelling: Spelling) -> 
                 _word(plain(piece.group()), start + piece.start(), start + piece.end(), spelling)
             )
         return
-    tokens.append(_word(word, start, end, spelling))
+    tokens.append(_word(word, start, end, spelling, raw[:1].isupper()))
 
 
-def _word(word: str, start: int, end: int, spelling: Spelling) -> Token:
+def _word(word: str, start: int, end: int, spelling: Spelling, capital: bool = False) -> Token:
     value = spelling.numbers.get(word)
     if value is None and not word.isascii():
         norm = word
@@ -156,9 +158,9 @@ def _word(word: str, start: int, end: int, spelling: Spelling) -> Token:
             norm = norm.replace(letter, letters)
         if spelling.accents_optional:
             norm = without_accents(norm)
-        return Token(norm, start, end, spelled=word)
+        return Token(norm, start, end, spelled=word, capital=capital)
     if value is None:
-        return Token(word, start, end)
+        return Token(word, start, end, capital=capital)
     return Token(f"{value:g}", start, end, value=value)
 
 

@@ -1,0 +1,206 @@
+"""Word order of languages whose verbs stand last in a reported clause and second in a direct one.
+
+    "dass das Essen um zwölf ankommt" -> "Das Essen kommt um zwölf an"
+
+The words that tell where the first part of a clause ends, and which particles part from their verb,
+are data of the language: `speech: {clause: ...}`. A language without them keeps its order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+from grammar.discourse import Discourse
+from grammar.tokens import COMMA
+
+SHORTEST_VERB: Final = 4
+"""Letters that are left of a verb when its particle is taken off."""
+
+
+@dataclass(frozen=True)
+class Group:
+    """A written word, of one token or, as in "zur", of several."""
+
+    spelled: str
+    norms: tuple[str, ...]
+    at: int
+    """Its first token."""
+    number: bool
+
+    @property
+    def norm(self) -> str:
+        return self.norms[0]
+
+    @property
+    def capital(self) -> bool:
+        return self.spelled[:1].isupper()
+
+
+def direct_clause(d: Discourse, start: int, end: int) -> str:
+    """The words of a reported clause, in the order of a direct one."""
+    rules = d.language.speech.get("clause")
+    if rules is None:
+        return d.words(start, end)
+    clauses: list[list[Group]] = [[]]
+    joints: list[str] = []
+    groups = _groups(d, start, end)
+    for position, group in enumerate(groups):
+        ended = bool(clauses[-1]) and clauses[-1][-1].norm in rules["finite"]
+        begins = groups[position + 1 : position + 2]
+        if group.norm == COMMA and begins and begins[0].norm in rules["subordinating"]:
+            first = clauses[-1]
+            rest = d.words(begins[0].at, end)
+            return _joined(rules, d, [*clauses[:-1], first], joints) + f", {rest}"
+        if ended and group.norm in (COMMA, *d.language.speech["joins"]):
+            joints.append(", " if group.norm == COMMA else f" {group.spelled} ")
+            clauses.append([])
+        else:
+            clauses[-1].append(group)
+    return _joined(rules, d, clauses, joints)
+
+
+def _joined(
+    rules: Any, d: Discourse, clauses: Sequence[Sequence[Group]], joints: Sequence[str]
+) -> str:
+    text = _verb_second(rules, d, clauses[0])
+    for joint, clause in zip(joints, clauses[1:], strict=True):
+        own = clause and (clause[0].capital or _begins_noun(rules, clause[0]))
+        told = _verb_second(rules, d, clause) if own else _verb_first(rules, clause)
+        text += joint + told
+    return text
+
+
+def parted(d: Discourse, verb: str) -> tuple[str, str]:
+    """A verb without its particle, and the particle: "mitkommt" -> "kommt", "mit"."""
+    rules = d.language.speech.get("clause")
+    return _parted(rules, verb) if rules else (verb, "")
+
+
+def _groups(d: Discourse, start: int, end: int) -> list[Group]:
+    groups: list[Group] = []
+    position = start
+    while position < end:
+        first = d.tokens[position]
+        last = position + 1
+        while last < end and d.tokens[last].start < first.end:
+            last += 1
+        groups.append(
+            Group(
+                d.text[first.start : d.tokens[last - 1].end],
+                tuple(token.norm for token in d.tokens[position:last]),
+                position,
+                first.value is not None,
+            )
+        )
+        position = last
+    return groups
+
+
+def _verb_second(rules: Any, d: Discourse, groups: Sequence[Group]) -> str:
+    words = [group.spelled for group in groups]
+    if len(groups) < 2:
+        return _written(words)
+    moved: list[Group] = []
+    if groups[0].norm in rules["reflexive"]:  # "sich der Arzt verspätet"
+        moved, groups = [groups[0]], groups[1:]
+        words = [group.spelled for group in groups]
+    first = min(_first_part(rules, d, groups), len(groups) - 1)
+    if groups[first].norm in rules["finite"] and first < len(groups) - 1:
+        return _written(words)  # the verb stands second already
+    verb, particle = _parted(rules, words[-1])
+    reflexive = [group.spelled for group in moved]
+    rest = [*reflexive, *words[first:-1], *([particle] if particle else [])]
+    return _written([*words[:first], verb, *rest])
+
+
+def _verb_first(rules: Any, groups: Sequence[Group]) -> str:
+    if not groups:
+        return ""
+    words = [group.spelled for group in groups]
+    verb, particle = _parted(rules, words[-1])
+    return _written([verb, *words[:-1], *([particle] if particle else [])])
+
+
+def _first_part(rules: Any, d: Discourse, groups: Sequence[Group]) -> int:
+    """How many words the first part of a clause has: its subject, or what stands before that."""
+    at = 0
+    if groups[0].norm in rules["prepositions"]:
+        at = 1
+        if at >= len(groups):
+            return at
+    named = _named(d, groups, at)
+    if named:
+        return named
+    group = groups[at]
+    following = groups[at + 1] if at + 1 < len(groups) else None
+    opens = group.norm in rules["determiners"] or group.number or len(group.norms) > 1
+    if group.norm in rules["pronouns"] and (
+        group.norm not in rules["determiners"]
+        or following is None
+        or not (following.capital or following.spelled.isalpha())
+        or _begins_noun(rules, following)
+        or following.norm in d.language.closed
+    ):
+        return at + 1
+    if opens or (at == 1 and not group.capital):
+        at += bool(opens and len(group.norms) == 1)
+        nouns = [number for number in range(at, len(groups) - 1) if groups[number].capital]
+        if nouns and nouns[0] - at < 3:
+            at = nouns[0]
+        else:
+            return min(at + 1, len(groups))
+    return _noun_end(rules, groups, at)
+
+
+def _noun_end(rules: Any, groups: Sequence[Group], at: int) -> int:
+    """Where a noun ends that begins here: "Frau Doktor Weber", "Zimmer 12", "Alice und Bob"."""
+    titled = groups[at].norm in rules["titles"]
+    at += 1
+    while at < len(groups) - 1 and (groups[at].number or (titled and groups[at].capital)):
+        at += 1
+    if (
+        at + 2 < len(groups)
+        and groups[at].norm in rules["and"]
+        and (groups[at + 1].capital or _begins_noun(rules, groups[at + 1]))
+    ):
+        at += 1
+        if _begins_noun(rules, groups[at]) and at + 1 < len(groups) - 1:
+            at += 1
+        return _noun_end(rules, groups, at)
+    return at
+
+
+def _begins_noun(rules: Any, group: Group) -> bool:
+    return group.norm in rules["determiners"] or group.norm in rules["pronouns"]
+
+
+def _named(d: Discourse, groups: Sequence[Group], at: int) -> int:
+    """How many words there are up to the end of a name of the world that begins here; 0 if none."""
+    from grammar.slots import names_of
+
+    tries = names_of(d.language, d.lexicon).tries
+    longest = 0
+    for slot in ("person", "place"):
+        node = tries.get(slot)
+        for position in range(at, len(groups) - 1):
+            for norm in groups[position].norms:
+                node = node.branches.get(norm) if node else None
+            if node and node.values:
+                longest = max(longest, position + 1)
+    return longest
+
+
+def _parted(rules: Any, verb: str) -> tuple[str, str]:
+    low = verb.lower()
+    if low in rules["inseparable"] or low in rules["finite"]:
+        return verb, ""
+    for particle in sorted(rules["particles"], key=len, reverse=True):
+        if low.startswith(particle) and len(low) - len(particle) >= SHORTEST_VERB:
+            return verb[len(particle) :], particle
+    return verb, ""
+
+
+def _written(words: Sequence[str]) -> str:
+    return " ".join(words).replace(" ,", ",")
