@@ -81,7 +81,10 @@ class Robot(Calls):
         self._token = token
         self._timeout = timeout
         self._ids = itertools.count(1)
+        # Guards the listeners; `_connecting` is held while a lost connection is made again, which
+        # may take long.
         self._lock = threading.Lock()
+        self._connecting = threading.Lock()
         self._closed = threading.Event()
         # Who wants to hear of which kinds of events.
         self._listeners: list[tuple[frozenset[str], Listener]] = []
@@ -164,6 +167,12 @@ class Robot(Calls):
 
     # --- the connection
 
+    @property
+    def connected(self) -> bool:
+        """Whether the connection stands, as far as is known. The next call makes a lost one
+        again."""
+        return not self._link.lost.is_set()
+
     def close(self) -> None:
         """Let go of the robot; calls in flight raise LostConnection, and their motion is stopped
         by the server."""
@@ -182,7 +191,7 @@ class Robot(Calls):
         link = self._link
         if not link.lost.is_set():
             return link
-        with self._lock:
+        with self._connecting:
             if self._link.lost.is_set():
                 self._link = self._connect_again()
             return self._link
@@ -203,7 +212,8 @@ class Robot(Calls):
 
     def _connect(self) -> _Link:
         link = _Link(_open(self._url, self._token, self._timeout, self.address), self._link_said)
-        kinds: set[str] = set().union(*(kinds for kinds, _ in self._listeners))
+        with self._lock:
+            kinds: set[str] = set().union(*(kinds for kinds, _ in self._listeners))
         threading.Thread(
             target=link.receive, args=(self._link_lost,), name="robot replies", daemon=True
         ).start()

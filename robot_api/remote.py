@@ -33,8 +33,9 @@ class RemoteDriver:
 
     def stop(self, because: str) -> None:
         # A robot that cannot be reached stops by itself: its server lost the connection, too.
-        with contextlib.suppress(RobotError):
-            self._robot.stop()
+        if self._robot.connected:
+            with contextlib.suppress(RobotError):
+                self._robot.stop()
 
     def subscribe(self, listener: Callable[[str, Event], None]) -> Callable[[], None]:
         return self._robot.subscribe(EVENTS, listener)
