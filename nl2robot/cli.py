@@ -31,6 +31,7 @@ COMMANDS = {
     "serve": "the robot server on one port, a simulated hospital by default",
     "log": "show past runs, and replay them in the simulator",
     "test": "check canned utterances against what they should do",
+    "lint": "look for names in a world that cannot be said or told apart",
     "models": "speech models: list, get, verify",
     "bench": "measure how fast everything is on this machine",
     "demo": "a typed and a spoken command in the simulated hospital, with pictures",

@@ -12,7 +12,7 @@ import msgspec
 from grammar.language import load_language
 from grammar.readings import Read
 from grammar.understand import Understanding, understand
-from nl2robot.commands.options import add_language, add_world, words, world_of
+from nl2robot.commands.options import add_language, add_world, names_of, words
 from nl2robot.errors import ExitStatus
 from nl2robot.knowledge import Knowledge
 from nl2robot.plain import visible
@@ -40,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    knowledge = Knowledge(world_of(options), routines=open_routines())
+    knowledge = Knowledge(names_of(options), routines=open_routines())
     understood = understand(options.words, knowledge.lexicon(options.lang), options.lang)
     translation = translate(options.words, knowledge, options.lang)
     if options.json:

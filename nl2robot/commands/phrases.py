@@ -6,7 +6,7 @@ import argparse
 import json
 
 from grammar.samples import samples
-from nl2robot.commands.options import add_language, add_world, words, world_of
+from nl2robot.commands.options import add_language, add_world, names_of, words
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.routines import open_routines
@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    knowledge = Knowledge(world_of(options), routines=open_routines())
+    knowledge = Knowledge(names_of(options), routines=open_routines())
     topics = samples(knowledge.lexicon(options.lang), options.lang)
     if options.topic:
         found = topic_of(options.topic, list(topics))

@@ -7,7 +7,7 @@ import json
 
 import msgspec
 
-from nl2robot.commands.options import add_language, add_world, words, world_of
+from nl2robot.commands.options import add_language, add_world, names_of, words
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.routines import open_routines
@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    knowledge = Knowledge(world_of(options), routines=open_routines())
+    knowledge = Knowledge(names_of(options), routines=open_routines())
     if options.action == "list":
         return _list(knowledge, options.json)
     example = '"evening round"'
