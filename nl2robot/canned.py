@@ -171,15 +171,31 @@ def _failures(test: Test, translation: Translation, knowledge: Knowledge) -> Ite
         yield f"expected {test.status}, got {translation.status}{told}"
         return
     if translation.program is None or translation.plan is None:
+        if test.program is not None or test.calls is not None or test.effects is not None:
+            yield f"expected a program, got an answer: {translation.message}"
         return
     if test.program is not None and translation.program.strip() != test.program.strip():
-        yield f"expected the program\n{test.program.strip()}\ngot\n{translation.program.strip()}"
+        yield _difference(test.program, translation.program)
     if test.calls is not None:
         methods = tuple(call.method for call in calls(from_data(translation.plan)))
         if methods != test.calls:
             yield f"expected the calls {' '.join(test.calls)}, got {' '.join(methods)}"
     if test.effects is not None:
         yield from _missing_effects(test.effects, translation.program, knowledge.world)
+
+
+def _difference(expected: str, got: str) -> str:
+    """What changed in a program, as a unified diff."""
+    from difflib import unified_diff
+
+    lines = unified_diff(
+        expected.strip().splitlines(),
+        got.strip().splitlines(),
+        "expected program",
+        "program now",
+        lineterm="",
+    )
+    return "\n".join(lines)
 
 
 def _missing_effects(effects: Effects, program: str, world: World) -> Iterable[str]:

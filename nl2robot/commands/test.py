@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import textwrap
 import time
 from pathlib import Path
 
@@ -33,7 +34,7 @@ def run(options: argparse.Namespace) -> int:
             elif result.failures:
                 print(f"{name}:{result.test.line}: {result.test.say}")
                 for failure in result.failures:
-                    print("  " + failure.replace("\n", "\n    "))
+                    print(textwrap.indent(failure, "  "))
     if not options.json:
         seconds = time.perf_counter() - began
         print(f"{passed} passed, {failed} failed in {seconds:.1f} s")

@@ -66,6 +66,42 @@ def test_a_sentence_that_changed_is_told_with_its_line(tmp_path, capsys) -> None
     assert "1 passed, 3 failed" in told
 
 
+def test_a_program_that_changed_is_shown_as_a_difference(tmp_path) -> None:
+    file = write(
+        tmp_path,
+        """\
+        tests:
+          - say: go to the pharmacy, wave and say hello
+            program: |
+              robot.goto("pharmacy")
+              robot.gesture("bow")
+              robot.say("Hello!")
+        """,
+    )
+    [result] = canned.check(canned.load(file))
+    [difference] = result.failures
+    assert difference.splitlines()[:2] == ["--- expected program", "+++ program now"]
+    assert difference.splitlines()[3:] == [
+        ' robot.goto("pharmacy")',
+        '-robot.gesture("bow")',
+        '+robot.gesture("wave")',
+        ' robot.say("Hello!")',
+    ]
+
+
+def test_an_answer_is_no_program(tmp_path) -> None:
+    file = write(
+        tmp_path,
+        """\
+        tests:
+          - say: what can I say
+          - say: what can I say
+            calls: [say]
+        """,
+    )
+    assert [line for line, _ in failures(file)] == [3]
+
+
 def test_plain_lines_have_to_be_understood(tmp_path) -> None:
     file = write(
         tmp_path,
