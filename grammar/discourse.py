@@ -13,6 +13,7 @@ from typing import Any, Final
 from grammar.chart import Leaf, Node
 from grammar.language import Language
 from grammar.lexicon import Lexicon, Name
+from grammar.naming import naming
 from grammar.plan import Ask, Call, Number, Recall, Remember, Sentence, Step, Text, Value
 from grammar.tokens import Token
 from robot_api.methods import METHODS
@@ -70,6 +71,10 @@ class Thing:
     """Whether it is the speaker."""
     pronoun: bool = False
     """Whether it was spoken of before: "it"."""
+    group: Value | None = None
+    """The names of several people who are meant one by one."""
+    count: int | None = None
+    """How many of them, whoever they are: "three visitors"."""
 
     @property
     def text(self) -> str:
@@ -116,6 +121,14 @@ class Discourse:
     answer_options: tuple[str, ...] = ()
     code: str | None = None
     heard: str | None = None
+    surveys: list[Any] = field(default_factory=list)
+    """What was asked so far (`grammar.meanings.surveys.Survey`)."""
+    pending: Steps = field(default_factory=list)
+    """Steps that a condition needs before it can be checked."""
+    counting: Any = None
+    """The answers that the loop around has to count."""
+    group: Value | None = None
+    """Several people spoken of together: "both", "each of them"."""
     report: Any = None
     """What was told last (`grammar.meanings.reports.Report`), so that it can be told to others."""
     report_step: Step | None = None
@@ -168,6 +181,7 @@ class Discourse:
 
     def which(self, start: int, end: int, choices: tuple[str, ...]) -> Ambiguous:
         """The question which of several was meant."""
+        choices = tuple(map(self.called, choices))
         question = self.language.phrase(
             "which_one", what=self.words(start, end), choices=self.listed(choices)
         )
@@ -185,6 +199,10 @@ class Discourse:
         if start >= end:
             return ""
         return self.text[self.tokens[start].start : self.tokens[end - 1].end]
+
+    def called(self, name: str) -> str:
+        """What speakers call something that a plan has a name for."""
+        return naming(self.lexicon, self.language).called(name)
 
     def norms(self, start: int, end: int) -> list[str]:
         return [token.norm for token in self.tokens[start:end]]
@@ -256,7 +274,7 @@ class Discourse:
                 if text:
                     parts.append(Text(text))
                     text = ""
-                parts.append(value)
+                parts += value.parts if isinstance(value, Sentence) else (value,)
         if not parts:
             return Text(capital(text))
         if text:

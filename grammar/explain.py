@@ -304,6 +304,9 @@ class _Teller:
             case p.Collect():
                 values = {"value": self.value(step.value), "name": self.recall(step.name)}
                 yield Told(fill(say["collect"], values))
+            case p.Increase(by=p.Recall() as much):
+                values = {"value": self.value(much), "name": self.recall(step.name)}
+                yield Told(fill(say["collect"], values))
             case p.Increase():
                 yield Told(fill(say["increase"], {"name": self.recall(step.name)}))
             case CodeStep(source=source):

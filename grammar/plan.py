@@ -149,9 +149,10 @@ class Collect(Node, frozen=True, tag="collect"):
 
 
 class Increase(Node, frozen=True, tag="increase"):
-    """Add one to the number of this name."""
+    """Add to the number of this name: one, unless it says how much."""
 
     name: str
+    by: Value | None = None
 
 
 class If(Node, frozen=True, tag="if"):

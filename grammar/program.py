@@ -124,7 +124,8 @@ class _Writer:
                 list_name = self.names.of(step.name)
                 yield from write("", Call(f"{list_name}.append", (self.value(step.value),)))
             case p.Increase():
-                yield from write("", Atom(f"{self.names.of(step.name)} += 1"))
+                much = Atom("1") if step.by is None else self.as_number(step.by, "float")
+                yield from write(f"{self.names.of(step.name)} += ", much)
             case p.If():
                 yield from self.branches(step, depth, in_loop)
             case p.Repeat():

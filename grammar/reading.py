@@ -102,6 +102,8 @@ class _Reader:
                 return p.Remember(name, self.value(value))
             case ast.AugAssign(target=ast.Name(id=name), op=ast.Add(), value=ast.Constant(value=1)):
                 return p.Increase(name)
+            case ast.AugAssign(target=ast.Name(id=name), op=ast.Add(), value=ast.Name(id=much)):
+                return p.Increase(name, p.Recall(much))
             case ast.If(test=test, body=body, orelse=orelse):
                 return p.If(self.condition(test), self.block(body), self.block(orelse))
             case ast.For(target=ast.Name(), orelse=[]):

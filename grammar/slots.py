@@ -66,7 +66,8 @@ class Names:
             self._add("contact", contact, contact)
         for question in lexicon.questions:
             for text in (question.question, *question.aliases):
-                self._add("question", text.rstrip("?"), question)
+                for words in self._asked(language.tokens_of(text.rstrip("?"))):
+                    self._add_words("question", words, question)
         for slot, known in (
             ("gesture", lexicon.gestures),
             ("emotion", lexicon.emotions),
@@ -95,6 +96,15 @@ class Names:
                 self._add("kind", word, kind)
             for word in many:
                 self._add("kinds", word, kind)
+
+    def _asked(self, words: tuple[str, ...]) -> Iterable[tuple[str, ...]]:
+        """A question; without its articles; as it is put to others: "when visiting hours are"."""
+        articles = self.language.speech.get("articles", ())
+        bare = tuple(word for word in words if word not in articles)
+        for form in dict.fromkeys((words, bare)):
+            yield form
+            if len(form) > 2 and form[1] in self.language.speech.get("turned_verbs", ()):
+                yield (form[0], *form[2:], form[1])
 
     def _add_name(self, slot: str, name: Name) -> None:
         for text in (name.name, *name.aliases):
@@ -391,5 +401,8 @@ def _command_words(language: Language) -> frozenset[str]:
         for callee, _, _ in state.calls:
             visit(callee, seen)
 
-    visit(network.rule("command"), set())
-    return frozenset(words) - frozenset(language.speech.get("not_command_words", ()))
+    for rule in ("command", "summary"):
+        if rule in language.rules:
+            visit(network.rule(rule), set())
+    others = language.speech.get("not_command_words", ())
+    return frozenset(words).difference(*map(language.tokens_of, others))

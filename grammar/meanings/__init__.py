@@ -16,7 +16,9 @@ import grammar.meanings.people
 import grammar.meanings.questions
 import grammar.meanings.reports
 import grammar.meanings.requests
+import grammar.meanings.rounds
 import grammar.meanings.speaking
+import grammar.meanings.surveys
 import grammar.meanings.things  # noqa: F401 (each enters its meanings)
 from grammar.meanings.registry import MEANINGS
 

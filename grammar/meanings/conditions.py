@@ -10,6 +10,7 @@ from grammar.meanings.registry import meaning
 from grammar.plan import (
     Ask,
     Both,
+    Call,
     Compare,
     Condition,
     Either,
@@ -72,6 +73,9 @@ def counted(d: Discourse, node: Node) -> Condition:
     thing = noun_of(d, node)
     if thing.person:
         d.person = thing
+    if thing.place is not None and thing.place != d.at:
+        d.went(thing.place)
+        d.pending.append(Call("goto", {"place": thing.place}))
     operator = d.get(node, "operator", "==")
     return Compare(
         Ask("count", {"thing": sought(d, thing)}), operator, Number(int(d.get(node, "count")))

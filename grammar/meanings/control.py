@@ -5,11 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any, Final
 
+import msgspec
+
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, as_value
-from grammar.meanings.finding import not_found
+from grammar.meanings.finding import not_found, speak_to
 from grammar.meanings.nouns import kind_places
 from grammar.meanings.registry import meaning
+from grammar.meanings.speaking import sentence_form
+from grammar.meanings.surveys import counting
 from grammar.plan import (
     Ask,
     Call,
@@ -130,6 +134,7 @@ def corrected(d: Discourse, node: Node) -> Steps:
 @meaning("if")
 def if_(d: Discourse, node: Node) -> Steps:
     condition: Condition = d.get(node, "condition")
+    before_it, d.pending = d.pending, []
     if node.production.fixed.get("unless"):
         condition = Not(condition)
     before = (d.at, d.holding, d.with_person)
@@ -142,12 +147,20 @@ def if_(d: Discourse, node: Node) -> Steps:
     if d.at != after_then:
         d.at = None
         d.with_person = None
-    return [*pending(d), If(condition, tuple(then), tuple(otherwise))]
+    return [*before_it, If(condition, tuple(then), tuple(otherwise))]
 
 
-def pending(d: Discourse) -> Steps:
-    """Steps that a condition asked for, such as scanning before comparing."""
-    return []
+@meaning("tell_condition")
+def tell_condition(d: Discourse, node: Node) -> Steps:
+    """ "if there are more than three people, tell Alice": that there are more than three people."""
+    condition: Condition = d.get(node, "condition")
+    before_it, d.pending = d.pending, []
+    part = node.parts["condition"]
+    text = Text(sentence_form(d.words(part.start, part.end)))
+    saying = Call("say", {"text": text})
+    then = speak_to(d, d.get(node, "person_ref"), [saying])
+    d.at = d.with_person = None
+    return [*before_it, If(condition, tuple(then))]
 
 
 @meaning("when")
@@ -199,7 +212,8 @@ def until(d: Discourse, node: Node) -> Steps:
         condition = d.get(node, "condition")
     if all(isinstance(step, Call) and step.method in ("wait",) for step in body):
         return wait_until(condition)
-    return [RepeatUntil(condition, tuple(body))]
+    before, body = counting(d, body)
+    return [*before, RepeatUntil(condition, tuple(body))]
 
 
 @meaning("while")
@@ -288,27 +302,25 @@ def same_for(d: Discourse, node: Node) -> Steps:
         raise NotUnderstood(d.language.phrase("repeat_what"))
     old = d.person.value
     person: Thing = d.get(node, "person_ref")
+    if person.group is not None or not person.known:
+        raise NotUnderstood(d.language.phrase("one_person"))
     return [replaced(step, old, person.value) for step in d.done]
 
 
-def replaced(step: Any, old: Value, new: Value) -> Any:
-    """A step with one value put in the place of another."""
-    from grammar.plan import Plan, from_data, to_data
-
-    def swap(data: Any) -> Any:
-        if data == old_data:
-            return new_data
-        if isinstance(data, dict):
-            return {key: swap(value) for key, value in data.items()}
-        if isinstance(data, list):
-            return [swap(value) for value in data]
-        if isinstance(data, str) and isinstance(old, Text) and isinstance(new, Text):
-            return data.replace(old.value, new.value)
-        return data
-
-    old_data = to_data(Plan((Call("", {"": old}),)))["steps"][0]["arguments"][""]
-    new_data = to_data(Plan((Call("", {"": new}),)))["steps"][0]["arguments"][""]
-    return from_data({"steps": swap(to_data(Plan((step,)))["steps"])}).steps[0]
+def replaced(part: Any, old: Value, new: Value) -> Any:
+    """A part of a plan with one value put in the place of another, in texts too."""
+    if part == old:
+        return new
+    if isinstance(part, tuple):
+        return tuple(replaced(each, old, new) for each in part)
+    if isinstance(part, dict):
+        return {key: replaced(value, old, new) for key, value in part.items()}
+    if isinstance(part, Text) and isinstance(old, Text) and isinstance(new, Text):
+        return Text(part.value.replace(old.value, new.value))
+    if isinstance(part, msgspec.Struct):
+        fields = {name: replaced(getattr(part, name), old, new) for name in part.__struct_fields__}
+        return msgspec.structs.replace(part, **fields)
+    return part
 
 
 # --- for each

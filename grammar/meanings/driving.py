@@ -7,7 +7,7 @@ from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, Where, as_
 from grammar.meanings.finding import go, look_for, noun_of
 from grammar.meanings.nouns import is_me, sought
 from grammar.meanings.registry import meaning
-from grammar.plan import Call, Text, Value
+from grammar.plan import Call, Number, Repeat, Text, Value
 from grammar.tidy import nodes
 
 
@@ -137,6 +137,8 @@ def wait_for(d: Discourse, node: Node) -> Steps:
     if thing.person:
         d.person = d.person or thing
         d.with_person = thing.value
+    if thing.count is not None:
+        return [*steps, Repeat(Number(thing.count), (Call("wait_for", arguments),))]
     return [*steps, Call("wait_for", arguments)]
 
 

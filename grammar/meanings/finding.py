@@ -7,7 +7,8 @@ from dataclasses import replace
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.meanings.nouns import is_me, sought
-from grammar.plan import Ask, Call, Holds, If, Text, Value
+from grammar.naming import the
+from grammar.plan import Ask, Call, ForEach, Holds, If, Items, Not, Recall, Text, Value
 
 
 def go(d: Discourse, place: Value) -> Steps:
@@ -66,6 +67,8 @@ def meet(d: Discourse, person: Thing) -> Steps:
 
 def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
     """Say something to a person: here, or where they are found."""
+    if person is not None and isinstance(person.group, Items):
+        return each_of(d, person.group, steps)
     if person is None or is_here(d, person):
         return steps
     if not person.known and person.place is not None and (person.plural or person.text == ANYONE):
@@ -75,6 +78,25 @@ def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
     return [
         If(Holds(Ask("find", found(d, person).arguments)), tuple(steps), (not_found(d, person),))
     ]
+
+
+def each_of(d: Discourse, group: Value, steps: Steps) -> Steps:
+    """Do something with each of several people, who are looked for one by one."""
+    d.at = d.with_person = None
+    who = Recall(d.variable("person"))
+    return [ForEach(who.name, group, tuple(if_found(d, who, steps)))]
+
+
+def if_found(d: Discourse, who: Value, steps: Steps) -> Steps:
+    """Steps for which somebody has to be found first."""
+    found = Holds(Ask("find", {"thing": who}))
+    return [If(found, tuple(steps), (d.say("not_found", thing=who),))]
+
+
+def if_missing(d: Discourse, who: Value) -> Steps:
+    """Look for somebody, and say so if they are nowhere."""
+    found = Holds(Ask("find", {"thing": who}))
+    return [If(Not(found), (d.say("not_found", thing=who),))]
 
 
 def is_here(d: Discourse, person: Thing) -> bool:
@@ -94,5 +116,5 @@ def named(d: Discourse, thing: Thing) -> Value | str:
     if not isinstance(thing.value, Text):
         return thing.value
     if thing.known and thing.person:
-        return thing.value.value
-    return d.language.phrase("the", noun=thing.value.value)
+        return d.called(thing.value.value)
+    return the(d.called(thing.value.value), d.language)

@@ -9,7 +9,7 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Thing, Where, as_value
 from grammar.lexicon import Name
 from grammar.meanings.registry import meaning
-from grammar.plan import Ask, Number, Text, Value
+from grammar.plan import Ask, Items, Number, Text, Value
 from grammar.wordforms import singular
 
 LIKE_ENOUGH: Final = 55
@@ -313,6 +313,51 @@ def owner_of(d: Discourse) -> Text | None:
             if d.place.value.lower().startswith(person.name.lower() + mark):
                 return Text(person.name)
     return None
+
+
+@meaning("person_group")
+def person_group(d: Discourse, node: Node) -> Thing:
+    """ "Alice, Bob and Carol"."""
+    people: list[Thing] = []
+    each: Any = node
+    while isinstance(each, Node):
+        people.append(d.build(each.parts["first"]))
+        each = each.parts.get("rest")
+    d.group = Items(tuple(person.value for person in people))
+    return Thing(Text(ANYONE), person=True, plural=True, known=True, group=d.group)
+
+
+@meaning("person_group_kind")
+def person_group_kind(d: Discourse, node: Node) -> Thing:
+    """ "all nurses": those whom the world knows by name; of others, whoever is there."""
+    kind = str(d.get(node, "kind_of_person", ANYONE))
+    found = replace(described(d, kind, node), person=True, plural=True)
+    named = tuple(Text(each.name) for each in d.lexicon.people if each.kind == kind)
+    if named and found.place is None and d.at is None and kind not in ("visitor", "patient"):
+        d.group = Items(named)
+        return replace(found, known=True, group=d.group)
+    d.group = Ask("people")
+    d.person, d.thing_last = found, False
+    return replace(found, value=Text(ANYONE) if found.text == kind else found.value, group=d.group)
+
+
+@meaning("person_count")
+def person_count(d: Discourse, node: Node) -> Thing:
+    """ "three visitors": one after the other, whoever they are."""
+    kind = str(d.get(node, "kind_of_person", ANYONE))
+    found = replace(described(d, kind, node), person=True, plural=True)
+    found = replace(found, count=int(d.get(node, "count")))
+    d.person, d.thing_last = replace(found, here=True, plural=False), False
+    return found
+
+
+@meaning("person_group_them")
+def person_group_them(d: Discourse, node: Node) -> Thing:
+    """ "both of them", "each of them"."""
+    if d.group is None:
+        found = d.person or Thing(Text(ANYONE), person=True)
+        return replace(found, here=True, plural=True)
+    return Thing(Text(ANYONE), person=True, plural=True, known=True, group=d.group)
 
 
 @meaning("person_me")

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Ambiguous, Discourse, NotUnderstood, Steps, Thing, Where
-from grammar.language import spoken_name
 from grammar.meanings.finding import meet, named, speak_to
 from grammar.meanings.nouns import is_me, kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.things import deliver
+from grammar.naming import place_called
 from grammar.plan import Call, ForEach, Forever, Recall, Text, Value
 
 
@@ -36,6 +36,8 @@ def led(d: Discourse, node: Node) -> Thing:
     person: Thing | None = d.get(node, "person_ref")
     if person is None or is_me(person):
         return Thing(Text(ANYONE), person=True, here=True)
+    if person.group is not None or person.count is not None:
+        raise NotUnderstood(d.language.phrase("one_person"))
     return person
 
 
@@ -66,7 +68,8 @@ def guide_nowhere(d: Discourse, node: Node) -> Steps:
         node.end,
         node.end,
         tuple(
-            to_place.format(place=spoken_name(place.name, d.language)) for place in d.lexicon.places
+            to_place.format(place=place_called(place.name, d.lexicon, d.language))
+            for place in d.lexicon.places
         ),
     )
 

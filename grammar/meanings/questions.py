@@ -6,13 +6,15 @@ from dataclasses import replace
 from typing import Final
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where, capital
-from grammar.meanings.finding import go, meet, speak_to
+from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where, capital
+from grammar.meanings.finding import go, if_found, meet, speak_to
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.speaking import sentence_form
-from grammar.plan import Ask, Call, ForEach, Items, Recall, Text, Value
+from grammar.meanings.surveys import Survey
+from grammar.plan import Ask, Call, ForEach, Items, Number, Recall, Repeat, Text, Value
 from grammar.tokens import COLON, COMMA
+from grammar.wordorder import direct_clause, parted
 
 MOST_OPTIONS: Final = 20
 
@@ -22,8 +24,12 @@ def ask(d: Discourse, node: Node) -> Steps:
     """Ask somebody a question and remember the answer."""
     person: Thing | None = d.get(node, "person_ref")
     steps: Steps = []
-    everybody = person is not None and person.plural and person.text == ANYONE
-    if person is not None and everybody:
+    several = person is not None and (person.group is not None or person.count is not None)
+    everybody = person is not None and person.plural and person.text == ANYONE and not several
+    if person is not None and several:
+        steps = go(d, person.place) if person.place is not None else []
+        d.person = replace(person, here=True)
+    elif person is not None and everybody:
         steps = go(d, person.place) if person.place is not None else []
     elif person is not None and not is_me(person):
         if person.known or person.place is not None:
@@ -43,17 +49,34 @@ def ask(d: Discourse, node: Node) -> Steps:
         d.place = Recall(name)
     if person is not None and person.known:
         arguments["person"] = person.value
-    if everybody:
+    if person is not None and person.count is not None:
+        asking = asked(d, Call("ask", arguments, save_as=name), options, None)
+        waiting = Call("wait_for", {"thing": person.value})
+        return [*steps, Repeat(Number(person.count), (waiting, asking))]
+    if everybody or several:
         variable = d.variable("person")
-        arguments["person"] = Recall(variable)
-        asking = Call("ask", arguments, save_as=name)
-        return [*steps, ForEach(variable, Ask("people"), (asking,))]
-    return [*steps, Call("ask", arguments, save_as=name)]
+        who = Recall(variable)
+        asking = asked(d, Call("ask", {**arguments, "person": who}, save_as=name), options, who)
+        if everybody or person is None or person.group is None:
+            return [*steps, ForEach(variable, Ask("people"), (asking,))]
+        if isinstance(person.group, Ask):
+            return [*steps, ForEach(variable, person.group, (asking,))]
+        d.at = d.with_person = None
+        return [*steps, ForEach(variable, person.group, tuple(if_found(d, who, [asking])))]
+    known = person.value if person is not None and person.known else None
+    who_else = d.place if d.in_loop and isinstance(d.place, Recall) and d.place == d.at else None
+    return [*steps, asked(d, Call("ask", arguments, save_as=name), options, known or who_else)]
+
+
+def asked(d: Discourse, call: Call, options: tuple[str, ...], who: Value | None) -> Call:
+    """Remember a question, so that its answers can be reported."""
+    d.surveys.append(Survey(call, options, who))
+    return call
 
 
 def remember_answer(d: Discourse, options: tuple[str, ...], name: str) -> str:
     """Give the answer a variable; a choice of places is also where "there" is."""
-    places = {place.name for place in d.lexicon.places}
+    places = {each for place in d.lexicon.places for each in (place.name, d.called(place.name))}
     if options and all(option in places for option in options):
         variable = d.variable("place")
         d.place = Recall(variable)
@@ -69,13 +92,22 @@ def remember_answer(d: Discourse, options: tuple[str, ...], name: str) -> str:
 def question(d: Discourse, node: Node) -> str:
     """A direct question made of a reported one by its form: "Do you {verb} {rest}?"."""
     form: str = node.production.fixed["form"]
+    past = node.production.fixed.get("past")
     values: dict[str, str] = {}
     for name, part in node.parts.items():
-        turned = turn_to_you(d, part.start, part.end)
-        values[name] = base_form(d, turned) if name == "verb" else turned
+        values[name] = turn_to_you(d, part.start, part.end)
     values.setdefault("rest", "")
+    if "verb" in values:
+        verb, particle = parted(d, values["verb"])
+        base = past_base(d, verb) if past else None
+        if base is not None:
+            form, verb = str(past), base
+        as_it_is = node.production.fixed.get("as_it_is", False)
+        values["verb"] = verb if as_it_is else base_form(d, verb)
+        values["rest"] = f"{values['rest']} {particle}"
     text = " ".join(form.format_map(values).split())
-    return capital(text.replace(" ?", "?").replace(" ,", ","))
+    mark = d.language.speech.get("question_mark", "?")
+    return capital(text.replace(" ?", mark).replace(" ,", ","))
 
 
 def turn_to_you(d: Discourse, start: int, end: int) -> str:
@@ -93,12 +125,27 @@ def turn_to_you(d: Discourse, start: int, end: int) -> str:
         turned = you.get(first.norm)
         if turned is not None:
             original = opened.replace(first.norm, turned, 1)
+        before = d.text[d.tokens[position - 1].end : first.start] if pieces else ""
         if first.kind == "mark":
             pieces.append(original if not pieces else "\b" + original)
+        elif before in ("'", "’", "-"):  # "d'aide", "rendez-vous"
+            pieces.append("\b" + before + original)
         else:
             pieces.append(original)
         position = last
     return " ".join(pieces).replace(" \b", "").strip(" ,.?!")
+
+
+def past_base(d: Discourse, verb: str) -> str | None:
+    """ "liked" -> "like"; None for what is no past form."""
+    low = verb.lower()
+    irregular: dict[str, str] = d.language.speech.get("past_forms", {})
+    if low in irregular:
+        return irregular[low] if irregular[low] != low else None
+    for ending, base in d.language.speech.get("past_endings", ()):
+        if low.endswith(ending) and len(low) > len(ending):
+            return low[: len(low) - len(ending)] + str(base)
+    return None
 
 
 def base_form(d: Discourse, verb: str) -> str:
@@ -144,7 +191,7 @@ def split_options(d: Discourse, start: int, end: int) -> tuple[str, ...]:
     """ "to go to radiology or to the pharmacy" -> radiology, pharmacy.
 
     What stands between the joining words is an option, without the little words before it; of the
-    first, only as many words at its end as the others have. Places go by their own names."""
+    first, only as many words at its end as the others have. Places go by their names."""
     joins = (
         set(d.language.speech.get("or", ())) | set(d.language.speech.get("joins", ())) | {",", ":"}
     )
@@ -163,7 +210,7 @@ def split_options(d: Discourse, start: int, end: int) -> tuple[str, ...]:
     for number, (begin, last) in enumerate(stripped):
         place = _place_at_end(d, begin, last)
         if place:
-            options.append(place)
+            options.append(d.called(place))
             continue
         if number == 0 and len(stripped) > 1:
             begin = max(begin, last - longest)
@@ -197,6 +244,8 @@ def ask_to(d: Discourse, node: Node) -> Steps:
     """ "ask them to wait" -> "Please wait."."""
     part = node.parts["text"]
     text = turn_to_you(d, part.start, part.end)
+    if "verb" in node.parts:  # "hier zu warten": the verb stands last
+        text = f"{text} {turn_to_you(d, node.parts['verb'].start, node.parts['verb'].end)}"
     request = d.sentence("please_do", what=text)
     return speak_to(d, d.get(node, "person_ref"), [Call("say", {"text": request})])
 
@@ -210,8 +259,25 @@ def say_that(d: Discourse, node: Node) -> Steps:
     elif node.production.fixed.get("to_you"):
         text = sentence_form(turn_to_you(d, part.start, part.end))
     else:
-        text = sentence_form(d.words(part.start, part.end))
+        text = sentence_form(direct_clause(d, part.start, part.end))
     return speak_to(d, d.get(node, "person_ref"), [Call("say", {"text": Text(text)})])
+
+
+@meaning("ask_again")
+def ask_again(d: Discourse, node: Node) -> Steps:
+    """ "..., if not, ask Alice": the same question."""
+    if not d.surveys:
+        raise NotUnderstood(d.language.phrase("ask_what"))
+    person: Thing = d.get(node, "person_ref")
+    last: Survey = d.surveys[-1]
+    arguments = {key: value for key, value in last.call.arguments.items() if key != "person"}
+    if person.known:
+        arguments["person"] = person.value
+    steps = meet(d, person)
+    d.person = person
+    name = remember_answer(d, last.options, "answer")
+    call = Call("ask", arguments, save_as=name)
+    return [*steps, asked(d, call, last.options, person.value if person.known else None)]
 
 
 @meaning("answer")

@@ -20,10 +20,11 @@ from grammar.discourse import (
     Where,
     as_value,
 )
-from grammar.language import spoken_name
 from grammar.meanings.finding import is_here, look_for, meet, not_found, speak_to
 from grammar.meanings.nouns import described, is_me, kind_places, sought
 from grammar.meanings.registry import meaning
+from grammar.meanings.surveys import all_answers, in_loop, moved
+from grammar.naming import place_called, some, the
 from grammar.plan import (
     Ask,
     Call,
@@ -229,7 +230,7 @@ def counted_info(d: Discourse, node: Node) -> Report:
         place=thing.place or more.place or (first.place if first else None),
         furniture=thing.furniture or more.furniture or (first.furniture if first else None),
     )
-    phrase_words = thing.text
+    phrase_words = d.called(thing.text)
     spot = _spot_words(d, thing)
     noun, _, rest = phrase_words.partition(" ") if thing.person else (phrase_words, "", "")
     things = f"{plural(noun, d.language)} {rest}".strip()
@@ -244,9 +245,9 @@ def counted_info(d: Discourse, node: Node) -> Report:
 def _spot_words(d: Discourse, thing: Thing) -> str:
     """Where things were counted, as a name."""
     if thing.furniture:
-        return spoken_name(thing.furniture, d.language)
+        return place_called(thing.furniture, d.lexicon, d.language)
     place = thing.place or d.at
-    return spoken_name(place.value, d.language) if isinstance(place, Text) else ""
+    return place_called(place.value, d.lexicon, d.language) if isinstance(place, Text) else ""
 
 
 @meaning("whether_seen")
@@ -271,15 +272,17 @@ def whether_seen(d: Discourse, node: Node) -> Report:
 def _named(d: Discourse, thing: Thing) -> str:
     if thing.person and thing.text == ANYONE:
         return d.language.phrase("somebody")
-    return thing.text if thing.known and thing.person else d.language.phrase("a", noun=thing.text)
+    called = d.called(thing.text)
+    return called if thing.known and thing.person else some(called, d.language)
 
 
 @meaning("where_found")
 def where_found(d: Discourse, node: Node) -> Steps:
     """ "where is the stapler?": look for it and say where it is."""
     thing: Thing = d.get(node, "thing") or d.get(node, "person_ref")
-    the = thing.text if thing.known and thing.person else d.language.phrase("the", noun=thing.text)
-    found = d.say("it_is_at", thing=the, place=Ask("location"))
+    called = d.called(thing.text)
+    known = called if thing.known and thing.person else the(called, d.language)
+    found = d.say("it_is_at", thing=known, place=Ask("location"))
     arguments: dict[str, Value] = {"thing": sought(d, thing)}
     if thing.place is not None:
         arguments["place"] = thing.place
@@ -287,21 +290,34 @@ def where_found(d: Discourse, node: Node) -> Steps:
     return [If(Holds(Ask("find", arguments)), (found,), (not_found(d, thing),))]
 
 
-def known_words(d: Discourse) -> Call:
-    """Say the last answer, or what the last code says."""
+def known_words(d: Discourse) -> Steps:
+    """Say the last answer, those of all who were asked, or what the last code says."""
     if d.answer is not None:
-        return Call("say", {"text": Recall(d.answer)})
+        if d.surveys and in_loop(d, d.surveys[-1].call):
+            return all_answers(d)
+        return [Call("say", {"text": Recall(d.answer)})]
     if d.code is not None:
-        return d.say("code_is", value=Recall(d.code))
+        return [d.say("code_is", value=Recall(d.code))]
     raise NotUnderstood(d.language.phrase("say_what"))
 
 
 @meaning("tell_that")
 def tell_that(d: Discourse, node: Node) -> Steps:
     """ "and tell Alice how many there are": what was found out before, told to somebody else."""
-    person: Thing = d.get(node, "person_ref")
+    return told_again(d, d.get(node, "person_ref"))
+
+
+def told_again(d: Discourse, person: Thing | None) -> Steps:
+    """Tell somebody what was told or answered last."""
+    if person is None or is_me(person):
+        return tell_speaker(d)
     if d.report is None:
-        return speak_to(d, person, [known_words(d)])
+        return speak_to(d, person, known_words(d))
+    return retold(d, person)
+
+
+def retold(d: Discourse, person: Thing | None) -> Steps:
+    """Tell the last report to somebody else, or somewhere else."""
     found: Report = d.report
     at = next((at for at, step in enumerate(d.done) if step is d.report_step), None)
     if at is not None and not isinstance(found.value, Recall) and found.value is not None:
@@ -319,20 +335,25 @@ def tell_that(d: Discourse, node: Node) -> Steps:
 @meaning("tell_me_that")
 def tell_me_that(d: Discourse, node: Node) -> Steps:
     """ "and tell me": what was found out just before, brought back to the speaker."""
+    return tell_speaker(d)
+
+
+def tell_speaker(d: Discourse) -> Steps:
     last = d.done[-1] if d.done else None
     if d.report is not None and d.report_step is last and d.at is not None:
         start = d.start()
         if d.at == start:
             return []
-        told_there = tell_that(d, node)
+        told_there = retold(d, None)
         d.went(start)
         return [Call("goto", {"place": start}), *told_there]
-    if d.answer is not None and not isinstance(last, If):
+    if d.answer is not None or d.code is not None:
+        words = known_words(d)
         start = d.start()
-        moved = d.at is not None
+        going = d.at is not None or moved(d.done)
         d.went(start)
-        going: Steps = [Call("goto", {"place": start})] if moved else []
-        return [*going, Call("say", {"text": Recall(d.answer)})]
+        back = Call("goto", {"place": start})
+        return [back, *words] if going and last != back else words
     if isinstance(last, Call) and last.method == "say":
         return []  # it is told already
     raise NotUnderstood(d.language.phrase("say_what"))
@@ -377,7 +398,7 @@ def offer_guide(d: Discourse, node: Node) -> Steps:
     place = d.get(node, "place")
     if not isinstance(place, Text):
         raise NotUnderstood(d.language.phrase("where_is_there"))
-    name = spoken_name(place.value, d.language)
+    name = place_called(place.value, d.lexicon, d.language)
     question = d.language.phrase("offer_guide", place=name)
     yes = d.language.phrase("take_me_to", place=name)
     raise Ambiguous(question, 0, len(d.tokens), (yes,))

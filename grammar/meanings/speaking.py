@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, NotUnderstood, Steps, capital
+from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, capital
 from grammar.meanings.finding import speak_to
+from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
-from grammar.plan import Call, Number, Recall, Text, Value
+from grammar.plan import Call, Number, Text, Value
 
 
 @meaning("say")
@@ -37,13 +38,12 @@ def sentence_form(text: str) -> str:
 @meaning("say_it")
 def say_it(d: Discourse, node: Node) -> Steps:
     """ "and say it": the answer or the code of before."""
-    if d.answer is None and d.code is not None:
-        words = d.say("code_is", value=Recall(d.code))
-    elif d.answer is not None:
-        words = Call("say", {"text": Recall(d.answer)})
-    else:
-        raise NotUnderstood(d.language.phrase("say_what"))
-    return speak_to(d, d.get(node, "person_ref"), [words])
+    from grammar.meanings.reports import known_words, tell_speaker
+
+    person: Thing | None = d.get(node, "person_ref")
+    if is_me(person) or node.production.fixed.get("to_me"):
+        return tell_speaker(d)
+    return speak_to(d, person, known_words(d))
 
 
 @meaning("phrase")

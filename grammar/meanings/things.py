@@ -5,16 +5,20 @@ from __future__ import annotations
 from dataclasses import replace
 
 from grammar.chart import Node
-from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
-from grammar.meanings.finding import found, go, look_for, meet, noun_of
-from grammar.meanings.nouns import is_me, sought, thing_it
+from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
+from grammar.meanings.finding import found, go, if_missing, look_for, meet, noun_of
+from grammar.meanings.nouns import is_me, kind_places, sought, thing_it
 from grammar.meanings.registry import meaning
-from grammar.plan import Call, Text, Value
+from grammar.plan import Call, ForEach, Items, Recall, Text, Value
 
 
 @meaning("find")
 def find(d: Discourse, node: Node) -> Steps:
     thing = noun_of(d, node)
+    if isinstance(thing.group, Items):
+        who = Recall(d.variable("person"))
+        d.at = d.with_person = None
+        return [ForEach(who.name, thing.group, tuple(if_missing(d, who)))]
     if thing.place is None and d.at is not None:
         thing = replace(thing, place=d.at)  # "go to the kitchen and find the cup"
     return look_for(d, thing)
@@ -83,7 +87,23 @@ def bring(d: Discourse, node: Node) -> Steps:
     if source is not None:
         thing = replace(thing, place=source.place, furniture=source.furniture)
     person: Thing | None = d.get(node, "person_ref")
+    if person is not None and isinstance(person.group, Items):
+        names = [Thing(name, known=True, person=True) for name in person.group.items]
+        return [step for name in names for step in deliver(d, thing, name, None)]
+    if person is not None and (person.group is not None or person.count is not None):
+        raise NotUnderstood(d.language.phrase("one_person"))
     return deliver(d, thing, person, d.get(node, "where"))
+
+
+@meaning("bring_each")
+def bring_each(d: Discourse, node: Node) -> Steps:
+    """ "bring a blanket to every ward": one after the other."""
+    thing: Thing = d.get(node, "thing")
+    place = Recall(d.variable("place"))
+    d.at = None
+    steps = deliver(d, thing, None, Where(place))
+    d.at = None
+    return [ForEach(place.name, kind_places(d, d.get(node, "kinds")), tuple(steps))]
 
 
 def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None) -> Steps:

@@ -121,8 +121,8 @@ def _step(step: Any) -> str:
             return f"{name} = {_value(value)}"
         case Collect(name, value):
             return f"{name} += {_value(value)}"
-        case Increase(name):
-            return f"{name} += 1"
+        case Increase(name, by):
+            return f"{name} += {_value(by) if by else 1}"
         case If(condition, then, otherwise):
             text = f"if {_condition(condition)} {{ {_steps(then)} }}"
             return f"{text} else {{ {_steps(otherwise)} }}" if otherwise else text
