@@ -26,8 +26,8 @@ class Refusal:
 
 
 def new_token() -> str:
-    """A token that cannot be guessed."""
-    return secrets.token_urlsafe(24)
+    """A token that cannot be guessed, and that no command line takes for an option."""
+    return secrets.token_hex(16)
 
 
 def is_loopback(host: str) -> bool:

@@ -143,9 +143,16 @@ class Command:
         os.close(self._terminal)
         self._terminal = -1
 
-    def signal(self, number: int) -> None:
+    def kill(self, number: int) -> None:
         """To it and its children, as a terminal does with Ctrl-C."""
         os.killpg(self.process.pid, number)
+
+    def interrupt(self, number: int = signal.SIGINT) -> None:
+        """Signal it until it reacts: what comes between the writing of a question and the reading
+        of the answer is noticed by Python at the next key or signal only."""
+        self.kill(number)
+        while not select.select([self._terminal], [], [], 1.0)[0]:
+            self.kill(number)
 
     def end(self) -> int:
         """Wait for its end; returns the exit status."""
@@ -156,7 +163,7 @@ class Command:
 
     def close(self) -> None:
         with contextlib.suppress(ProcessLookupError):
-            self.signal(signal.SIGKILL)
+            self.kill(signal.SIGKILL)
         self.process.wait()
         if self._terminal >= 0:
             self.hang_up()

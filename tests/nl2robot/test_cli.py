@@ -82,7 +82,7 @@ def test_a_run_that_fails_says_so(nl2robot, tmp_path) -> None:
 def test_an_interrupt_stops_the_robot_on_its_way(start, last_run, number) -> None:
     command = start(*ROUND, "--yes", at_terminal=True)
     command.until("goto(place='ward a')")
-    command.signal(number)
+    command.kill(number)
     assert command.end() == ExitStatus.INTERRUPTED
     assert "Stopped." in command.output
     assert "Traceback" not in command.output
@@ -95,7 +95,7 @@ def test_an_interrupt_stops_the_robot_on_its_way(start, last_run, number) -> Non
 def test_an_interrupt_at_the_question_runs_nothing(start, last_run, number) -> None:
     command = start(*ROUND, at_terminal=True)
     command.until("eject? ")
-    command.signal(number)
+    command.interrupt(number)
     assert command.end() == ExitStatus.INTERRUPTED
     assert "Traceback" not in command.output
     assert last_run() == (None, [])
@@ -105,7 +105,7 @@ def test_an_interrupt_at_the_question_runs_nothing(start, last_run, number) -> N
 def test_ctrl_c_in_between_leaves_nothing_behind(start, last_run, said) -> None:
     command = start(*ROUND, "--yes", at_terminal=True)
     command.until(said)
-    command.signal(signal.SIGINT)
+    command.kill(signal.SIGINT)
     assert command.end() == ExitStatus.INTERRUPTED
     assert "Traceback" not in command.output
     row, _ = last_run()
@@ -116,7 +116,7 @@ def test_impatient_ctrl_c_ends_at_once(start) -> None:
     command = start(*ROUND, "--yes", at_terminal=True)
     command.until("goto(place='ward a')")
     for _ in range(5):
-        command.signal(signal.SIGINT)
+        command.kill(signal.SIGINT)
     # A signal while Python itself is ending is the death by that signal, as for any program.
     assert command.end() in (ExitStatus.INTERRUPTED, -signal.SIGINT)
     assert "Traceback" not in command.output
@@ -126,7 +126,7 @@ def test_ctrl_c_while_a_picture_is_drawn(start, tmp_path) -> None:
     film = ("--yes", "--picture", str(tmp_path / "film.webp"))
     command = start("run", "--world", "ward", *film, "go to ward b", at_terminal=True)
     command.until("Done.")
-    command.signal(signal.SIGINT)
+    command.kill(signal.SIGINT)
     assert command.end() in (ExitStatus.INTERRUPTED, ExitStatus.OK)
     assert "Traceback" not in command.output
 

@@ -38,7 +38,7 @@ def test_one_serves_another_runs_a_third_stops(start, serve, last_run) -> None:
     assert nurse.end() == ExitStatus.FAILED
     assert "Stopped. The robot was stopped." in nurse.output
     assert last_run()[0].status == "stopped"
-    server.signal(signal.SIGTERM)
+    server.kill(signal.SIGTERM)
     assert server.end() == ExitStatus.OK
     assert "Traceback" not in server.output
 
@@ -47,7 +47,7 @@ def test_ctrl_c_at_the_client_stops_the_robot_at_the_server(start, serve) -> Non
     _, address = serve("--speed", "1")
     nurse = start(*ROUND, "--robot", address)
     nurse.until("goto(place='ward a')")
-    nurse.signal(signal.SIGINT)
+    nurse.kill(signal.SIGINT)
     assert nurse.end() == ExitStatus.INTERRUPTED
     assert "Stopped." in nurse.output
     with Robot(address) as robot:
@@ -58,7 +58,7 @@ def test_a_program_goes_on_when_its_client_is_killed(start, serve) -> None:
     _, address = serve("--speed", "20")
     nurse = start(*ROUND, "--robot", address)
     nurse.until("goto(place='ward a')")
-    nurse.signal(signal.SIGKILL)
+    nurse.kill(signal.SIGKILL)
     with Robot(address) as robot:
         assert robot.request("program.wait", {"run": 1})["state"] == "done"
         assert robot.location().place == "ward b"
@@ -68,7 +68,7 @@ def test_a_server_that_is_killed_is_told_to_the_client(start, serve, last_run) -
     server, address = serve("--speed", "1")
     nurse = start(*ROUND, "--robot", address)
     nurse.until("goto(place='ward a')")
-    server.signal(signal.SIGKILL)
+    server.kill(signal.SIGKILL)
     assert nurse.end() == ExitStatus.NO_ROBOT
     said = " ".join(nurse.output.split())
     assert "The connection to the robot was lost. If the robot still moves, stop it by" in said
@@ -84,7 +84,7 @@ def test_a_server_that_is_ended_stops_the_program_and_logs_it(
     server, address = serve("--speed", "1")
     nurse = start(*ROUND, "--robot", address)
     nurse.until("goto(place='ward a')")
-    server.signal(number)
+    server.kill(number)
     assert server.end() == ExitStatus.OK
     assert nurse.end() in (ExitStatus.FAILED, ExitStatus.NO_ROBOT)
     assert "Traceback" not in server.output + nurse.output
@@ -196,7 +196,7 @@ def test_nothing_is_left_running(start, serve) -> None:
     nurse.until("goto(place='ward a')")
     family = children_of(server.process.pid)
     assert family
-    server.signal(signal.SIGTERM)
+    server.kill(signal.SIGTERM)
     server.end()
     nurse.end()
     assert not any(alive(pid) for pid in family)

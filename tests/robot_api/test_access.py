@@ -63,6 +63,7 @@ def test_from_another_machine_the_token_is_needed() -> None:
 
 def test_tokens_differ_and_loopback_is_told_from_the_rest() -> None:
     assert new_token() != new_token()
+    assert all(new_token().isalnum() for _ in range(100)), "it is typed after --token"
     assert is_loopback("127.0.0.1") and is_loopback("::1") and is_loopback("localhost")
     assert not is_loopback("0.0.0.0") and not is_loopback("example.org")
 
