@@ -8,6 +8,7 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from grammar.language import languages
 from nl2robot.cli import main
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
@@ -24,12 +25,15 @@ PROGRAM = (
 class Nurse:
     """Somebody in conversation with a robot of the city hospital."""
 
-    def __init__(self, routines: Routines, world: str = "city-hospital") -> None:
+    def __init__(
+        self, routines: Routines, world: str = "city-hospital", language: str = "en"
+    ) -> None:
+        self.language = language
         self.knowledge = Knowledge(load_world(world), routines=routines)
         self.talk = Talk()
 
     def says(self, words: str):
-        return translate(words, self.knowledge, "en", talk=self.talk)
+        return translate(words, self.knowledge, self.language, talk=self.talk)
 
     def teaches(self, name: str, sentence: str):
         asked = self.says(f"when I say {name}, {sentence}")
@@ -255,6 +259,74 @@ def test_where_nothing_can_be_kept_it_says_so() -> None:
     refused = translate("when I say tea dance, wave", knowledge)
     assert (refused.status, refused.program) == ("rejected", None)
     assert "cannot keep" in refused.message
+
+
+# --- in every language
+
+STORIES = {
+    "en": {
+        "teach": "when I say tea dance, wave and turn around",
+        "yes": "yes, please",
+        "use": "do the tea dance, then go to the charger",
+        "list": "what routines do you know?",
+        "explain": "what does the tea dance do?",
+        "times": "do the tea dance every evening at nine",
+        "change": "change the tea dance to wave",
+        "no": "no",
+        "forget": "forget the tea dance",
+        "help": "what can I say?",
+        "place": "when I say pharmacy, wave",
+    },
+    "de": {
+        "teach": "wenn ich Tanztee sage, wink und dreh dich um",
+        "yes": "ja, bitte",
+        "use": "mach den Tanztee und fahr dann zum Ladegerät",
+        "list": "welche Routinen kennst du?",
+        "explain": "was macht der Tanztee?",
+        "times": "mach jeden Abend um neun den Tanztee",
+        "change": "ändere den Tanztee: wink",
+        "no": "nein",
+        "forget": "vergiss den Tanztee",
+        "help": "was kann ich sagen?",
+        "place": "wenn ich Apotheke sage, wink",
+    },
+    "fr": {
+        "teach": "quand je dis bal du soir, salue de la main et fais demi-tour",
+        "yes": "oui, s'il te plaît",
+        "use": "fais le bal du soir, puis va à la pharmacie",
+        "list": "quelles routines connais-tu ?",
+        "explain": "que fait le bal du soir ?",
+        "times": "fais le bal du soir tous les jours à neuf heures",
+        "change": "change le bal du soir : salue de la main",
+        "no": "non",
+        "forget": "oublie le bal du soir",
+        "help": "que puis-je dire ?",
+        "place": "quand je dis pharmacie, salue de la main",
+    },
+}
+
+
+@pytest.mark.parametrize("language", languages())
+def test_routines_are_taught_in_every_language(routines, language) -> None:
+    story = STORIES[language]
+    nurse = Nurse(routines, language=language)
+    assert nurse.says(story["help"]).request.kind == "help"
+    assert nurse.says(story["place"]).status == "rejected"
+    assert nurse.says(story["teach"]).status == "clarify"
+    assert nurse.says(story["yes"]).status == "ok"
+    [kept] = routines.known(language)
+    used = nurse.says(story["use"])
+    assert used.program.startswith('robot.gesture("wave")\nrobot.turn('), used.message
+    assert used.program.count("\n") == 3
+    assert kept.name in nurse.says(story["list"]).message
+    assert kept.sentence in nurse.says(story["explain"]).message
+    assert nurse.says(story["times"]).request.kind == "schedule"
+    assert nurse.says(story["change"]).status == "clarify"
+    assert nurse.says(story["no"]).status == "ok"
+    assert routines.known(language) == (kept,)
+    assert nurse.says(story["forget"]).status == "clarify"
+    nurse.says(story["yes"])
+    assert routines.known() == ()
 
 
 # --- on disk
