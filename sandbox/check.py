@@ -19,6 +19,7 @@ from robot_api.methods import METHODS
 from sandbox.interpreter import Unavailable, diagnose
 from sandbox.limits import MAX_PROGRAM
 from sandbox.sentences import UNAVAILABLE, near, problem, type_problem
+from sandbox.source import WRAPPERS, unix_newlines
 
 MODULES: Final = ("re", "math", "random")
 """What a program may import."""
@@ -44,6 +45,7 @@ class Finding:
 def check(program: str, stub: str) -> list[Finding]:
     """All findings, in the order of the lines. `stub` is `robot_api.stub.stub(...)` for the robot
     that is to run it. Never raises, whatever the program is."""
+    program = unix_newlines(program)
     first = syntax_finding(program)
     if first is not None:
         return [first]
@@ -171,7 +173,7 @@ class _Reader:
     def __init__(self, program: str, tree: ast.Module) -> None:
         self.lines = program.encode(errors="replace").split(b"\n")
         self.tree = tree
-        self.functions = _functions_that_call_the_robot(tree)
+        self.callers = _what_calls_the_robot(tree)
 
     def findings(self) -> Iterator[Finding]:
         called = {id(node.func) for node in ast.walk(self.tree) if isinstance(node, ast.Call)}
@@ -209,15 +211,15 @@ class _Reader:
         if kind in _UNSUPPORTED:
             message = f"Programs for a robot cannot use {_UNSUPPORTED[kind]}."
             yield self.finding(node, "unsupported", message)
+        if isinstance(node, ast.FunctionDef | ast.ClassDef) and node.decorator_list:
+            message = "There are no decorators here. Take the line with @ away."
+            yield self.finding(node.decorator_list[0], "unsupported", message)
         if isinstance(node, ast.ClassDef):
             if node.bases or node.keywords:
                 message = "A class cannot be based on another here. Write it out, or use functions."
                 yield self.finding(node, "unsupported", message)
             for inner in node.body:
-                if isinstance(inner, ast.FunctionDef) and inner.decorator_list:
-                    message = "Methods cannot have decorators here. Take the line with @ away."
-                    yield self.finding(inner.decorator_list[0], "unsupported", message)
-                elif isinstance(inner, ast.ClassDef):
+                if isinstance(inner, ast.ClassDef):
                     message = "A class cannot stand in a class here. Move it out."
                     yield self.finding(inner, "unsupported", message)
 
@@ -239,6 +241,11 @@ class _Reader:
             case ast.Name(id=name) | ast.Attribute(attr=name) if name.startswith("__"):
                 message = f"Names such as {name} belong to Python itself. Choose another way."
                 yield self.finding(node, "forbidden", message)
+            case ast.Constant(value=str(text)) if any(
+                "\ud800" <= sign <= "\udfff" for sign in text
+            ):
+                message = "This text holds half a sign. Write the whole sign, or take it out."
+                yield self.finding(node, "half-a-sign", message)
             case _:
                 pass
 
@@ -248,8 +255,8 @@ class _Reader:
         return f"There is no module {name} here. Only {', '.join(MODULES)} can be imported."
 
     def robot(self, node: ast.AST, called: set[int], spoken_to: set[int]) -> Iterator[Finding]:
-        if _binds_robot(node):
-            message = "The name robot belongs to the robot. Choose another name."
+        for name in {"robot", *WRAPPERS.values()}.intersection(_bound(node)):
+            message = f"The name {name} belongs to the robot. Choose another name."
             yield self.finding(node, "robot", message)
         match node:
             case ast.Attribute(value=ast.Name(id="robot"), attr=name) if id(node) not in called:
@@ -262,9 +269,10 @@ class _Reader:
                 if not self.is_attribute_of_robot(node):
                     message = "The robot can only be told something, as in robot.say(...)."
                     yield self.finding(node, "robot", f"{message} Write such a call here.")
-            case ast.Name(id=name, ctx=ast.Load()) if (
-                name in self.functions and id(node) not in called
+            case ast.Name(ctx=ast.Load()) | ast.Attribute(ctx=ast.Load()) if (
+                _name(node) in self.callers and id(node) not in called
             ):
+                name = _name(node).lstrip(".")
                 message = f"{name} calls the robot, so it has to be called where it stands."
                 yield self.finding(node, "callback", f"{message} Write {name}(...), or a loop.")
             case _:
@@ -299,10 +307,7 @@ class _Reader:
     def calls_the_robot(self, node: ast.AST) -> bool:
         return any(
             isinstance(inner, ast.Call)
-            and (
-                _robot_method(inner.func) is not None
-                or (isinstance(inner.func, ast.Name) and inner.func.id in self.functions)
-            )
+            and (_robot_method(inner.func) is not None or _name(inner.func) in self.callers)
             for inner in ast.walk(node)
         )
 
@@ -332,7 +337,7 @@ class _Reader:
             isinstance(inner, ast.Call)
             and (
                 ((name := _robot_method(inner.func)) is not None and _slow(name))
-                or (isinstance(inner.func, ast.Name) and inner.func.id in self.functions)
+                or _name(inner.func) in self.callers
             )
             for inner in ast.walk(node)
         )
@@ -353,18 +358,27 @@ def _robot_method(function: ast.expr) -> str | None:
             return None
 
 
-def _functions_that_call_the_robot(tree: ast.Module) -> set[str]:
-    """The names of functions with a robot call in them, or in a function that they call."""
+def _what_calls_the_robot(tree: ast.Module) -> set[str]:
+    """The functions, classes and methods (".name") with a robot call in them, or in what they
+    call."""
+    names: dict[int, str] = {}
     calls: dict[str, set[str]] = {}
     found: set[str] = set()
     for node in ast.walk(tree):
+        if isinstance(node, ast.ClassDef):
+            # Making an object calls its __init__.
+            names |= {
+                id(inner): node.name if inner.name == "__init__" else f".{inner.name}"
+                for inner in node.body
+                if isinstance(inner, ast.FunctionDef)
+            }
         if not isinstance(node, ast.FunctionDef):
             continue
-        inner = [each.func for each in ast.walk(node) if isinstance(each, ast.Call)]
-        if any(_robot_method(each) is not None for each in inner):
-            found.add(node.name)
-        called = {each.id for each in inner if isinstance(each, ast.Name)}
-        calls[node.name] = calls.get(node.name, set()) | called
+        name = names.get(id(node), node.name)
+        inside = [each.func for each in ast.walk(node) if isinstance(each, ast.Call)]
+        if any(_robot_method(each) is not None for each in inside):
+            found.add(name)
+        calls[name] = calls.get(name, set()) | {_name(each) for each in inside}
     grown = True
     while grown:
         more = {name for name, called in calls.items() if called & found} - found
@@ -373,30 +387,40 @@ def _functions_that_call_the_robot(tree: ast.Module) -> set[str]:
     return found
 
 
-def _binds_robot(node: ast.AST) -> bool:
-    """Whether the node gives the name `robot` another meaning."""
-    match node:
-        case ast.Name(id="robot", ctx=ast.Store() | ast.Del()):
-            return True
-        case (
-            ast.arg(arg="robot")
-            | ast.FunctionDef(name="robot")
-            | ast.AsyncFunctionDef(name="robot")
-            | ast.ClassDef(name="robot")
-            | ast.ExceptHandler(name="robot")
-            | ast.MatchAs(name="robot")
-            | ast.MatchStar(name="robot")
-            | ast.MatchMapping(rest="robot")
-        ):
-            return True
-        case ast.alias(name=name, asname=asname):
-            return (asname or name) == "robot"
-        case ast.Attribute(value=ast.Name(id="robot"), ctx=ast.Store() | ast.Del()):
-            return True
-        case ast.Global(names=names) | ast.Nonlocal(names=names):
-            return "robot" in names
+def _name(function: ast.AST) -> str:
+    """As `_what_calls_the_robot` names it; "" for what has no name."""
+    match function:
+        case ast.Name(id=name):
+            return name
+        case ast.Attribute(attr=name):
+            return f".{name}"
         case _:
-            return False
+            return ""
+
+
+def _bound(node: ast.AST) -> list[str | None]:
+    """The names to which the node gives another meaning."""
+    match node:
+        case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
+            return [name]
+        case (
+            ast.FunctionDef(name=name)
+            | ast.AsyncFunctionDef(name=name)
+            | ast.ClassDef(name=name)
+            | ast.ExceptHandler(name=name)
+            | ast.MatchAs(name=name)
+            | ast.MatchStar(name=name)
+            | ast.MatchMapping(rest=name)
+        ):
+            return [name]
+        case ast.alias(name=name, asname=other):
+            return [other or name]
+        case ast.Attribute(value=ast.Name(id="robot"), ctx=ast.Store() | ast.Del()):
+            return ["robot"]
+        case ast.Global(names=names) | ast.Nonlocal(names=names):
+            return [*names]
+        case _:
+            return []
 
 
 def _leaves(loop: ast.While) -> bool:

@@ -13,14 +13,12 @@ All of it belongs to one thread but `kill`, which any thread may call at any tim
 
 from __future__ import annotations
 
-import ast
 import bisect
 import json
 import os
 import re
 import signal
 import threading
-import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import TracebackType
@@ -31,6 +29,7 @@ import pydantic_monty as monty
 
 from robot_api.values import Clock, Location
 from sandbox.limits import Limits
+from sandbox.source import unix_newlines, with_values
 
 # --- what comes out ------------------------------------------------------------------------------
 
@@ -106,7 +105,7 @@ class Diagnostic:
 # --- values that cross ---------------------------------------------------------------------------
 
 # What robot methods return beyond plain data. Defined inside, since only objects made there have
-# a `str()` of their own; `_with_values` puts the two functions around the calls.
+# a `str()` of their own; `source.with_values` puts the two functions around the calls.
 _PRELUDE: Final = """
 from dataclasses import dataclass
 
@@ -136,48 +135,6 @@ def _robot_clock(given, make=Clock):
     return make(given.time, given.weekday, given.date)
 """
 
-_VALUE_CALL: Final = re.compile(r"\brobot\s*\.\s*(location|clock)\s*\(\s*\)")
-
-
-class _Unwrap(ast.NodeTransformer):
-    """Takes the functions of the prelude off again."""
-
-    def visit_Call(self, node: ast.Call) -> ast.AST:
-        if isinstance(node.func, ast.Name) and node.func.id in ("_robot_location", "_robot_clock"):
-            return self.visit(node.args[0]) if len(node.args) == 1 else node
-        self.generic_visit(node)
-        return node
-
-
-def _with_values(program: str) -> str:
-    """The program with `robot.location()` as `_robot_location(robot.location())`, on the same line.
-
-    Occurrences within strings are no calls: a change is kept only if taking it off again gives the
-    same program.
-    """
-    found = list(_VALUE_CALL.finditer(program))
-    if not found:
-        return program
-    wrapped = _VALUE_CALL.sub(r"_robot_\1(\g<0>)", program)
-    if _same(program, wrapped):
-        return wrapped
-    changed, shift = program, 0
-    for match in found:
-        start, end = match.start() + shift, match.end() + shift
-        attempt = f"{changed[:start]}_robot_{match[1]}({match[0]}){changed[end:]}"
-        if _same(program, attempt):
-            shift += len(attempt) - len(changed)
-            changed = attempt
-    return changed
-
-
-def _same(program: str, wrapped: str) -> bool:
-    return _shape(ast.parse(program)) == _shape(_Unwrap().visit(ast.parse(wrapped)))
-
-
-def _shape(tree: ast.AST) -> str:
-    return ast.dump(tree, annotate_fields=False)
-
 
 class _Robot:
     """Stands for the robot inside; its methods are answered here, none is called."""
@@ -197,7 +154,7 @@ def _inward(value: Any) -> Any:
 
 def _outward(value: Any, depth: int = 20) -> Any:
     """An argument as plain data, a `Location` or a `Clock`. Raises `ValueError` for anything else:
-    a function, an object of the program's own, a list within itself."""
+    a function, an object of the program's own, a list within itself, a number beyond 64 bits."""
     if depth == 0:
         raise ValueError("a list within a list within a list, without end")
     match value:
@@ -205,6 +162,8 @@ def _outward(value: Any, depth: int = 20) -> Any:
             return value
         case int() if abs(value) < 2**63:
             return value
+        case int():
+            raise ValueError("a number that is too large")
         case float():
             return value
         case list() | tuple() | set() | frozenset():
@@ -304,9 +263,7 @@ class Interpreter:
 
     def start(self, program: str) -> Event:
         """Run the program to its first event. Raises as `answer` does, and `SyntaxError`."""
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", SyntaxWarning)
-            source = _with_values(program)
+        source = with_values(unix_newlines(program))
         encoded = source.encode()
         self._line_starts = [0, *(place + 1 for place, byte in enumerate(encoded) if byte == 10)]
         session = self._session

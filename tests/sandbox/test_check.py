@@ -306,3 +306,48 @@ def test_what_the_grammar_writes_keeps_the_rules(plan: Any) -> None:
     ours = {"syntax", "unsupported", "import", "robot", "callback", "generator", "busy-loop"}
     ours |= {"forbidden", "too-long"}
     assert [each for each in check(write_program(plan), STUB) if each.code in ours] == []
+
+
+@pytest.mark.parametrize(
+    ("program", "code"),
+    [
+        # Each makes a robot call that cannot be seen where it is made.
+        ("def now(f):\n    f()\n\n\n@now\ndef g():\n    robot.say('x')", "unsupported"),
+        ("def _robot_location(x):\n    robot.stop()\n\n\nrobot.location()", "robot"),
+        ("_robot_clock = print", "robot"),
+        (
+            "class Nurse:\n    def there(self):\n        return robot.sees('nurse')\n\n\n"
+            "nurse = Nurse()\nany(nurse.there() for i in range(3))",
+            "generator",
+        ),
+        (
+            "class Nurse:\n    def there(self):\n        return robot.sees('nurse')\n\n\n"
+            "list(map(Nurse().there, [1]))",
+            "callback",
+        ),
+        (
+            "class Nurse:\n    def __init__(self):\n        robot.say('x')\n\n\n"
+            "max([1], key=lambda one: Nurse())",
+            "callback",
+        ),
+    ],
+)
+def test_robot_calls_that_cannot_be_seen(program: str, code: str) -> None:
+    assert code in [code for _, _, code in found(program)]
+
+
+def test_methods_of_ones_own_may_call_the_robot() -> None:
+    program = (
+        "class Tour:\n    def show(self, place):\n        robot.goto(place)\n\n\n"
+        "tour = Tour()\nfor place in robot.places():\n    tour.show(place)\n"
+    )
+    assert found(program) == []
+
+
+def test_lines_are_counted_as_python_counts_them() -> None:
+    assert found("x = 1\r__y__") == [(2, "error", "forbidden")]
+
+
+def test_half_a_sign_cannot_be_spoken() -> None:
+    assert found("robot.say('\\ud83d')") == [(1, "error", "half-a-sign")]
+    assert found("robot.say('\\U0001f44d')") == []

@@ -61,6 +61,17 @@ REACHING_OUT = {
     "asking at the terminal": "robot.say(input('password: '))",
     "pickle": "import pickle\npickle.loads(b\"cos\\nsystem\\n(S'touch {file}.new'\\ntR.\")",
     "threads": "import threading\nthreading.Thread(target=print).start()",
+    "super": "class A:\n    def f(self):\n        return super()\nrobot.say(str(A().f()))",
+    "a place's class": "robot.say(str(robot.location().__class__.__mro__))",
+    "a place's fields": "robot.say(robot.location().__dict__['notes'])",
+    "an error's origin": (
+        "try:\n    robot.goto('moon')\nexcept Exception as e:\n"
+        "    robot.say(str(e.__context__.__traceback__))"
+    ),
+    "a module's own imports": "import random\nrandom._os.system('touch {file}.new')",
+    "a module's loader": "import math\nrobot.say(str(math.__loader__.get_data('{file}')))",
+    "a module of a module": "import re._compiler\nrobot.say(str(re._compiler))",
+    "letters that look wide": "ｏpen('{file}', 'w')",
     "another robot": "robot = Robot('127.0.0.1:9090')\nrobot.say('hidden')",
 }
 
@@ -105,6 +116,18 @@ OVERLOAD = {
     "sleeping in small steps": "import time\nwhile True:\n    time.sleep(0)",
     "copies": "x = [1]\nwhile True:\n    x = x + x",
     "a dictionary of texts": "x = {{}}\ni = 0\nwhile True:\n    x[str(i)] = i\n    i += 1",
+    "a nested pattern": "import re\nre.compile('(?:(?:a{{1000}}){{1000}}){{1000}}')",
+    "factorials": "import math\nmath.factorial(10 ** 8)",
+    "combinations": "import math\nmath.comb(10 ** 7, 5 * 10 ** 6)",
+    "powers of a huge number": "pow(3, 10 ** 100000, 10 ** 100000)",
+    "a nested width": "w = 10 ** 10\nf'{{1:{{w}}}}'",
+    "a filled text": "'x'.zfill(10 ** 11)",
+    "a text replaced by long ones": "('a' * 10 ** 6).replace('a', 'b' * 10 ** 6)",
+    "a matrix": "[[0] * 10 ** 6 for row in range(10 ** 6)]",
+    "a deep tuple": "x = ()\nfor i in range(10 ** 5):\n    x = (x,)\nhash(x)",
+    "quoted calls": "x = 'robot.location()'\n" * 2500,
+    "quoted calls in one line": "x = [" + "'robot.clock()', " * 3500 + "]",
+    "calls in a text": "x = f'" + "{{robot.clock()}}" * 3000 + "'",
     "sorting": "while True:\n    sorted(range(100000))",
 }
 

@@ -172,6 +172,7 @@ def test_an_error_that_is_not_caught_ends_the_program_at_its_line() -> None:
         ("int(robot.ask('How many?'))", 1, "ValueError", "'yes' is no number"),
         ("robot.say('x'", 1, "syntax", "never closed"),
         ("robot.do('sit', how=len)", 1, "TypeError", "no text, number or list"),
+        ("robot.move(10 ** 30)", 1, "TypeError", "a number that is too large"),
         ("raise ValueError('No coffee left')", 1, "ValueError", "No coffee left."),
         ("def f():\n    f()\nf()", 2, "RecursionError", "without end"),
         ("for x in robot.location:\n    pass", 1, "AttributeError", "location"),
