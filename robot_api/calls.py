@@ -216,7 +216,7 @@ class Calls(ABC):
         result: int = self._call("battery")
         return result
 
-    def do(self, skill: str, **parameters: Any) -> Any:
+    def do(self, /, skill: str, **parameters: Any) -> Any:
         """Use a skill of this robot's own, listed in its capabilities."""
         result: Any = self._call("do", skill=skill, **parameters)
         return result

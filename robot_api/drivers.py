@@ -307,6 +307,7 @@ class EmulatedDriver(ComposedDriver):
         results: Mapping[str, Any],
         skills: Mapping[str, str],
         without: Collection[str],
+        units: str,
         log: Callable[[str], None] | None,
     ) -> None:
         self.emulation = emulation
@@ -326,7 +327,12 @@ class EmulatedDriver(ComposedDriver):
         if Face.name in without and screen is not None:
             parts.append(ScreenFace(screen, emulation.hub))
         super().__init__(
-            name="The emulated robot", kind="emulator", parts=parts, hub=emulation.hub, book=book
+            name="The emulated robot",
+            kind="emulator",
+            parts=parts,
+            hub=emulation.hub,
+            book=book,
+            units=units,
         )
 
     def _do(self, part: Capability, method: str, arguments: dict[str, Any], stop: StopFlag) -> Any:
@@ -349,6 +355,7 @@ def emulated(
     contacts: Sequence[str] | None = None,
     skills: Mapping[str, str] | None = None,
     without: Collection[str] = (),
+    units: str = "m",
     speed: float | None = None,
     start: datetime | None = None,
     log: Callable[[str], None] | None = None,
@@ -365,12 +372,13 @@ def emulated(
     - `places`: names with their kinds; without it, any place exists. `questions`: predefined
       questions with their answers. `contacts`, `skills` (with a line about each).
     - `without`: capabilities that it lacks, such as "manipulation".
+    - `units`: "m" or "cm", what the paper's message style counts in (`robot_api.messages`).
     - `speed`: emulated seconds pass at this multiple of real time.
     - `start`: its date and time at the start. `log`: gets each line of the log.
     """
     emulation = Emulation(answers, places, questions, contacts, speed, start)
     known = skills if skills is not None else {"sit": "sit down", "dance": "dance a little"}
-    return EmulatedDriver(emulation, results or {}, known, without, log)
+    return EmulatedDriver(emulation, results or {}, known, without, units, log)
 
 
 def _emulated_parts(

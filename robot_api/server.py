@@ -49,9 +49,10 @@ NOTICE_SIGNALS: Final = 0.1
 may hand it to another thread."""
 
 _log = logging.getLogger("robot_api.server")
-# It says so of every connection that is refused with a sentence.
+# It says so, partly with a traceback, of every stranger who is refused or talks nonsense.
+_NO_NEWS: Final = ("without completing handshake", "Invalid UTF-8", "Invalid HTTP request")
 logging.getLogger("uvicorn.error").addFilter(
-    lambda record: "without completing handshake" not in record.getMessage()
+    lambda record: not any(words in record.getMessage() for words in _NO_NEWS)
 )
 
 

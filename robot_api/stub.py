@@ -128,8 +128,11 @@ def _definition(method: Method) -> Iterator[str]:
 
 
 def _parameters(method: Method, form: Iterable[Parameter]) -> str:
-    written = ["self", *(_parameter(parameter) for parameter in form)]
-    return ", ".join([*written, "**parameters: Any"] if method.extra else written)
+    written = [_parameter(parameter) for parameter in form]
+    # A skill's parameter may be called anything, even self.
+    return ", ".join(
+        ["self", "/", *written, "**parameters: Any"] if method.extra else ["self", *written]
+    )
 
 
 def _parameter(parameter: Parameter) -> str:

@@ -89,6 +89,7 @@ def test_a_morning_round() -> None:
         robot.goto(12.0, 3.5)
         robot.goto(x=1, y=2, theta=90)
         robot.do("sit", slowly=True)
+        robot.do("dance", self="alone", method="waltz")
         assert place == "pharmacy"
         assert robot.location() == Location(1.0, 2.0, 90.0)
         assert robot.battery() == 80

@@ -9,12 +9,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import pytest
 
 from robot_api import Server
 from robot_api.driver import Driver
-from robot_api.drivers import EmulatedDriver, emulated, simulated
+from robot_api.drivers import emulated, simulated
 from robot_api.errors import Blocked, LostConnection
 from robot_api.messages import Robot
 from robot_api.methods import METHODS
@@ -38,12 +37,6 @@ def times(number: int) -> Callable[[], bool]:
     return lambda: next(rounds) < number
 
 
-def in_centimetres(driver: EmulatedDriver) -> EmulatedDriver:
-    capabilities = msgspec.structs.replace(driver.capabilities(), units="cm")
-    driver.capabilities = lambda: capabilities  # type: ignore[method-assign]
-    return driver
-
-
 @contextmanager
 def connected(driver: Driver) -> Iterator[Robot]:
     with Server(driver, port=0) as server:
@@ -55,7 +48,7 @@ def connected(driver: Driver) -> Iterator[Robot]:
 
 def test_the_papers_listing_drives_by_the_answers() -> None:
     answers = ["to the intensive care unit", None, "the pharmacy please"]
-    driver = in_centimetres(emulated(answers=answers))
+    driver = emulated(answers=answers, units="cm")
     with Server(driver, port=0) as server:
         listing()(server.address, times(3))
     told = [(call.method, call.arguments) for call in driver.calls]
@@ -97,7 +90,7 @@ def test_the_papers_listing_drives_through_the_simulated_lab() -> None:
 
 
 def test_a_location_comes_back_in_the_unit_it_was_given_in() -> None:
-    with connected(in_centimetres(emulated())) as robot:
+    with connected(emulated(units="cm")) as robot:
         robot.send_message(robot.localize(-120, -490, 2.6))
         location = robot.send_message(robot.getLocation())["data"]["location"]
         assert (location["x"], location["y"]) == pytest.approx((-120, -490))

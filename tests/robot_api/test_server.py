@@ -389,7 +389,9 @@ def test_nonsense_is_answered_and_the_connection_lives(server: Server) -> None:
 
 
 @pytest.mark.parametrize("content", [b"\xff\xfe", b"x" * 300_000], ids=["not UTF-8", "too long"])
-def test_what_no_frame_may_hold_ends_that_connection_only(content: bytes, server: Server) -> None:
+def test_what_no_frame_may_hold_ends_that_connection_only(
+    content: bytes, server: Server, caplog: pytest.LogCaptureFixture
+) -> None:
     wire = Wire(server.address)
     try:
         wire.socket.send(content, websocket.ABNF.OPCODE_TEXT)
@@ -399,6 +401,7 @@ def test_what_no_frame_may_hold_ends_that_connection_only(content: bytes, server
     assert opcode == websocket.ABNF.OPCODE_CLOSE
     with Robot(server.address) as robot:
         assert robot.battery() == 100
+    assert not caplog.records, "whoever runs the server would see a traceback"
 
 
 def test_a_fault_of_the_driver_is_a_sentence_not_a_traceback(driver: EmulatedDriver) -> None:
