@@ -33,7 +33,11 @@ class Ear:
         """What a recording says: of its readings the best fitting one that is understood, for
         people say what makes sense. Raises `AudioError`."""
         heard = self._recogniser.recognise(read(recording), self._phrases)
-        return choose(heard, lambda text: self._translate(text).program is not None)
+        return choose(heard, self._is_understood)
+
+    def _is_understood(self, text: str) -> bool:
+        translation = self._translate(text)
+        return translation.program is not None or translation.request is not None
 
     def deaf_to(self) -> list[Missing]:
         """The words in names of this world that the model can never hear, each with a way round."""
