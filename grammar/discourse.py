@@ -13,7 +13,7 @@ from typing import Any, Final
 from grammar.chart import Leaf, Node
 from grammar.language import Language
 from grammar.lexicon import Lexicon, Name
-from grammar.naming import naming
+from grammar.naming import joined_up, naming
 from grammar.plan import Ask, Call, Number, Recall, Remember, Sentence, Step, Text, Value
 from grammar.tokens import Token
 from robot_api.methods import METHODS
@@ -131,6 +131,8 @@ class Discourse:
     """Several people spoken of together: "both", "each of them"."""
     report: Any = None
     """What was told last (`grammar.meanings.reports.Report`), so that it can be told to others."""
+    told: Step | None = None
+    """The last step, if it has told the speaker all there is to tell."""
     report_step: Step | None = None
     """The step that tells it."""
     variables: set[str] = field(default_factory=set)
@@ -276,9 +278,13 @@ class Discourse:
                     text = ""
                 parts += value.parts if isinstance(value, Sentence) else (value,)
         if not parts:
-            return Text(capital(text))
+            return Text(capital(joined_up(text, self.language)))
         if text:
             parts.append(Text(text))
+        parts = [
+            Text(joined_up(each.value, self.language)) if isinstance(each, Text) else each
+            for each in parts
+        ]
         return Sentence(tuple(parts))
 
     def say(self, phrase: str, /, **values: Value | str) -> Call:

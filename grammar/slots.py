@@ -16,7 +16,7 @@ from grammar.chart import CORRECTION, Corrected, Match, Slot
 from grammar.language import Language
 from grammar.lexicon import Lexicon, Name
 from grammar.tokens import COLON, COMMA, STOP, Token
-from grammar.wordforms import plural
+from grammar.wordforms import kind_words, plural
 
 FREE_WORD: Final = 1.0
 """Cost of a word that only an open slot understands."""
@@ -89,9 +89,7 @@ class Names:
         for place in self.lexicon.places:
             self._add_name("place", place)
         for kind in self.lexicon.place_kinds:
-            entry = self.language.kinds.get(kind, {})
-            one = entry.get("one", [kind])
-            many = entry.get("many") or [plural(word, self.language) for word in one]
+            one, many = kind_words(kind, self.language)
             for word in one:
                 self._add("kind", word, kind)
             for word in many:
@@ -104,6 +102,8 @@ class Names:
         for form in dict.fromkeys((words, bare)):
             yield form
             if len(form) > 2 and form[1] in self.language.speech.get("turned_verbs", ()):
+                for article in articles:
+                    yield (*form[:2], article, *form[2:])
                 yield (form[0], *form[2:], form[1])
 
     def _add_name(self, slot: str, name: Name) -> None:
@@ -317,10 +317,12 @@ class Slots:
             if token.kind == "mark":
                 if position == at:
                     return []
+                if self._goes_on(position + 1):
+                    break
                 if token.norm == STOP:
                     cost += 4.0
                 continue
-            if position > at and self._begins_command(position):
+            if position > at and (self._begins_command(position) or self._condition(position)):
                 cost += SWALLOWED_COMMAND
             if token.norm in self._fillers:  # part of the text only if more text follows
                 matches.append((position + 1, cost + 0.3, None))
@@ -328,6 +330,17 @@ class Slots:
             cost += 0.0 if token.kind == "quote" else FREE_WORD
             matches.append((position + 1, cost, None))
         return matches
+
+    def _goes_on(self, at: int) -> bool:
+        """Whether after a comma or full stop something else is said to be done: ", then"."""
+        ends = self.language.speech.get("text_ends", ())
+        return at < len(self.tokens) and self.tokens[at].norm in ends
+
+    def _condition(self, at: int) -> bool:
+        """Whether a condition of its own begins: "and if so, ..."."""
+        begins = self.language.speech.get("condition_words", ())
+        joins = self.language.speech.get("joins", ())
+        return self.tokens[at].norm in begins and self.tokens[at - 1].norm in joins
 
     def _begins_command(self, at: int) -> bool:
         if self.tokens[at].norm not in self._command_words:
@@ -344,6 +357,8 @@ class Slots:
                 continue  # "glass of water"
             if token.kind not in ("word", "quote") or token.norm in self.language.closed:
                 break
+            if token.value is not None and position == at:
+                break  # a number is no noun
             if self._noun_over(at, position):
                 break
             length = position + 1 - at

@@ -17,6 +17,13 @@ def singular(noun: str, language: Language) -> str:
     return _changed(noun, language, _singular)
 
 
+def kind_words(kind: str, language: Language) -> tuple[list[str], list[str]]:
+    """The words for a kind of place: for one, and for several."""
+    entry = language.kinds.get(kind, {})
+    one = entry.get("one", [kind])
+    return one, entry.get("many") or [plural(word, language) for word in one]
+
+
 def _changed(noun: str, language: Language, change: Callable[[str, Language], str]) -> str:
     """A noun phrase with the words changed that have a number: the last one, or, where the
     language says what ends them ("bouteilles d'eau"), all before that."""

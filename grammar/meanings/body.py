@@ -18,11 +18,18 @@ def show(d: Discourse, node: Node) -> Steps:
     quote = node.parts.get("quote")
     part = quote or node.parts.get("text")
     if part is None:
-        name = d.answer or d.code
-        if name is None:
-            raise NotUnderstood(d.language.phrase("show_what"))
-        return [Call("show", {"text": Recall(name)})]
+        return [Call("show", {"text": Recall(found_out(d))})]
     return [Call("show", {"text": Text(str(d.build(part)))})]
+
+
+def found_out(d: Discourse) -> str:
+    """The variable with what was found out last; what would have been said of it is not."""
+    from grammar.meanings.reports import kept
+
+    name = d.answer or d.code or kept(d)
+    if name is None:
+        raise NotUnderstood(d.language.phrase("show_what"))
+    return name
 
 
 @meaning("touch")

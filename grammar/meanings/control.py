@@ -27,6 +27,7 @@ from grammar.plan import (
     Not,
     Number,
     Recall,
+    Remember,
     Repeat,
     RepeatUntil,
     Step,
@@ -86,7 +87,7 @@ def guard_finds(d: Discourse, done: Steps) -> Steps:
                 later.method in ("goto", "find", "dock") or later.method in NEEDS_IT
             ):
                 break
-            if not isinstance(later, Call):
+            if not isinstance(later, Call | Remember):
                 break
             body.append(later)
         if body:

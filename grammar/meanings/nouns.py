@@ -33,6 +33,8 @@ def place_of_kind(d: Discourse, node: Node) -> Value:
     """ "the office": the only one there is, else the question which."""
     kind = d.get(node, "kind")
     places = d.lexicon.place_kinds[kind]
+    if isinstance(d.place, Text) and any(each.name == d.place.value for each in places):
+        return d.place  # "go to the bathroom and count the people in the room"
     if len(places) > 1:
         raise d.which(node.start, node.end, tuple(place.name for place in places))
     d.place = Text(places[0].name)
@@ -106,6 +108,14 @@ def where(d: Discourse, node: Node) -> Where:
     if place is None and furniture:
         place = home_of(d, furniture)
     return Where(place, furniture)
+
+
+@meaning("where_it")
+def where_it(d: Discourse, node: Node) -> Where:
+    """ "go to the shelf and put the cup on it"."""
+    if d.at is None and d.at_furniture is None:
+        raise NotUnderstood(d.language.phrase("where_is_there"))
+    return Where(d.at, d.at_furniture)
 
 
 @meaning("where_is")
@@ -220,7 +230,8 @@ def sought(d: Discourse, thing: Thing) -> Value:
     if thing.furniture and isinstance(thing.value, Text) and not thing.person:
         on = d.language.phrase("on_furniture", furniture=thing.furniture)
         return Text(f"{thing.value.value} {on}")
-    if thing.furniture and isinstance(thing.value, Text) and not thing.known and not thing.place:
+    nowhere = thing.place is None or (thing.furniture and home_of(d, thing.furniture) is None)
+    if thing.furniture and isinstance(thing.value, Text) and not thing.known and nowhere:
         return Text(
             f"{thing.value.value} {d.language.phrase('at_furniture', furniture=thing.furniture)}"
         )
@@ -424,6 +435,12 @@ def number_value(value: Any) -> Number:
     result = as_value(value)
     assert isinstance(result, Number)
     return result
+
+
+@meaning("words")
+def words(d: Discourse, node: Node) -> str:
+    """The words themselves."""
+    return d.words(node.start, node.end)
 
 
 @meaning("fixed")

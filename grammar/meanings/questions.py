@@ -17,6 +17,8 @@ from grammar.tokens import COLON, COMMA
 from grammar.wordorder import direct_clause, parted
 
 MOST_OPTIONS: Final = 20
+LONGEST_OFFERED: Final = 3
+"""Words of a thing that somebody is asked about."""
 
 
 @meaning("ask")
@@ -47,6 +49,7 @@ def ask(d: Discourse, node: Node) -> Steps:
         if len(d.lexicon.places) <= MOST_OPTIONS:
             arguments["options"] = Ask("places")
         d.place = Recall(name)
+    offered(d, question, options, name)
     if person is not None and person.known:
         arguments["person"] = person.value
     if person is not None and person.count is not None:
@@ -66,6 +69,21 @@ def ask(d: Discourse, node: Node) -> Steps:
     known = person.value if person is not None and person.known else None
     who_else = d.place if d.in_loop and isinstance(d.place, Recall) and d.place == d.at else None
     return [*steps, asked(d, Call("ask", arguments, save_as=name), options, known or who_else)]
+
+
+def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -> None:
+    """What was asked about is "it" afterwards: a wheelchair that somebody may need, or whichever
+    of tea and coffee they chose."""
+    rest = question.parts.get("rest")
+    if "verb" not in question.parts or rest is None:
+        return
+    if len(options) > 1 and not question.production.fixed.get("where"):
+        yes_no = options == (d.language.phrase("yes"), d.language.phrase("no"))
+        start, end = _without_little_words(d, rest.start, rest.end)
+        if not yes_no and d.place != Recall(name):
+            d.thing, d.thing_last = Thing(Recall(name)), False
+        elif yes_no and 0 < end - start <= LONGEST_OFFERED:
+            d.thing, d.thing_last = Thing(Text(" ".join(d.norms(start, end)))), False
 
 
 def asked(d: Discourse, call: Call, options: tuple[str, ...], who: Value | None) -> Call:

@@ -64,8 +64,16 @@ class Report:
 def report(d: Discourse, node: Node) -> Steps:
     if node.production.fixed.get("joke"):
         return told(d, joke(d), None)
-    found: Report | Steps = d.get(node, "info")
     person: Thing | None = d.get(node, "person_ref")
+    steps = told_of(d, node, "info", person)
+    if "second" in node.parts:
+        steps += told_of(d, node, "second", person)
+    return steps
+
+
+def told_of(d: Discourse, node: Node, part: str, person: Thing | None) -> Steps:
+    """Find out one thing and tell it."""
+    found: Report | Steps = d.get(node, part)
     if isinstance(found, list):
         return speak_to(d, person, found)
     asked_by_me = person is None or is_me(person)
@@ -290,6 +298,20 @@ def where_found(d: Discourse, node: Node) -> Steps:
     return [If(Holds(Ask("find", arguments)), (found,), (not_found(d, thing),))]
 
 
+def kept(d: Discourse) -> str | None:
+    """The variable with what the last report told; the report itself is dropped."""
+    found: Report | None = d.report
+    at = next((at for at, step in enumerate(d.done) if step is d.report_step), None)
+    if found is None or found.value is None or at is None:
+        return None
+    if isinstance(found.value, Recall):
+        del d.done[at]
+        return found.value.name
+    name = d.variable(found.name)
+    d.done[at] = Remember(name, found.value)
+    return name
+
+
 def known_words(d: Discourse) -> Steps:
     """Say the last answer, those of all who were asked, or what the last code says."""
     if d.answer is not None:
@@ -340,6 +362,8 @@ def tell_me_that(d: Discourse, node: Node) -> Steps:
 
 def tell_speaker(d: Discourse) -> Steps:
     last = d.done[-1] if d.done else None
+    if last is not None and last is d.told:
+        return []
     if d.report is not None and d.report_step is last and d.at is not None:
         start = d.start()
         if d.at == start:
@@ -347,6 +371,16 @@ def tell_speaker(d: Discourse) -> Steps:
         told_there = retold(d, None)
         d.went(start)
         return [Call("goto", {"place": start}), *told_there]
+    if d.answer is None and d.code is None and d.thing is not None:
+        if not (isinstance(last, Call) and last.method == "find"):
+            raise NotUnderstood(d.language.phrase("say_what"))
+        # "find the smallest cup and tell me what it is"
+        what = Ask("describe", {"thing": sought(d, d.thing)})
+        name = d.variable("description")
+        start = d.start()
+        d.went(start)
+        saying = Call("say", {"text": Recall(name)})
+        return [Remember(name, what), Call("goto", {"place": start}), saying]
     if d.answer is not None or d.code is not None:
         words = known_words(d)
         start = d.start()

@@ -55,6 +55,7 @@ def brought_back(d: Discourse, node: Node, before: Steps, told: Steps) -> Steps:
         return [*before, *speak_to(d, person, told)]
     start = d.start()
     d.went(start)
+    d.told = told[-1]
     return [*before, Call("goto", {"place": start}), *told]
 
 

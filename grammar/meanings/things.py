@@ -95,6 +95,15 @@ def bring(d: Discourse, node: Node) -> Steps:
     return deliver(d, thing, person, d.get(node, "where"))
 
 
+@meaning("bring_too")
+def bring_too(d: Discourse, node: Node) -> Steps:
+    """ "take the cup to Alice and the blanket to Bob": the second, too."""
+    last = d.done[-1] if d.done else None
+    if not (isinstance(last, Call) and last.method in ("give", "put")):
+        raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
+    return bring(d, node)
+
+
 @meaning("bring_each")
 def bring_each(d: Discourse, node: Node) -> Steps:
     """ "bring a blanket to every ward": one after the other."""
