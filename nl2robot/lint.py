@@ -10,16 +10,16 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Literal
 
 import msgspec
 
-from grammar.language import Language, load_language, spoken_name
-from grammar.lexicon import EMPTY, Lexicon
-from grammar.naming import place_called
+from grammar.language import Language, load_language
+from grammar.lexicon import EMPTY, Lexicon, Name
 from grammar.plan import Text
+from grammar.samples import samples
 from grammar.tidy import nodes
 from grammar.understand import understand
 from nl2robot.knowledge import Knowledge
@@ -34,8 +34,8 @@ LONG: Final = 8
 """Letters of words in which two slips are easily overheard."""
 ALIKE: Final = 60
 """How much of the letters two words of the same sound must share, in percent."""
-SLOTS: Final = {"places": "place", "people": "person", "objects": "object"}
-"""The slot of the help's examples for the entries of a world."""
+EXAMPLES: Final = ("places", "people", "objects")
+"""Sections of a world of which the help's examples speak."""
 
 
 class Finding(msgspec.Struct, frozen=True):
@@ -144,7 +144,9 @@ class _Linter:
         self.names = list(dict.fromkeys(self._names()))
 
     def _names(self) -> Iterator[Called]:
-        """Every name as it is said in this language."""
+        """Every name as it is said in this language: not the world's own name where those who
+        speak the language have another."""
+        foreign = self.language.speech.get("aliases_first", False)
         for section, entries in (
             ("places", self.lexicon.places),
             ("people", self.lexicon.people),
@@ -152,7 +154,8 @@ class _Linter:
             ("furniture", self.lexicon.furniture),
         ):
             for entry in entries:
-                for text in (entry.name, *entry.aliases):
+                own = () if foreign and entry.aliases else (entry.name,)
+                for text in (*own, *entry.aliases):
                     yield Called(section, entry.name, text)
         for contact in self.lexicon.contacts:
             yield Called("contacts", contact, contact)
@@ -193,11 +196,8 @@ class _Linter:
 
     def not_reached(self, called: Called) -> Finding | None:
         """A name by which no sentence gets at its entry."""
-        slot = SLOTS.get(called.section)
-        examples = self.examples(slot) if slot else []
-        tried = [example.replace("{" + str(slot) + "}", self.said(called)) for example in examples]
         reasons = []
-        for sentence in tried:
+        for sentence in self.examples(called):
             understood = understand(sentence, self.lexicon, self.language.code)
             if understood.plan is not None:
                 steps = nodes(understood.plan.steps)
@@ -216,22 +216,15 @@ class _Linter:
             " Give it another name, or an alias.",
         )
 
-    def examples(self, slot: str) -> list[str]:
-        """The example sentences of the help that have this slot and no other."""
-        return [
-            example
-            for examples in self.language.help.values()
-            for example in examples
-            if re.findall(r"\{(\w+)\}", example) == [slot]
-        ]
-
-    def said(self, called: Called) -> str:
-        """The name as it stands in a sentence."""
-        if called.section != "places":
-            return called.text
-        if called.text == called.name:
-            return place_called(called.name, self.lexicon, self.language)
-        return spoken_name(called.text, self.language)
+    def examples(self, called: Called) -> list[str]:
+        """Example sentences with this name and no other."""
+        if called.section not in EXAMPLES:
+            return []
+        names: tuple[Name, ...] = (Name(called.text),)
+        only = replace(EMPTY, **{called.section: names})
+        plain = {phrase for each in samples(EMPTY, self.language.code).values() for phrase in each}
+        filled = samples(only, self.language.code).values()
+        return [phrase for each in filled for phrase in each if phrase not in plain]
 
     def not_heard(self) -> Iterator[tuple[tuple[str, str], Finding]]:
         """Words that the speech model does not know, if it is installed."""
@@ -292,8 +285,9 @@ class _Linter:
         )
 
     def sounds_alike(self, one: Called, other: Called) -> Finding | None:
-        if (one.section, one.name) == (other.section, other.name):
-            return None
+        same = (one.section, one.name) == (other.section, other.name)
+        if same or (one.section == "contacts") != (other.section == "contacts"):
+            return None  # nobody calls a place, or goes to a contact
         first, second = self.words(one.text), self.words(other.text)
         differing = [(a, b) for a, b in zip(first, second, strict=False) if a != b]
         if len(first) != len(second) or len(differing) != 1:
