@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Literal
 
@@ -34,8 +34,6 @@ LONG: Final = 8
 """Letters of words in which two slips are easily overheard."""
 ALIKE: Final = 60
 """How much of the letters two words of the same sound must share, in percent."""
-EXAMPLES: Final = ("places", "people", "objects")
-"""Sections of a world of which the help's examples speak."""
 
 
 class Finding(msgspec.Struct, frozen=True):
@@ -218,10 +216,16 @@ class _Linter:
 
     def examples(self, called: Called) -> list[str]:
         """Example sentences with this name and no other."""
-        if called.section not in EXAMPLES:
-            return []
-        names: tuple[Name, ...] = (Name(called.text),)
-        only = replace(EMPTY, **{called.section: names})
+        names = (Name(called.text),)
+        match called.section:
+            case "places":
+                only = Lexicon(places=names)
+            case "people":
+                only = Lexicon(people=names)
+            case "objects":
+                only = Lexicon(objects=names)
+            case _:  # the help says nothing of furniture, and contacts are called by one sentence
+                return []
         plain = {phrase for each in samples(EMPTY, self.language.code).values() for phrase in each}
         filled = samples(only, self.language.code).values()
         return [phrase for each in filled for phrase in each if phrase not in plain]
