@@ -22,19 +22,30 @@ class Naming:
 
     names: Mapping[str, str] = field(default_factory=dict)
     """The world's name or canonical word -> what speakers say."""
+    looks: Mapping[str, str] = field(default_factory=dict)
+    """The same for what tells one thing from others: "red", "waving"."""
+    relations: Mapping[str, str] = field(default_factory=dict)
+    """The same for what stands between two nouns: "behind"."""
+    before_noun: bool = False
+    """Whether what stands before a noun stays there."""
 
     def called(self, text: str) -> str:
         """A name, or a noun phrase around one ("red cup" -> "tasse de couleur rouge"): what stands
         before the noun is said after it."""
-        if not self.names or text in self.names:
-            return self.names.get(text, text)
+        if text in self.relations:
+            return self.relations[text]
         words = text.split()
-        for length in range(len(words) - 1, 0, -1):
-            for start in range(len(words) - length, -1, -1):
-                noun = self.names.get(" ".join(words[start : start + length]))
-                if noun is not None:
-                    rest = (words[:start], words[start + length :])
-                    return " ".join((noun, *(self.called(" ".join(each)) for each in rest if each)))
+        for known in (self.names, self.looks):
+            for length in range(len(words), 0, -1):
+                for start in range(len(words) - length + 1):
+                    noun = known.get(" ".join(words[start : start + length]))
+                    if noun is not None:
+                        first = " ".join(words[:start])
+                        before = [self.called(first)] if first else []
+                        after = words[start + length :]
+                        stays = self.before_noun or first in self.relations
+                        told = [*before, noun] if stays else [noun, *before]
+                        return " ".join((*told, *([self.called(" ".join(after))] if after else [])))
         return text
 
 
@@ -46,13 +57,14 @@ def naming(lexicon: Lexicon, language: Language) -> Naming:
     names: dict[str, str] = dict(language.speech.get("names", {}))
     known = (*lexicon.objects, *lexicon.furniture, *lexicon.people, *lexicon.places)
     names |= {name.name: name.aliases[0] for name in known if name.aliases}
-    return Naming(names)
+    looks: dict[str, str] = language.speech.get("looks", {})
+    relations: dict[str, str] = language.speech.get("relations", {})
+    return Naming(names, looks, relations, bool(language.speech.get("adjectives_first")))
 
 
 def _words(language: Language) -> Speech | None:
     """How the language puts nouns into sentences, if it says so for single nouns."""
-    words = speech(language.code)
-    return words if words.nouns.articles else None
+    return speech(language.code) if language.speech.get("aliases_first") else None
 
 
 def the(noun: str, language: Language) -> str:

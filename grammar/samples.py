@@ -10,13 +10,14 @@ import random
 import re
 from typing import Final
 
-from grammar.language import Language, load_language, spoken_name
+from grammar.language import Language, load_language
 from grammar.lexicon import Lexicon
+from grammar.naming import joined_up, naming, place_called, the
 from grammar.network import Production, parts_of
 from grammar.templates import Choice, Part, Sequence, Template, Word
-from grammar.wordforms import plural
+from grammar.wordforms import kind_words
 
-_SLOT: Final = re.compile(r"\{(\w+)\}")
+_SLOT: Final = re.compile(r"\{(\w+)(!the)?\}")
 _SPACE_BEFORE: Final = re.compile(r" (?=[,.:]|'s\b)")
 
 
@@ -47,10 +48,13 @@ def _filled(example: str, lexicon: Lexicon, language: Language) -> str | None:
         if number >= len(names):
             raise LookupError(slot)
         name = names[number]
-        return spoken_name(name, language) if slot == "place" else name
+        if slot == "place":
+            return place_called(name, lexicon, language)
+        name = naming(lexicon, language).called(name)
+        return the(name, language) if match.group(2) else name
 
     try:
-        return _SLOT.sub(fill, example)
+        return joined_up(_SLOT.sub(fill, example), language)
     except LookupError:
         return None
 
@@ -147,8 +151,9 @@ class _Sampler:
 
     def slot(self, name: str) -> str:
         names = _names("kind" if name == "kinds" else name, self.lexicon)
-        if name == "kinds":
-            names = [plural(kind, self.language) for kind in names]
+        if name in ("kind", "kinds"):
+            ways = [kind_words(kind, self.language) for kind in names]
+            names = [word for one, many in ways for word in (one if name == "kind" else many)]
         listed = self.language.lists.get(name)
         if listed:
             names = [*names, *(" ".join(way) for ways in listed.values() for way in ways)]

@@ -17,7 +17,7 @@ import msgspec
 FOLDER = Path(__file__).with_name("languages")
 
 _GAP = re.compile(r"\{(\w+)(?:!(\w+))?\}")
-_QUOTED = re.compile(r"(“[^”]*”|«[^»]*»|`[^`]*`)")
+_QUOTED = re.compile(r"(„[^“]*“|“[^”]*”|«[^»]*»|`[^`]*`)")
 
 
 class Words(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -101,8 +101,14 @@ class Speech(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     joined: tuple[tuple[str, str], ...] = ()
     """Little words that run together ("à le" -> "au"), as patterns and what stands for them."""
 
+    inflected: tuple[tuple[str, str], ...] = ()
+    """What the marks in the phrases of this language come to, such as ⟨dat⟩ before a noun."""
+
     def joined_up(self, text: str) -> str:
-        """The text with the little words run together, but for what is quoted in it."""
+        """The text with its marks made endings, and the little words run together, but for what is
+        quoted in it."""
+        for pattern, replacement in self.inflected:
+            text = re.sub(pattern, replacement, text)
         if not self.joined:
             return text
         parts = _QUOTED.split(text)  # every other part is a quotation

@@ -10,14 +10,16 @@ would be.
 from __future__ import annotations
 
 import functools
+import itertools
 from dataclasses import dataclass, field, replace
 from typing import Final, Literal
 
 from grammar.accounts import left_out
 from grammar.chart import Chart, Node, TooMuch
 from grammar.discourse import Ambiguous, Discourse, NotUnderstood, Thing
-from grammar.language import Language, load_language, spoken_name
+from grammar.language import Language, load_language
 from grammar.lexicon import Lexicon
+from grammar.naming import joined_up, place_called
 from grammar.plan import Plan, Text, Value
 from grammar.readings import Read, read
 from grammar.requests import Request
@@ -73,10 +75,12 @@ class Clarification:
     end: int
     """The characters that may mean several things."""
     choices: tuple[str, ...]
+    before: str = ""
+    """What must stand before the choice, where a contraction was opened: "ins Büro"."""
 
     def completed(self, choice: str) -> str:
         """The sentence with the choice in place."""
-        return self.text[: self.start] + choice + self.text[self.end :]
+        return self.text[: self.start] + self.before + choice + self.text[self.end :]
 
 
 @dataclass(frozen=True)
@@ -123,7 +127,8 @@ def understand(
             return understand(answered, lexicon, language, context)
     reader = _Reader(text, lexicon, pack, context)
     if context.plan is not None:
-        if " ".join(token.norm for token in reader.tokens).strip(" .") in pack.speech["again"]:
+        said = tuple(token.norm for token in reader.tokens if token.kind != "mark")
+        if said in map(pack.tokens_of, pack.speech["again"]):
             return Understanding(text, "ok", context.plan, 1.0, context=context)
         corrected = reader.correction()
         if corrected is not None:
@@ -236,7 +241,7 @@ class _Reader:
     def correction(self) -> str | None:
         """ "no, the pharmacy": the last sentence with this in the place of what it corrects."""
         said = [token.norm for token in self.tokens if token.norm != COMMA]
-        marks = [words.split() for words in self.language.speech["corrections"]]
+        marks = [[*self.language.tokens_of(way)] for way in self.language.speech["corrections"]]
         mark = max((each for each in marks if said[: len(each)] == each), key=len, default=None)
         if mark is None:
             return None
@@ -253,19 +258,46 @@ class _Reader:
         before = _Reader(self.context.text, self.lexicon, self.language, Context())
         try:
             old_tree = before.chart().best("utterance")
-            for rule in CORRECTABLE:
-                new = rest.chart().longest(rule, 0)
+            for rule, lead in itertools.product(CORRECTABLE, (0, 1)):
+                if lead >= len(rest.tokens) or not rest.is_little(range(lead)):
+                    continue
+                new = rest.chart().longest(rule, lead)
                 if old_tree is None or new is None or new.end < rest.last_word:
                     continue
                 old = _last(old_tree, rule)
-                if old is None:
+                if old is None or not before.is_little(range(old.start - lead, old.start)):
                     continue
-                span = slice(before.tokens[old.start].start, before.tokens[old.end - 1].end)
-                text = self.context.text
-                return text[: span.start] + rest.text.strip(" .!?") + text[span.stop :]
+                return before.with_words(old.start - lead, old.end, rest.text.strip(" .!?"))
         except TooMuch:
             pass
         return None
+
+    def is_little(self, positions: range) -> bool:
+        """Whether these tokens are function words, such as "to"."""
+        return all(
+            position >= 0 and self.tokens[position].norm in self.language.closed
+            for position in positions
+        )
+
+    def opened(self, first: int) -> str:
+        """What of a contraction stands before a token that is a part of it: "zu" of "zur"."""
+        if first >= len(self.tokens):
+            return ""
+        begin = self.tokens[first].start
+        return " ".join(token.norm for token in self.tokens[:first] if token.start == begin)
+
+    def with_words(self, first: int, last: int, words: str, *, noun: bool = False) -> str:
+        """The sentence with other words in the place of some tokens; a noun gets the case that the
+        word before it asks for."""
+        opened = self.opened(first)
+        if noun and first:
+            mark = self.language.speech.get("cases", {}).get(self.tokens[first - 1].norm, "")
+            words = joined_up(f"{opened} {mark}{words}".strip(), self.language)
+        elif opened:
+            words = f"{opened} {words}"
+        return (
+            self.text[: self.tokens[first].start] + words + self.text[self.tokens[last - 1].end :]
+        )
 
     def chart(self) -> Chart:
         slots = Slots(self.names, self.tokens, self.corrections).all()
@@ -320,12 +352,11 @@ class _Reader:
         if reason.span != (0, 0) and not reason.nearest:
             message = f"{message} {self.language.phrase('ask_for_names')}"
         if reason.nearest:
-            names = [spoken_name(name, self.language) for name in reason.nearest]
+            names = [place_called(name, self.lexicon, self.language) for name in reason.nearest]
             choices = self.language.phrase("did_you_mean", choices=self._listed(names))
             message = f"{message} {choices}"
             first, last = reason.span
-            start, end = self.tokens[first].start, self.tokens[last - 1].end
-            suggestions = [self.text[:start] + name + self.text[end:] for name in names]
+            suggestions = [self.with_words(first, last, name, noun=True) for name in names]
         return Understanding(
             self.text,
             "rejected",
@@ -343,12 +374,18 @@ class _Reader:
     def _ask_back(self, which: Ambiguous) -> Understanding:
         end = self.tokens[which.end - 1].end
         start = self.tokens[which.start].start if which.start < which.end else end
-        question = Clarification(self.text, start, end, which.choices)
+        before = self.opened(which.start)
+        question = Clarification(
+            self.text, start, end, which.choices, f"{before} " if before else ""
+        )
         return Understanding(
             self.text,
             "clarify",
             message=which.question,
-            suggestions=[question.completed(choice) for choice in which.choices[:MOST_SUGGESTIONS]],
+            suggestions=[
+                joined_up(question.completed(choice), self.language)
+                for choice in which.choices[:MOST_SUGGESTIONS]
+            ],
             unclear=self.text[start:end],
             context=replace(self.context, question=question),
         )
@@ -380,7 +417,7 @@ class _Reader:
             return self.language.phrase("not_understood", part=part)
         words = {token.norm for token in self.tokens}
         for phrase, signs in self.language.speech.get("refusals", {}).items():
-            if words.intersection(signs):
+            if any(words.issuperset(self.language.tokens_of(sign)) for sign in signs):
                 return self.language.phrase(phrase)
         return self.language.phrase("not_understood_at_all")
 

@@ -132,7 +132,7 @@ def _first_part(rules: Any, d: Discourse, groups: Sequence[Group]) -> int:
             return at
     named = _named(d, groups, at)
     if named:
-        return named
+        return _noun_end(rules, groups, named - 1)
     group = groups[at]
     following = groups[at + 1] if at + 1 < len(groups) else None
     opens = group.norm in rules["determiners"] or group.number or len(group.norms) > 1

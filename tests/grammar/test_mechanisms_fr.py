@@ -54,7 +54,7 @@ def test_numbers_of_several_words(said: str, value: float) -> None:
 
 def test_names_go_by_what_speakers_call_them() -> None:
     language = replace(
-        load_language("en"), speech={"aliases_first": True, "names": {"red": "rouge"}}
+        load_language("en"), speech={"aliases_first": True, "looks": {"red": "rouge"}}
     )
     cup = Lexicon(objects=(Name("cup", aliases=("tasse", "gobelet")), Name("bed")))
     assert naming(cup, language).called("red cup") == "tasse rouge"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -20,10 +21,9 @@ from grammar.understand import understand
 from robot_api.methods import METHODS
 from robot_api.stub import stub
 from sandbox.check import check
-from tests.grammar.ward import WARD
+from tests.grammar.hospitals import hospital
 
 STUB = stub()
-MISUNDERSTOOD = "did not understand"
 
 
 @pytest.mark.parametrize("language", languages())
@@ -33,8 +33,9 @@ def test_every_meaning_that_a_rule_names_exists(language: str) -> None:
 
 
 @pytest.mark.parametrize("language", languages())
-@pytest.mark.parametrize("lexicon", [WARD, Lexicon()])
-def test_all_help_is_understood(language: str, lexicon: Lexicon) -> None:
+@pytest.mark.parametrize("world", [hospital, lambda language: Lexicon()])
+def test_all_help_is_understood(language: str, world: Callable[[str], Lexicon]) -> None:
+    lexicon = world(language)
     topics = samples(lexicon, language)
     assert len(topics) >= 6
     for phrases in topics.values():
@@ -46,11 +47,13 @@ def test_all_help_is_understood(language: str, lexicon: Lexicon) -> None:
 @settings(max_examples=80, deadline=None)
 @given(st.sampled_from(languages()), st.integers(0, 10**9))
 def test_what_the_rules_can_say_they_understand(language: str, seed: int) -> None:
-    sentence = random_sentence(WARD, language, seed)
-    understood = understand(sentence, WARD, language)
+    lexicon = hospital(language)
+    sentence = random_sentence(lexicon, language, seed)
+    understood = understand(sentence, lexicon, language)
     if understood.plan is None:  # "put it there": nothing was spoken of before
         assert understood.message is not None
-        assert MISUNDERSTOOD not in understood.message, sentence
+        misunderstood = load_language(language).phrase("not_understood_at_all").split(".")[0]
+        assert misunderstood not in understood.message, sentence
         return
     program = write_program(understood.plan)
     assert not [finding for finding in check(program, STUB) if finding.severity == "error"], program

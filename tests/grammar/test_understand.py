@@ -17,11 +17,12 @@ from grammar.program import write_program
 from grammar.tidy import nodes
 from grammar.understand import Context, Understanding, understand
 from robot_api.methods import METHODS
+from tests.grammar.hospitals import hospital
 from tests.grammar.ward import WARD, program, same
 
 HERE = Path(__file__).parent
 UNDERSTOOD_AT_LEAST = 0.9
-"""Share of the sentences written before the grammar was."""
+"""Share of the sentences that were written before they were tried."""
 
 
 def read(name: str) -> Any:
@@ -49,14 +50,16 @@ def refused(sentence: str) -> str:
 # --- the breadth of what people say
 
 
-def test_ten_people_are_understood() -> None:
-    rows = [row for each in read("sentences_en.yaml").values() for row in each]
+@pytest.mark.parametrize("file", ["sentences_en.yaml", "sentences_en_2.yaml"])
+def test_ten_people_are_understood(file: str) -> None:
+    rows = [row for each in read(file).values() for row in each]
     missed = []
     for row in rows:
         wanted = row["means"] if isinstance(row["means"], list) else [row["means"]]
         understood = heard(row["say"])
         found = program(understood.plan) if understood.plan else understood.status
-        if not any(same(each, found) for each in wanted):
+        right = any(same(each, found) and (each != "..." or understood.plan) for each in wanted)
+        if not right:
             missed.append(f"{row['say']}: {found}")
     assert len(missed) <= (1 - UNDERSTOOD_AT_LEAST) * len(rows), "\n".join(missed)
 
@@ -66,7 +69,7 @@ def test_every_robot_method_can_be_asked_for(language: str) -> None:
     commands = read(f"methods_{language}.yaml")
     assert commands.keys() == METHODS.keys()
     for method, sentence in commands.items():
-        understood = understand(sentence, WARD, language)
+        understood = understand(sentence, hospital(language), language)
         assert understood.plan is not None, f"{sentence}: {understood.message}"
         used = [
             each.method for each in nodes(understood.plan.steps) if isinstance(each, Call | Ask)
@@ -249,7 +252,13 @@ def test_who_was_not_found_is_not_spoken_to() -> None:
 
 
 @pytest.mark.parametrize(
-    "sentence", [str(row) for rows in read("not_commands_en.yaml").values() for row in rows]
+    "sentence",
+    [
+        str(row)
+        for file in ("not_commands_en.yaml", "not_commands_en_2.yaml")
+        for rows in read(file).values()
+        for row in rows
+    ],
 )
 def test_what_is_no_command_is_refused(sentence: str) -> None:
     assert len(refused(sentence)) > 10
