@@ -44,8 +44,14 @@ class DryRun(msgspec.Struct, frozen=True, kw_only=True):
     calls: int
 
 
-def rehearse(program: str, simulation: Simulation, real_seconds: float = REAL_SECONDS) -> DryRun:
-    """Run the program in a simulation of its own, whose time is free to run."""
+def rehearse(
+    program: str,
+    simulation: Simulation,
+    real_seconds: float = REAL_SECONDS,
+    seed: int | None = None,
+) -> DryRun:
+    """Run the program in a simulation of its own, whose time is free to run; its `random` begins
+    with `seed`."""
     from robot_api.drivers import simulated
     from sandbox.execution import Execution
 
@@ -77,7 +83,7 @@ def rehearse(program: str, simulation: Simulation, real_seconds: float = REAL_SE
         cut()
         execution.stop()
 
-    execution = Execution(program, call)
+    execution = Execution(program, call, seed=seed)
     watchdog = threading.Timer(real_seconds, give_up)
     watchdog.daemon = True
     watchdog.start()

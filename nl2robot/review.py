@@ -54,15 +54,16 @@ def review(
     knowledge: Knowledge,
     stage: Callable[[], Simulation] | None = None,
     language: str = "en",
+    seed: int | None = None,
 ) -> Review:
     """Check a program without moving anything. `stage` gives a copy of the simulated world,
-    in which the program is tried."""
+    in which the program is tried; `seed` is what its `random` will begin with."""
     from robot_api.stub import stub
 
     findings = [*check(program, stub()), *violations(program, knowledge)]
     findings.sort(key=lambda finding: (finding.line, finding.column))
     acceptable = not any(finding.severity == "error" for finding in findings)
-    dry_run = rehearse(program, stage()) if acceptable and stage is not None else None
+    dry_run = rehearse(program, stage(), seed=seed) if acceptable and stage is not None else None
     return Review(
         program=program,
         sha256=digest(program),

@@ -35,6 +35,8 @@ _log = logging.getLogger("nl2robot.runner")
 
 State = Literal["running", "paused", "done", "failed", "stopped", "limit"]
 
+SECONDS_TO_END = 3.0
+"""How long a stopped run may take to be over."""
 BREAK_OFF_EVERY = 0.02
 """Seconds between two attempts to break off a robot call of a program that was stopped."""
 APPROVALS_KEPT = 100
@@ -133,7 +135,7 @@ class Runner:
 
     def check(self, program: str, language: str = "en") -> Review:
         """Review a program, and read it in a language; nothing moves."""
-        return review(program, self.knowledge, self._stage, language)
+        return review(program, self.knowledge, self._stage, language, self._seed)
 
     def approve(
         self,
@@ -233,6 +235,12 @@ class Runner:
             activity.robot.cancel()
         threading.Thread(target=_break_off, args=(activity,), name="break off", daemon=True).start()
 
+    def close(self) -> None:
+        """Stop the program that runs, if any, and wait until that is logged."""
+        self.stop("nl2robot was closed.")
+        if self._activity is not None:
+            self._activity.over.wait(SECONDS_TO_END)
+
     # --- the run itself
 
     def _begin(self, approval: Approval) -> int:
@@ -258,7 +266,8 @@ class Runner:
             with self._connect() as robot:
                 activity.robot = robot
                 activity.outcome = self._execute(activity, robot)
-                if activity.outcome.status != "done":
+                # A connection that is lost needs no stop: its server has stopped the robot, too.
+                if activity.outcome.status != "done" and robot.connected:
                     robot.stop()
         except RobotError as error:  # the robot cannot be reached
             if activity.outcome is None:

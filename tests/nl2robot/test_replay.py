@@ -1,6 +1,7 @@
 """A logged run can be lived through again: same branches, same way, same end."""
 
 import contextlib
+import json
 import sqlite3
 
 import pytest
@@ -73,6 +74,13 @@ def test_the_same_numbers_are_drawn_again(run, log) -> None:
     assert [str(given) for given in calls] == [
         call.arguments.replace('":', '": ').replace('"', "'") for call in log.calls(row.id)
     ]
+
+
+def test_the_dry_run_draws_the_numbers_that_the_run_will(run, log, operator) -> None:
+    program = "import random\nrobot.wait(random.randint(1, 60))\n"
+    foreseen = operator.check(program).dry_run.seconds
+    [call] = log.calls(run(program).id)
+    assert json.loads(call.arguments)["seconds"] == pytest.approx(foreseen, abs=0.1)
 
 
 def test_another_course_is_told(run, log) -> None:
