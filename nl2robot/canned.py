@@ -44,6 +44,10 @@ from nl2robot.translation import Translation, translate
 from sim.world import World, load_world
 
 
+PATIENCE = 60.0
+"""Real seconds that a run may take here: nobody waits at a prompt, and a busy machine is slow."""
+
+
 class Effects(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What a run must lead to; what is left out does not matter."""
 
@@ -202,7 +206,7 @@ def _missing_effects(effects: Effects, program: str, world: World) -> Iterable[s
     from sim.simulation import Simulation
 
     simulation = Simulation(world)
-    run = rehearse(program, simulation)
+    run = rehearse(program, simulation, PATIENCE)
     if run.status != "done":
         yield f"the run ended as {run.status}: {run.message} (line {run.line})"
     for what, expected, found in (
