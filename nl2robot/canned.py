@@ -43,7 +43,6 @@ from nl2robot.rehearsal import rehearse
 from nl2robot.translation import Translation, translate
 from sim.world import World, load_world
 
-
 PATIENCE = 60.0
 """Real seconds that a run may take here: nobody waits at a prompt, and a busy machine is slow."""
 
