@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from nl2robot.runlog import RunLog
     from sim.world import World
 
-LANGUAGES = ("en",)
-
 
 def words(given: str) -> str:
     """An argument that is text for people: what was no UTF-8 in it becomes a replacement sign."""
@@ -61,8 +59,10 @@ def add_world(parser: argparse.ArgumentParser) -> None:
 
 
 def add_language(parser: argparse.ArgumentParser) -> None:
+    from grammar.language import languages
+
     parser.add_argument(
-        "--lang", default="en", choices=LANGUAGES, help="the language of the words (default: en)"
+        "--lang", default="en", choices=languages(), help="the language of the words (default: en)"
     )
 
 
