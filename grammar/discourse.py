@@ -131,6 +131,8 @@ class Discourse:
     """Several people spoken of together: "both", "each of them"."""
     report: Any = None
     """What was told last (`grammar.meanings.reports.Report`), so that it can be told to others."""
+    fetched: Step | None = None
+    """The last step, if it brings somebody here for no other reason than that they were fetched."""
     told: Step | None = None
     """The last step, if it has told the speaker all there is to tell."""
     report_step: Step | None = None

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Ambiguous, Discourse, NotUnderstood, Steps, Thing, Where
-from grammar.meanings.finding import meet, named, speak_to
+from grammar.meanings.finding import look_for, meet, named, speak_to
 from grammar.meanings.nouns import is_me, kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.things import deliver
@@ -24,6 +24,8 @@ def guide(d: Discourse, node: Node) -> Steps:
     source: Where | None = d.get(node, "source")
     if source is not None and source.place is not None:
         thing = replace(thing, place=source.place, here=False)
+    if d.fetched is not None and d.done[-1:] == [d.fetched] and thing.value == d.with_person:
+        d.done.pop()  # not here first
     steps = meet(d, thing)
     spot: Where = d.get(node, "spot") or Where(d.get(node, "place"))
     if spot.place is None:
@@ -55,6 +57,17 @@ def guide_back(d: Discourse, node: Node) -> Steps:
     thing = led(d, node)
     steps = meet(d, thing)
     return [*steps, lead(d, thing, d.start())]
+
+
+@meaning("fetch_person")
+def fetch_person(d: Discourse, node: Node) -> Steps:
+    """ "fetch Dr Weber": bring them here; "..., and take them to radiology" is straight there."""
+    thing = led(d, node)
+    source: Where | None = d.get(node, "source")
+    if source is not None and source.place is not None:
+        thing = replace(thing, place=source.place, here=False)
+    d.fetched = lead(d, replace(thing, here=False), d.start())
+    return [*(meet(d, replace(thing, here=False)) or look_for(d, thing)), d.fetched]
 
 
 @meaning("guide_nowhere")
