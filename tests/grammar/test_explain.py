@@ -260,14 +260,20 @@ MARKS_AND_GAPS = re.compile(r"(?:(?:\S+ )?⟨[^⟩]*⟩ )?\{[^}]*\}")
 
 
 def spoken(language: str, method: str, told: str) -> bool:
-    """Whether one of the method's phrases is in the text, gaps being anything."""
+    """Whether one of the method's phrases is in the text, gaps being anything; the little word
+    before a gap may have run together with what is in it ("à le" is "au")."""
     words = speech(language).methods[method]
     patterns = [*words.do, *words.negative, *words.value, *words.holds, *words.fails]
     patterns += [*words.fields.values()]
     one = speech(language).nouns.one
     patterns += [one(pattern, gap) for pattern in patterns for gap in gaps(pattern)]
+    little = re.compile(r"\b\w{1,3} $" if speech(language).joined else "$")
     return any(
-        re.search(".+?".join(map(re.escape, MARKS_AND_GAPS.split(pattern))), told, re.DOTALL)
+        re.search(
+            ".+?".join(re.escape(little.sub("", part)) for part in MARKS_AND_GAPS.split(pattern)),
+            told,
+            re.DOTALL,
+        )
         for pattern in patterns
         if pattern
     )
