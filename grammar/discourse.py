@@ -73,6 +73,8 @@ class Thing:
     """Whether it was spoken of before: "it"."""
     group: Value | None = None
     """The names of several people who are meant one by one."""
+    coming: bool = False
+    """Whether it is whoever comes: each of them, without end."""
     count: int | None = None
     """How many of them, whoever they are: "three visitors"."""
 

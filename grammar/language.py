@@ -80,6 +80,8 @@ def spoken_name(name: str, language: Language) -> str:
     form: str = language.speech.get("common_name", "{name}")
     last = name.split()[-1] if name.split() else ""
     proper = name[:1].isupper() or last.isdigit() or len(last) == 1
+    owner, mark, _ = name.partition(language.speech.get("possessive") or "\0")
+    proper = proper or bool(mark and owner not in language.speech.get("common_owners", ()))
     return name if proper else form.format(name=name)
 
 

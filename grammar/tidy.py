@@ -47,6 +47,10 @@ def _scoped(steps: tuple[Step, ...], known: frozenset[str]) -> tuple[Step, ...]:
     done: list[Step] = []
     bound = [known]
     for step in steps:
+        if done and isinstance(done[-1], Forever):
+            # What follows a loop without end would never be done: it belongs to each round.
+            done[-1] = msgspec.structs.replace(done[-1], steps=(*done[-1].steps, step))
+            continue
         done.append(step)
         while (missing := _missing(done[-1], bound[-1])) is not None:
             giver = max(

@@ -8,7 +8,7 @@ from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.meanings.nouns import is_me, sought
 from grammar.naming import the
-from grammar.plan import Ask, Call, ForEach, Holds, If, Items, Not, Recall, Text, Value
+from grammar.plan import Ask, Call, ForEach, Forever, Holds, If, Items, Not, Recall, Text, Value
 
 
 def go(d: Discourse, place: Value) -> Steps:
@@ -67,6 +67,8 @@ def meet(d: Discourse, person: Thing) -> Steps:
 
 def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
     """Say something to a person: here, or where they are found."""
+    if person is not None and person.coming:
+        return [Forever((Call("wait_for", {"thing": person.value}), *steps))]
     if person is not None and isinstance(person.group, Items):
         return each_of(d, person.group, steps)
     if person is None or is_here(d, person):

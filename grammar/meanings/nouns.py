@@ -362,6 +362,15 @@ def person_count(d: Discourse, node: Node) -> Thing:
     return found
 
 
+@meaning("person_coming")
+def person_coming(d: Discourse, node: Node) -> Thing:
+    """ "every visitor who comes in": one after the other, without end."""
+    kind = str(d.get(node, "kind_of_person", ANYONE))
+    found = Thing(Text(kind), person=True, here=True)
+    d.person, d.thing_last = found, False
+    return replace(found, coming=True)
+
+
 @meaning("person_group_them")
 def person_group_them(d: Discourse, node: Node) -> Thing:
     """ "both of them", "each of them"."""

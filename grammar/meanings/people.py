@@ -38,7 +38,7 @@ def led(d: Discourse, node: Node) -> Thing:
     person: Thing | None = d.get(node, "person_ref")
     if person is None or is_me(person):
         return Thing(Text(ANYONE), person=True, here=True)
-    if person.group is not None or person.count is not None:
+    if person.coming or person.group is not None or person.count is not None:
         raise NotUnderstood(d.language.phrase("one_person"))
     return person
 

@@ -12,7 +12,7 @@ from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.speaking import sentence_form
 from grammar.meanings.surveys import Survey
-from grammar.plan import Ask, Call, ForEach, Items, Number, Recall, Repeat, Text, Value
+from grammar.plan import Ask, Call, ForEach, Forever, Items, Number, Recall, Repeat, Text, Value
 from grammar.tokens import COLON, COMMA
 from grammar.wordorder import direct_clause, parted
 
@@ -25,6 +25,15 @@ LONGEST_OFFERED: Final = 3
 def ask(d: Discourse, node: Node) -> Steps:
     """Ask somebody a question and remember the answer."""
     person: Thing | None = d.get(node, "person_ref")
+    if person is not None and person.coming:
+        waiting = Call("wait_for", {"thing": person.value})
+        d.person = replace(person, coming=False)
+        return [Forever((waiting, *ask_one(d, node, d.person)))]
+    return ask_one(d, node, person)
+
+
+def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
+    """Ask those who are there, or somebody who has to be found first."""
     steps: Steps = []
     several = person is not None and (person.group is not None or person.count is not None)
     everybody = person is not None and person.plural and person.text == ANYONE and not several

@@ -90,7 +90,9 @@ def bring(d: Discourse, node: Node) -> Steps:
     if person is not None and isinstance(person.group, Items):
         names = [Thing(name, known=True, person=True) for name in person.group.items]
         return [step for name in names for step in deliver(d, thing, name, None)]
-    if person is not None and (person.group is not None or person.count is not None):
+    if person is not None and (
+        person.coming or person.group is not None or person.count is not None
+    ):
         raise NotUnderstood(d.language.phrase("one_person"))
     return deliver(d, thing, person, d.get(node, "where"))
 
