@@ -70,9 +70,11 @@ class LineTold:
     text: str
 
 
-def explain_program(source: str, language: str = "en") -> list[LineTold]:
-    """A program in words, line by line, also one that was written by hand. Raises `SyntaxError`
-    if it is none."""
+def explain_program(
+    source: str, language: str = "en", called: Callable[[str], str] | None = None
+) -> list[LineTold]:
+    """A program in words, line by line, also one that was written by hand; `called` as for
+    `explain`. Raises `SyntaxError` if it is none."""
     reading = read_program(source, language)
     words = speech(language)
     begun: set[int] = set()
@@ -88,7 +90,7 @@ def explain_program(source: str, language: str = "en") -> list[LineTold]:
             yield LineTold(line, depth, f"{text}:" if each.is_clause else text)
             yield from lines(each.steps, depth + 1, line)
 
-    return list(lines(tell(reading.plan, words), 0, 1))
+    return list(lines(tell(reading.plan, words, called), 0, 1))
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from grammar.explain import explain_program
+from grammar.language import load_language
+from grammar.naming import naming
 from nl2robot.knowledge import Knowledge
 from nl2robot.policy import violations
 from nl2robot.rehearsal import DryRun, rehearse
@@ -68,11 +70,12 @@ def review(
         program=program,
         sha256=digest(program),
         findings=tuple(findings),
-        reading=tuple(_read(program, language)) if acceptable else (),
+        reading=tuple(_read(program, knowledge, language)) if acceptable else (),
         dry_run=dry_run,
     )
 
 
-def _read(program: str, language: str) -> Iterator[Reading]:
-    for told in explain_program(program, language):
+def _read(program: str, knowledge: Knowledge, language: str) -> Iterator[Reading]:
+    called = naming(knowledge.lexicon(language), load_language(language)).called
+    for told in explain_program(program, language, called):
         yield Reading(told.line, told.depth, told.text)

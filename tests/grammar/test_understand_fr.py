@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 import yaml
 
-from grammar.explain import explain
+from grammar.explain import explain, explain_program
 from grammar.language import load_language
 from grammar.naming import naming
 from grammar.program import write_program
@@ -180,6 +180,15 @@ def test_things_are_looked_for_whatever_their_gender(sentence: str, thing: str) 
 )
 def test_explanations_are_french(sentence: str, words: str) -> None:
     assert words in told(sentence)
+
+
+def test_a_program_is_read_back_in_the_words_of_the_speaker() -> None:
+    called = naming(HOPITAL, load_language("fr")).called
+    source = "robot.goto('pharmacy')\nrobot.wait_for('nurse waving')\n"
+    assert [line.text for line in explain_program(source, "fr", called)] == [
+        "aller à la pharmacie",
+        "attendre une infirmière qui fait signe",
+    ]
 
 
 def test_a_conversation_with_questions_and_corrections() -> None:
