@@ -10,10 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 from grammar.templates import Choice, Part, Template, Word
 from grammar.templates import Sequence as TemplateSequence
+
+INLINED: Final = 20
+"""Words and references that a rule that stands for some words may have to be put in place wherever
+it is named; a longer one is kept once and called."""
 
 
 class RuleError(ValueError):
@@ -166,9 +170,11 @@ class _Compiler:
             raise RuleError(f"the rule <{rule}> refers to <{name}>, which does not exist")
         if name not in self.inlined:
             productions = self.rules[name]
-            simple = all(
-                not each.means and not each.cost and not each.fixed for each in productions
-            ) and not self._reaches(name, name, set())
+            simple = (
+                all(not each.means and not each.cost and not each.fixed for each in productions)
+                and sum(_size(each) for one in productions for each in one.templates) <= INLINED
+                and not self._reaches(name, name, set())
+            )
             self.inlined[name] = (
                 Choice(tuple(t for each in productions for t in each.templates)) if simple else None
             )
@@ -207,6 +213,7 @@ class _Compiler:
             raise RuleError(f"the rule <{name}> can be empty")
         first = len(self.states)
         known = {start: first}
+        reached_from: dict[int | frozenset[int], int] = {}
         self.states.append(State({}, (), None))
         todo = [start]
         while todo:
@@ -218,15 +225,20 @@ class _Compiler:
             words: dict[str, int] = {}
             calls: list[tuple[int, str | None, int]] = []
             for symbol, targets in moves.items():
-                target = closure(targets)
-                if target not in known:
-                    known[target] = len(self.states)
-                    self.states.append(State({}, (), None))
-                    todo.append(target)
+                # Long lists of words lead to one node: looked up without its closure.
+                key = next(iter(targets)) if len(targets) == 1 else frozenset(targets)
+                state = reached_from.get(key)
+                if state is None:
+                    target = closure(targets)
+                    if target not in known:
+                        known[target] = len(self.states)
+                        self.states.append(State({}, (), None))
+                        todo.append(target)
+                    state = reached_from[key] = known[target]
                 if isinstance(symbol, str):
-                    words[symbol] = known[target]
+                    words[symbol] = state
                 else:
-                    calls.append((*symbol, known[target]))
+                    calls.append((*symbol, state))
             reached = [finals[node] for node in nodes if node in finals]
             self.states[known[nodes]] = State(
                 words, tuple(calls), min(reached) if reached else None
@@ -268,6 +280,17 @@ class _Compiler:
             return found[rule]
 
         return tuple(visit(rule) for rule in range(len(starts)))
+
+
+def _size(template: Template) -> int:
+    """How many words and references are in a template."""
+    match template:
+        case TemplateSequence(parts):
+            return sum(map(_size, parts))
+        case Choice(alternatives):
+            return sum(map(_size, alternatives))
+        case _:
+            return 1
 
 
 def parts_of(template: Template) -> list[Part]:

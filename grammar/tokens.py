@@ -85,6 +85,8 @@ def tokenise(text: str, spelling: Spelling) -> tuple[Token, ...]:
 
 def words_of(text: str, spelling: Spelling) -> tuple[str, ...]:
     """The normal forms of a name or of the words of a rule."""
+    if text.isalpha() and text.islower() and text not in spelling.contractions:
+        return (_word(text, 0, len(text), spelling).norm,)
     return tuple(token.norm for token in _tokens(text, spelling))
 
 
