@@ -166,6 +166,28 @@ def test_things_are_looked_for_whatever_their_gender(sentence: str, thing: str) 
 
 
 @pytest.mark.parametrize(
+    ("sentence", "meaning"),
+    [
+        ("dis trois fois bonjour", 'repeat 3 { say("Bonjour.") }'),
+        (
+            "fais le tour des chambres et dis bonne nuit",
+            'for place in places("room") { goto(place); say("Bonne nuit.") }',
+        ),
+        ("reviens dans dix minutes", "start = location(); wait(600); goto(start)"),
+        ("attends que Bob arrive puis dis-lui bonjour", 'wait_for("Bob"); say("Bonjour, Bob !")'),
+        ("arrête de parler", "set_volume(0)"),
+        (
+            "combien de gens attendent dans la salle d'attente ?",
+            'start = location(); goto("waiting room"); count = count("person waiting");'
+            " goto(start); say(...)",
+        ),
+    ],
+)
+def test_order_loops_and_questions(sentence: str, meaning: str) -> None:
+    assert same(meaning, does(sentence)), does(sentence)
+
+
+@pytest.mark.parametrize(
     ("sentence", "words"),
     [
         ("va au bureau d'Alice", "Je vais aller au bureau d'Alice."),
