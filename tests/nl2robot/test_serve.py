@@ -143,12 +143,15 @@ Server(emulated(speed=1.0), port=0).serve_forever(lambda server: print(server.ad
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM], ids=lambda n: n.name)
 def test_a_robot_that_is_lost_half_way(start, last_run, number) -> None:
     with subprocess.Popen([sys.executable, "-c", ROBOT], stdout=subprocess.PIPE) as robot:
-        address = robot.stdout.readline().decode().strip()
-        wait = ("run", "--world", "ward", "-y", "wait for one minute", "--robot", address)
-        nurse = start(*wait)
-        nurse.until("wait(seconds=60")
-        robot.send_signal(number)
-        status = nurse.end()
+        try:
+            address = robot.stdout.readline().decode().strip()
+            wait = ("run", "--world", "ward", "-y", "wait for one minute", "--robot", address)
+            nurse = start(*wait)
+            nurse.until("wait(seconds=60")
+            robot.send_signal(number)
+            status = nurse.end()
+        finally:
+            robot.kill()
     assert "Traceback" not in nurse.output
     row, [call] = last_run()
     assert call.error is not None
