@@ -31,6 +31,8 @@ OPENING = datetime(2026, 3, 2, 8, 0)  # a Monday
 RAYS, REACH = 36, 8.0
 """Of the lidar: how many, and how many metres."""
 PERSON_RADIUS = 0.25
+MAX_SEGMENTS = 50_000
+"""Of walls and a map's outlines; with more, finding ways between them would take minutes."""
 
 _SCAN_EVERY = 6  # steps: ten times a second
 _SAMPLE_EVERY = 12
@@ -38,7 +40,8 @@ _MOST_SAMPLES = 60_000  # more than three hours of driving; then the oldest go
 
 
 class Hospital:
-    """Everything there is, at one moment. Raises `NotPossible` if the world has no geometry."""
+    """Everything there is, at one moment. Raises `NotPossible` if the world has no geometry, or
+    more than can be driven in."""
 
     def __init__(self, world: World, seed: int, start: datetime | None) -> None:
         pose = world.start
@@ -46,6 +49,11 @@ class Hospital:
             raise NotPossible(
                 f"The world {world.name} has no map to drive on. "
                 "Give its places a pose, or choose another world."
+            )
+        if len(world.walls) > MAX_SEGMENTS:
+            raise NotPossible(
+                f"The map of {world.name} has too many specks to find ways between. "
+                "Clean its image, or scale it down."
             )
         self.world = world
         self.start = start or OPENING

@@ -30,6 +30,8 @@ Floats = NDArray[np.float64]
 
 _GRAZE = 1e-3  # edges run along the grown obstacles; this much inside does not count as crossing
 _DISC_CORNERS = 8
+_PAIRS_AT_ONCE = 1_000_000
+_SPOTS_ON_A_WAY = [odd / parts for parts in (2, 4, 8, 16, 32) for odd in range(1, parts, 2)]
 
 
 class Disc(NamedTuple):
@@ -122,16 +124,27 @@ class Chart:
             after[reachable],
         )
 
-        first, second = np.triu_indices(len(self._nodes), 1)
-        bends = self._bends(self._nodes[first], second) & self._bends(self._nodes[second], first)
-        first, second = first[bends], second[bends]
-        lines = _lines(self._nodes[first], self._nodes[second])
-        clear = shapely.covers(self._passable, lines)
-        self._first, self._second, self._edges = first[clear], second[clear], lines[clear]
+        found = [self._edges_from(rows) for rows in _shares(len(self._nodes))]
+        self._first, self._second = (np.concatenate(part) for part in zip(*found, strict=True))
+        self._edges = _lines(self._nodes[self._first], self._nodes[self._second])
         self._lengths = shapely.length(self._edges)
         self._crossing = {
             name: shapely.intersects(gate, self._edges) for name, gate in self._gates.items()
         }
+
+    def _edges_from(self, rows: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+        """The ends of clear ways from these nodes to later ones that a shortest way can take."""
+        first, second = np.nonzero(np.arange(len(self._nodes)) > rows[:, None])
+        first = rows[first]
+        bends = self._bends(self._nodes[first], second) & self._bends(self._nodes[second], first)
+        first, second = first[bends], second[bends]
+        # Of most ways a few spots tell that something is in between, much faster than the line.
+        for share in _SPOTS_ON_A_WAY:
+            spots = (1 - share) * self._nodes[first] + share * self._nodes[second]
+            free = shapely.intersects_xy(self._passable, spots[:, 0], spots[:, 1])
+            first, second = first[free], second[free]
+        clear = shapely.covers(self._passable, _lines(self._nodes[first], self._nodes[second]))
+        return first[clear], second[clear]
 
     def _bends(self, origin: Floats, nodes: NDArray[Any]) -> NDArray[np.bool_]:
         """Whether a shortest way that comes from `origin` can bend around each of the `nodes`."""
@@ -328,6 +341,11 @@ def _corners(grown: BaseGeometry) -> tuple[Floats, Floats, Floats]:
             found.append((here[sticks_out], before[sticks_out], after[sticks_out]))
     here, before, after = (np.concatenate(part) for part in zip(*found, strict=True))
     return here, before, after
+
+
+def _shares(count: int) -> list[NDArray[Any]]:
+    """So many rows in shares that make up to a million pairs each."""
+    return np.array_split(np.arange(count), max(1, count**2 // _PAIRS_AT_ONCE))
 
 
 def _cross(a: Floats, b: Floats) -> Floats:

@@ -10,7 +10,10 @@ import numpy.typing as npt
 import pytest
 from PIL import Image
 
+from sim.errors import NotPossible
+from sim.hospital import chart_of
 from sim.maps import outlines
+from sim.simulation import Simulation
 from sim.world import WorldError, load_world, polygon_area
 
 Grey = npt.NDArray[np.uint8]
@@ -170,3 +173,26 @@ def test_a_wrong_field_of_a_map_is_told(tmp_path: Path) -> None:
         load_world(write(tmp_path, room(), resolution="fine"))
     with pytest.raises(WorldError, match=r"neither .trinary. nor .scale"):
         load_world(write(tmp_path, room(), mode="raw"))
+
+
+def test_a_map_full_of_specks_is_driven_in(tmp_path: Path) -> None:
+    cells = np.full((600, 600), FREE, np.uint8)
+    cells[[0, -1]] = cells[:, [0, -1]] = WALL
+    spots = np.random.default_rng(1).integers(20, 580, (120, 2))
+    for row, column in spots:
+        cells[row : row + 2, column : column + 2] = WALL
+    world = load_world(write(tmp_path, cells))
+    assert len(world.walls) > 400
+    x1, y1, x2, y2 = world.bounds
+    start, goal = (x1 + 0.6, y1 + 0.6), (x2 - 0.6, y2 - 0.6)
+    route = chart_of(world).route(start, goal)
+    assert route is not None
+    # Specks are driven around; they do not make the way much longer.
+    assert math.dist(start, goal) < route.length < 1.1 * math.dist(start, goal)
+
+
+def test_a_map_of_nothing_but_specks_is_refused_in_words(tmp_path: Path) -> None:
+    noise = np.random.default_rng(1).integers(0, 2, (400, 400), np.uint8) * np.uint8(FREE)
+    world = load_world(write(tmp_path, noise))
+    with pytest.raises(NotPossible, match="too many specks"):
+        Simulation(world)
