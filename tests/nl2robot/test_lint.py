@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from grammar.language import languages
 from nl2robot import lint as linter
 from nl2robot.cli import main
-from nl2robot.commands.options import LANGUAGES
 from nl2robot.lint import alike, lint
 from sim.world import WorldError, builtin_worlds
 
@@ -28,7 +28,7 @@ def found(file: str, language: str = "en") -> list[tuple[int, str, str]]:
 
 
 @pytest.mark.parametrize("name", builtin_worlds())
-@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("language", languages())
 def test_the_built_in_worlds_have_no_errors(name, language) -> None:
     assert [each for each in lint(name, [language]) if each.severity == "error"] == []
 
