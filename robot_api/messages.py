@@ -1,5 +1,6 @@
 """The style of the paper: messages that are made first and sent then.
 
+    import re                                   # the paper's listing uses it and forgot it
     from robot_api.messages import Robot
 
     robot = Robot()
@@ -8,6 +9,7 @@
     robot.send_message(robot.goto(-605, -1027, -1.3))
     response = robot.send_message(robot.listen(prompt="Where to?"))
     speech = response.get('data', {}).get('speech')
+    pharmacy = re.compile("pharmacy").search(speech)
 
 As there, coordinates count in the map's own unit (`Capabilities.units`, often centimetres) and
 angles in radians; names are those of the paper's Listing 1 and others like them. New programs are
