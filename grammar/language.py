@@ -207,7 +207,8 @@ def _language(code: str, data: Mapping[str, Any]) -> Language:
         for way in _entries(ways)
         for text in _texts(_template(way, "lists"))
     }
-    spelled |= set(spelling.numbers) | set(numbers.get("scales", {}))
+    spelled |= set(_number_words(numbers, {})) | set(numbers.get("scales", {}))
+    spelled |= {*data.get("fillers", ()), *data.get("closed", ())}
     return Language(
         code=code,
         rules=rules,

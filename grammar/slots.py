@@ -49,6 +49,8 @@ class Names:
         self.lexicon = lexicon
         self.tries: dict[str, Trie] = {}
         self.words: set[str] = set()
+        self.spelled: set[str] = set()
+        """The names as people write and speak them."""
         self._places()
         for name in lexicon.people:
             self._add_name("person", name)
@@ -129,6 +131,7 @@ class Names:
         return tuple(dict.fromkeys(each for form in forms for each in self._variants(form)))
 
     def _add(self, slot: str, text: str, value: Any) -> None:
+        self.spelled.add(text)
         self._add_words(slot, self.language.tokens_of(text), value)
 
     def _add_words(self, slot: str, words: tuple[str, ...], value: Any) -> None:

@@ -11,14 +11,15 @@ from grammar.tokens import plain
 
 _WORD = re.compile(r"[^\W\d_]+(?:'[^\W\d_]+)*")
 
+_MARK = re.compile(r"⟨[^⟩]*⟩")
+"""Marks of cases in examples, which nobody says."""
+
 
 def vocabulary(lexicon: Lexicon, language: str = "en") -> list[str]:
     """The words, in lower case and in order, each once."""
     pack = load_language(language)
     texts: list[str] = [*pack.spelled_words, *pack.spelling.contractions]
-    texts += [word for filler in pack.fillers for word in filler]
-    texts += pack.closed
-    texts += [example for examples in pack.help.values() for example in examples]
+    texts += [_MARK.sub("", example) for examples in pack.help.values() for example in examples]
     for name in (*lexicon.places, *lexicon.people, *lexicon.objects, *lexicon.furniture):
         texts += [name.name, *name.aliases, *name.attributes, name.kind or ""]
     texts += [*lexicon.contacts, *lexicon.gestures, *lexicon.emotions, *lexicon.skills]
@@ -26,6 +27,6 @@ def vocabulary(lexicon: Lexicon, language: str = "en") -> list[str]:
     texts += [routine.name for routine in lexicon.routines]
     for question in lexicon.questions:
         texts += [question.question, *question.aliases]
-    texts += names_of(pack, lexicon).words
+    texts += names_of(pack, lexicon).spelled
     words = {word for text in texts for word in _WORD.findall(plain(text))}
     return sorted(words)

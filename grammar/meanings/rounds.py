@@ -8,6 +8,7 @@ from grammar.meanings.finding import speak_to
 from grammar.meanings.nouns import is_me, kind_places, sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import go_back, note
+from grammar.naming import joined_up
 from grammar.plan import (
     Ask,
     Call,
@@ -121,7 +122,7 @@ def round_count(d: Discourse, node: Node) -> Steps:
     thing: Thing = d.get(node, "thing")
     places = places_of(d, node)
     noun, _, rest = thing.text.partition(" ") if thing.person else (thing.text, "", "")
-    things = f"{plural(noun, d.language)} {rest}".strip()
+    things = joined_up(f"{plural(d.called(noun), d.language)} {rest}".strip(), d.language)
     place, count = d.variable("place"), d.variable("count")
     kind = str(node.production.fixed["kind"])
     first, notes, told = _kept(d, kind, count, Recall(place), things)
@@ -159,7 +160,10 @@ def compared(d: Discourse, node: Node) -> Steps:
         steps += [Call("goto", {"place": each}), Remember(name, counting)]
         counts.append(Recall(name))
     operator = str(node.production.fixed.get("operator") or d.get(node, "operator"))
-    number = d.sentence("two_counts", left=left, right=right, first=counts[0], second=counts[1])
+    called = [d.called(each.value) if isinstance(each, Text) else each for each in (left, right)]
+    number = d.sentence(
+        "two_counts", left=called[0], right=called[1], first=counts[0], second=counts[1]
+    )
     yes, no = (d.say(phrase, counts=number) for phrase in ("yes_so", "no_so"))
     told = If(Compare(counts[0], operator, counts[1]), (yes,), (no,))
     return brought_back(d, node, steps, [told])

@@ -265,3 +265,50 @@ def test_no_marks_are_left_in_explanations() -> None:
         for row in rows:
             if heard(row["say"]).plan is not None:
                 assert not set(told(row["say"])) & {"⟨", "⟩"}, row["say"]
+
+
+@pytest.mark.parametrize(
+    ("sentence", "meaning"),
+    [
+        ("fahr in zehn Minuten zur Apotheke", 'wait(600); goto("pharmacy")'),
+        (
+            "um acht Uhr sag guten Morgen",
+            'while clock().time < "08:00" { wait(10) }; say("Guten Morgen.")',
+        ),
+        (
+            "frag alle im Wartezimmer, ob sie Hilfe brauchen, "
+            "und sag mir, wie viele ja gesagt haben",
+            "start = location(); asked = 0; said_ja = 0; "
+            'goto("waiting room"); for person in people() { '
+            'answer = ask("Brauchen Sie Hilfe?", ["ja", "nein"], person); asked += 1; '
+            'if answer == "ja" { said_ja += 1 } }; goto(start); '
+            'say("{said_ja} von {asked} sagten ja.")',
+        ),
+        (
+            "welche Büros sind leer",
+            'start = location(); found = []; for place in places("office") { goto(place); '
+            'if not sees("person") { found += place } }; goto(start); '
+            'if len(found) == 0 { say("Ich habe keine gefunden.") } '
+            'else { say("Diese habe ich gefunden: {found}.") }',
+        ),
+        (
+            "fahr alle Stationen ab und wünsch gute Nacht",
+            'for place in places("ward") { goto(place); say("Gute Nacht.") }',
+        ),
+    ],
+)
+def test_times_rounds_and_reports(sentence: str, meaning: str) -> None:
+    assert does(sentence) == meaning
+
+
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        "sprich etwas langsamer",
+        "lies mir vor, was auf dem Etikett steht",
+        "warte, bis ich fertig bin",
+        "wenn die Sterne günstig stehen, fahr in die Küche",
+    ],
+)
+def test_what_cannot_be_done_is_not_shortened(sentence: str) -> None:
+    assert heard(sentence).plan is None
