@@ -57,15 +57,6 @@ def check(program: str, stub: str) -> list[Finding]:
     return sorted(set(findings), key=lambda each: (each.line, each.column, each.code))
 
 
-def robot_methods(program: str) -> list[str]:
-    """The robot methods that a program without errors calls, each once, in the order of the text.
-
-    Raises `SyntaxError` if it is no program."""
-    calls = [node for node in ast.walk(_parsed(program)) if isinstance(node, ast.Call)]
-    calls.sort(key=lambda node: (node.lineno, node.col_offset))
-    return list(dict.fromkeys(name for call in calls if (name := _robot_method(call.func))))
-
-
 def syntax_finding(program: str) -> Finding | None:
     """Why the text is no Python program at all, or one too large to be looked at."""
 

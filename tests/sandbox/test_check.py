@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from grammar.program import write_program
 from robot_api.driver import Capabilities
 from robot_api.stub import stub
-from sandbox.check import Finding, check, robot_methods
+from sandbox.check import Finding, check
 from sandbox.limits import MAX_PROGRAM
 from tests.grammar.random_plans import plans
 
@@ -215,13 +215,6 @@ def test_an_empty_program_is_one() -> None:
     assert check("# nothing\n", STUB) == []
 
 
-def test_the_methods_a_program_needs() -> None:
-    assert robot_methods('robot.goto("x")\nif robot.sees("y"):\n    robot.goto("z")') == [
-        "goto",
-        "sees",
-    ]
-
-
 @MODEST
 @given(st.text())
 def test_no_text_confuses_the_check(text: str) -> None:
@@ -229,10 +222,22 @@ def test_no_text_confuses_the_check(text: str) -> None:
 
 
 PIECES = [
-    *"()[]{}:,.=+-*/%@&|^~<>!\"'\\\n\t #",
+    *"()[]{}:,.=+-*/%@&|^~<>!\"'\\\n\r\t #",
     *("robot", "say", "goto", " if ", " else ", " for ", " in ", "while ", "lambda x:", "def f():"),
     *("yield ", "await ", "class A:", "import ", "from ", "\n    ", "\n  ", "f'{", "}'", "None"),
-    *("0", "1.5", "'x'", "x", "é", "match x:\n    case ", "try:\n", "except:\n", "del ", "return "),
+    *(
+        "0",
+        "1.5",
+        "'x'",
+        "x",
+        "é",
+        "__x__",
+        "match x:\n    case ",
+        "try:\n",
+        "except:\n",
+        "del ",
+        "return ",
+    ),
 ]
 
 
