@@ -94,7 +94,9 @@ def services(runner: Runner) -> dict[str, Service]:
             "utterance",
         ),
         "program.phrases": _service(
-            lambda p: samples(runner.knowledge.lexicon(p.get("language", "en"))),
+            lambda p: samples(
+                runner.knowledge.lexicon(p.get("language", "en")), p.get("language", "en")
+            ),
             "List what can be said here, by topic.",
             {"language": _LANGUAGE},
         ),
