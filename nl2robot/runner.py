@@ -341,27 +341,29 @@ class Runner:
         outcome = activity.outcome or Outcome(
             status="failed", message="The run ended through a fault of this software."
         )
-        activity.state = outcome.status
-        activity.message = None if outcome.status == "done" else outcome.message
+        message = None if outcome.status == "done" else outcome.message
         if outcome.line is not None:
             activity.line = outcome.line
         try:
-            self.log.end(activity.run, activity.state, activity.message)
+            self.log.end(activity.run, outcome.status, message)
         except LogError as error:
-            activity.message = str(error)
+            message = str(error)
         try:
             # Those who watch hear of the end before those who wait are told.
-            self._tell(activity, "state")
+            self._tell(activity, "state", state=outcome.status, message=message)
         finally:
-            activity.over.set()
+            with self._lock:  # whoever is told of the end may start the next run
+                activity.state, activity.message = outcome.status, message
+                activity.over.set()
 
     # --- helpers
 
     def _control(self, state: State, act: Callable[[Execution], None]) -> Status:
         activity = self._activity
-        if activity is None or activity.over.is_set() or activity.execution is None:
-            raise NotPossible("No program is running.")
-        activity.state = state
+        with self._lock:
+            if activity is None or activity.outcome is not None or activity.execution is None:
+                raise NotPossible("No program is running.")
+            activity.state = state
         act(activity.execution)
         self._tell(activity, "state")
         return activity.status()

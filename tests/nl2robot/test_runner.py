@@ -222,3 +222,22 @@ def test_two_operators_see_the_same_run(slow_station, sit_down) -> None:
     run = start(first, ROUND)
     watch.until(what("state", state="done", run=run))
     assert first.wait(run) == second.wait(run)
+
+
+def test_a_run_is_over_when_it_is_logged_and_the_next_one_may_begin(
+    operator, log, monkeypatch
+) -> None:
+    end, states = log.end, []
+
+    def slowly(*values) -> None:
+        """As on a slow disk: somebody asks and presses pause meanwhile."""
+        states.append(operator.robot.request("program.state")["state"])
+        with pytest.raises(NotPossible):
+            operator.robot.request("program.pause")
+        end(*values)
+
+    monkeypatch.setattr(log, "end", slowly)
+    for _ in range(3):
+        assert operator.wait(start(operator, "robot.battery()\n")).state == "done"
+    assert states == ["running"] * 3
+    assert operator.robot.request("program.state")["state"] == "done"
