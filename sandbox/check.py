@@ -303,10 +303,8 @@ class _Reader:
         )
 
     def loops(self, node: ast.AST) -> Iterator[Finding]:
-        if not isinstance(node, ast.While) or any(
-            isinstance(step, ast.Break | ast.Return | ast.Raise) for step in node.body
-        ):
-            return  # no loop, or one that never goes round
+        if not isinstance(node, ast.While) or _never_goes_round(node):
+            return
         is_true = isinstance(node.test, ast.Constant) and bool(node.test.value)
         endless = is_true and not _leaves(node)
         if not self.calls_the_robot(node):
@@ -412,6 +410,28 @@ def _bound(node: ast.AST) -> list[str | None]:
             return [*names]
         case _:
             return []
+
+
+def _never_goes_round(loop: ast.While) -> bool:
+    again = any(isinstance(node, ast.Continue) for node in ast.walk(loop))
+    return _always_leaves(loop.body) and not again
+
+
+def _always_leaves(steps: list[ast.stmt]) -> bool:
+    """Whether these steps end the loop they stand in, whichever way they go."""
+    for step in steps:
+        match step:
+            case ast.Break() | ast.Return() | ast.Raise():
+                return True
+            case ast.If(body=body, orelse=otherwise) if otherwise:
+                ways = [body, otherwise]
+            case ast.Try(body=body, handlers=handlers, orelse=otherwise):
+                ways = [[*body, *otherwise], *(handler.body for handler in handlers)]
+            case _:
+                continue
+        if all(map(_always_leaves, ways)):
+            return True
+    return False
 
 
 def _leaves(loop: ast.While) -> bool:

@@ -189,6 +189,15 @@ def test_loops_are_looked_at() -> None:
     assert found(inner) == [(1, "warning", "endless-loop")]
 
 
+def test_a_loop_that_never_goes_round_is_no_busy_one() -> None:
+    once = "while True:\n    try:\n        robot.battery()\n        break\n    except Exception:\n"
+    assert found(f"{once}        break") == []
+    assert found(f"{once}        pass") == [(1, "warning", "busy-loop")]
+    asked = "while True:\n    if robot.sees('x'):\n        break\n    else:\n"
+    assert found(f"{asked}        raise ValueError") == []
+    assert found(f"{asked}        continue\n    break") == [(1, "warning", "busy-loop")]
+
+
 @pytest.mark.parametrize(
     ("program", "code"),
     [
