@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterator
-from typing import Any, Final
+from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.language import Language
@@ -77,8 +77,9 @@ def _leaves(tree: Node, slots: frozenset[str]) -> Iterator[Leaf]:
             yield from _leaves(part, slots)
 
 
-def _texts(value: Any) -> Iterator[str]:
+def _texts(value: Plan) -> Iterator[str]:
     """All texts and names in a plan."""
+    yield from value.background
     for node in nodes(value.steps):
         for name in node.__struct_fields__:
             inside = getattr(node, name)

@@ -140,6 +140,8 @@ class Discourse:
     report_step: Step | None = None
     """The step that tells it."""
     variables: set[str] = field(default_factory=set)
+    background: list[str] = field(default_factory=list)
+    """What was said besides, in its words, and asks for nothing."""
     assumptions: list[str] = field(default_factory=list)
     """What was assumed without being said; each lowers the confidence."""
 

@@ -17,6 +17,7 @@ from typing import Final, assert_never
 
 from grammar import plan as p
 from grammar.inference import Types, may_end, walk
+from grammar.language import load_language
 from grammar.reading import Code, CodeStep, Function, read_program
 from grammar.speech import Speech, Words, fill, fitting, forms, gaps, speech
 from robot_api.methods import METHODS
@@ -49,7 +50,11 @@ def explain(plan: p.Plan, language: str = "en", called: Callable[[str], str] | N
     """The plan in sentences. `called` gives what a name of the plan is called in the language
     (`grammar.naming`); without it, names stand as the world spells them."""
     words = speech(language)
-    return words.joined_up(sentences(tell(plan, words, called), words))
+    told = words.joined_up(sentences(tell(plan, words, called), words))
+    if not plan.background:
+        return told
+    said = "; ".join(plan.background)
+    return f"{told} {load_language(language).phrase('background', said=said)}"
 
 
 def explain_steps(

@@ -228,6 +228,8 @@ class Plan(msgspec.Struct, frozen=True):
 
     steps: tuple[Step, ...]
     language: str = "en"
+    background: tuple[str, ...] = ()
+    """What was said besides that asks for nothing ("I do not hear well"): shown, not acted on."""
 
 
 def calls(plan: Plan) -> list[Call | Ask]:

@@ -78,6 +78,7 @@ _FLIPPED: Final = {"==": "!=", "!=": "==", "<": ">=", "<=": ">", ">": "<=", ">="
 class _Writer:
     def __init__(self, plan: p.Plan) -> None:
         self.types = Types(plan)
+        self.background = plan.background
         self.names = Identifiers()
         self.uses_random = False
         self.uses_percent = False
@@ -86,6 +87,7 @@ class _Writer:
             self.names.of(name)
 
     def header(self) -> Iterator[Line]:
+        yield from (Line(f"# {' '.join(said.split())}") for said in self.background)
         if self.uses_random:
             yield Line("import random")
             yield Line("")

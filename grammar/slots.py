@@ -178,6 +178,7 @@ class Slots:
             "{text}": self._text,
             "{noun}": self._noun,
             "{word}": self._word,
+            "{remark}": self._remark,
             "{unknown}": self._unknown,
         }
         return slots
@@ -332,6 +333,19 @@ class Slots:
                 continue
             cost += 0.0 if token.kind == "quote" else FREE_WORD
             matches.append((position + 1, cost, None))
+        return matches
+
+    def _remark(self, at: int) -> list[Match]:
+        """Words up to the end of a clause: no punctuation, and nothing that is to be done."""
+        matches: list[Match] = []
+        duties = self.language.speech.get("duties", ())
+        for position in range(at, len(self.tokens)):
+            token = self.tokens[position]
+            if token.norm in duties:
+                return []
+            if token.kind in ("mark", "quote") or self._begins_command(position):
+                break
+            matches.append((position + 1, FREE_WORD * (position + 1 - at), None))
         return matches
 
     def _goes_on(self, at: int) -> bool:

@@ -211,7 +211,13 @@ class _Reader:
         if not steps:
             return self._not_understood(chart)
         try:
-            plan = scoped(Plan((*discourse.prologue(), *steps), self.language.code))
+            plan = scoped(
+                Plan(
+                    (*discourse.prologue(), *steps),
+                    self.language.code,
+                    tuple(discourse.background),
+                )
+            )
         except Unbound:
             return _rejected(self.text, self.language.phrase("too_complicated"), self.context)
         lost = left_out(tree, self.tokens, plan, self.language, self.lexicon)

@@ -14,6 +14,7 @@ import grammar.meanings.driving
 import grammar.meanings.nouns
 import grammar.meanings.people
 import grammar.meanings.questions
+import grammar.meanings.remarks
 import grammar.meanings.reports
 import grammar.meanings.requests
 import grammar.meanings.rounds

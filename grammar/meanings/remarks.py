@@ -1,0 +1,115 @@
+"""What people say besides: where somebody is, how somebody is called, why something is wanted.
+
+A remark asks for nothing. What it tells of places and names is used by the commands around it; the
+rest is kept in the plan as background, where it is shown and not acted on.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Final, TypeVar
+
+import msgspec
+
+from grammar.chart import Node
+from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, Where, as_value
+from grammar.meanings.registry import meaning
+from grammar.meanings.reports import Report
+from grammar.meanings.speaking import sentence_form
+from grammar.plan import Ask, Call, Text, Value
+
+SUBJECTS: Final = ("person_ref", "place", "thing")
+"""Parts that a remark can be about."""
+
+_Node = TypeVar("_Node", bound=msgspec.Struct)
+
+
+@meaning("remark")
+def remark(d: Discourse, node: Node) -> Steps:
+    """ "the coffee machine is broken", "because I do not hear well". Of whom or what it speaks can
+    be spoken of as "her" or "it" from now on, and what it says can be told to somebody."""
+    for name, part in node.parts.items():
+        if name in SUBJECTS:
+            with contextlib.suppress(NotUnderstood):  # it may speak of what nobody knows
+                d.build(part)
+    if not node.production.fixed.get("own"):
+        d.report = Report("only", Text(sentence_form(_said(d, node))), about_here=False)
+        d.report_step = None
+    return aside(d, node)
+
+
+def aside(d: Discourse, node: Node) -> Steps:
+    """Nothing to do, but something to show."""
+    d.background.append(_said(d, node))
+    return []
+
+
+def _said(d: Discourse, node: Node) -> str:
+    """The words of a remark, with those at its end that say nothing."""
+    end = node.end
+    while (
+        end < len(d.tokens)
+        and d.tokens[end].kind == "word"
+        and ((d.tokens[end].norm,) in d.language.fillers)
+    ):
+        end += 1
+    return d.words(node.start, end)
+
+
+@meaning("remark_name")
+def remark_name(d: Discourse, node: Node) -> Steps:
+    """ "her name is Grace": "her" and "my wife" are Grace from now on."""
+    d.get(node, "person_ref")
+    return aside(d, node)
+
+
+@meaning("remark_where")
+def remark_where(d: Discourse, node: Node) -> Steps:
+    """ "bring it to Alice, she is in ward a", "I forgot my bag in the cafeteria": where to look."""
+    spot: Where = d.get(node, "where")
+    place = spot.place
+    thing: Thing | None = d.get(node, "thing")
+    person: Thing | None = d.get(node, "person_ref")
+    who = person or (d.person if thing is None and not node.production.fixed.get("it") else None)
+    if thing is None and who is not None:
+        d.person, d.thing_last = replace(who, place=place, furniture=spot.furniture), False
+        d.with_person = None
+        known_to_be(d, who.value, place)
+    else:
+        what = thing or d.thing
+        if what is not None:
+            d.thing, d.thing_last = replace(what, place=place, furniture=spot.furniture), True
+            known_to_be(d, what.value, place)
+    return aside(d, node)
+
+
+def known_to_be(d: Discourse, value: Value, place: Value | None) -> None:
+    """Let the steps so far look for somebody or something where they are said to be."""
+    if place is not None:
+        d.done[:] = [_looking_at(step, value, place) for step in d.done]
+
+
+def _looking_at(part: _Node, value: Value, place: Value) -> _Node:
+    changes: dict[str, object] = {}
+    for name in part.__struct_fields__:
+        inside = getattr(part, name)
+        if isinstance(inside, msgspec.Struct):
+            changes[name] = _looking_at(inside, value, place)
+        elif isinstance(inside, tuple):
+            changes[name] = tuple(_each_looking_at(inside, value, place))
+    changed = msgspec.structs.replace(part, **changes) if changes else part
+    if (
+        isinstance(changed, Call | Ask)
+        and changed.method == "find"
+        and changed.arguments == {"thing": as_value(value)}
+    ):
+        arguments = {**changed.arguments, "place": place}
+        return msgspec.structs.replace(changed, arguments=arguments)
+    return changed
+
+
+def _each_looking_at(parts: Iterable[object], value: Value, place: Value) -> Iterable[object]:
+    for part in parts:
+        yield _looking_at(part, value, place) if isinstance(part, msgspec.Struct) else part
