@@ -1,0 +1,59 @@
+"""`nl2robot paraphrases`: how well a file of commands with logical forms is understood."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+from nl2robot.errors import ExitStatus
+from nl2robot.paraphrases import DEFAULT_WORLD, Total
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", metavar="FILE.tsv", help="a command, a tab, its logical form")
+    parser.add_argument(
+        "--world",
+        default=DEFAULT_WORLD,
+        metavar="W",
+        help=f"a built-in world's name or a YAML file (default: {DEFAULT_WORLD})",
+    )
+    parser.add_argument("--misses", action="store_true", help="list what was not right, and why")
+    parser.add_argument("--json", action="store_true", help="the figures as one JSON object")
+
+
+def run(options: argparse.Namespace) -> int:
+    from nl2robot.knowledge import Knowledge
+    from nl2robot.paraphrases import by_kind, load, score, total
+    from nl2robot.terminal import Terminal
+    from sim.world import load_world
+
+    lexicon = Knowledge(load_world(options.world, names_only=True)).lexicon("en")
+    scores = [score(row, lexicon) for row in load(Path(options.file))]
+    if options.json:
+        figures = total(scores)
+        print(json.dumps({"rows": figures.rows, **dict(_shares(figures))}))
+        return ExitStatus.OK
+    terminal = Terminal()
+    if options.misses:
+        for each in scores:
+            if each.outcome != "right":
+                print(
+                    f"{each.outcome}: {each.row.words}\n  wanted {each.wanted}\n  got    {each.got}"
+                )
+        return ExitStatus.OK
+    table = terminal.table("kind of command", "rows", "head", "right", "refused", "wrong")
+    kinds = {kind: total(own) for kind, own in by_kind(scores).items()}
+    for kind, figures in {**kinds, "all": total(scores)}.items():
+        table.add_row(kind, str(figures.rows), *(f"{share:.1%}" for _, share in _shares(figures)))
+    terminal.console.print(table)
+    return ExitStatus.OK
+
+
+def _shares(figures: Total) -> list[tuple[str, float]]:
+    return [
+        ("head", figures.head),
+        ("right", figures.right),
+        ("refused", figures.refused),
+        ("wrong", figures.wrong),
+    ]
