@@ -10,11 +10,10 @@ from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Wh
 from grammar.meanings.finding import go, if_found, meet, speak_to
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
-from grammar.meanings.speaking import sentence_form
 from grammar.meanings.surveys import Survey
 from grammar.plan import Ask, Call, ForEach, Forever, Items, Number, Recall, Repeat, Text, Value
 from grammar.tokens import COLON, COMMA
-from grammar.wordorder import direct_clause, parted
+from grammar.wordorder import parted
 
 MOST_OPTIONS: Final = 20
 LONGEST_OFFERED: Final = 3
@@ -275,19 +274,6 @@ def ask_to(d: Discourse, node: Node) -> Steps:
         text = f"{text} {turn_to_you(d, node.parts['verb'].start, node.parts['verb'].end)}"
     request = d.sentence("please_do", what=text)
     return speak_to(d, d.get(node, "person_ref"), [Call("say", {"text": request})])
-
-
-@meaning("say_that")
-def say_that(d: Discourse, node: Node) -> Steps:
-    """ "tell her that lunch is ready" -> "Lunch is ready."; to somebody, "they" becomes "you"."""
-    part = node.parts["text"]
-    if isinstance(part, Leaf) and part.slot == "quote":
-        text = str(part.value)
-    elif node.production.fixed.get("to_you"):
-        text = sentence_form(turn_to_you(d, part.start, part.end))
-    else:
-        text = sentence_form(direct_clause(d, part.start, part.end))
-    return speak_to(d, d.get(node, "person_ref"), [Call("say", {"text": Text(text)})])
 
 
 @meaning("ask_again")

@@ -1,0 +1,109 @@
+"""What is passed on to somebody is said to them: "tell Bob that he is late" becomes "You are late."
+
+A pronoun of the third person means the one who is spoken to, unless somebody else whom it could
+mean was spoken of in a clause before it ("tell Alice that her patient is here and he is waiting").
+"""
+
+from __future__ import annotations
+
+from grammar.chart import Leaf, Node
+from grammar.discourse import Discourse, Steps, Thing
+from grammar.meanings.finding import speak_to
+from grammar.meanings.questions import base_form, turn_to_you
+from grammar.meanings.registry import meaning
+from grammar.meanings.speaking import sentence_form
+from grammar.plan import Call, Text
+from grammar.slots import names_of
+from grammar.tokens import COMMA, Token
+from grammar.wordorder import direct_clause
+
+
+@meaning("say_that")
+def say_that(d: Discourse, node: Node) -> Steps:
+    """ "tell her that lunch is ready" -> "Lunch is ready."; to somebody, "they" becomes "you"."""
+    part = node.parts["text"]
+    person: Thing | None = d.get(node, "person_ref")
+    if isinstance(part, Leaf) and part.slot == "quote":
+        text = str(part.value)
+    elif node.production.fixed.get("to_you"):
+        text = sentence_form(turn_to_you(d, part.start, part.end))
+    else:
+        ordered = direct_clause(d, part.start, part.end)
+        if ordered == d.words(part.start, part.end):
+            ordered = addressed(d, part.start, part.end, person)
+        text = sentence_form(ordered)
+    return speak_to(d, person, [Call("say", {"text": Text(text)})])
+
+
+def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
+    """The words of a message as its receiver hears them. Unchanged where nobody receives it, and in
+    languages without `addressing` in their data."""
+    data = d.language.speech.get("addressing")
+    if person is None or person.me or not data:
+        return d.words(start, end)
+    pieces: list[str] = []
+    subject = False
+    for at, original, space in _written(d, start, end):
+        tokens = [token.norm for token in d.tokens[at : at + _parts(d, at, end)]]
+        changed = list(tokens)
+        for number, word in enumerate(tokens):
+            if subject and word not in data["between"]:
+                changed[number] = base_form(d, word) if word not in data["unchanged"] else word
+                subject = False
+            you = data["you"].get(word)
+            possessed = word in data["possessives"] and _noun_follows(d, at + 1, end, data)
+            if you and not _of_another(d, start, at, possessed, data):
+                changed[number] = data["possessives"][word] if possessed else you
+                subject = word in data["subjects"]
+        pieces.append(space + (original if changed == tokens else " ".join(changed)))
+    return "".join(pieces).strip()
+
+
+def _written(d: Discourse, start: int, end: int) -> list[tuple[int, str, str]]:
+    """Each written word: its first token, how it is written, what stands before it."""
+    found: list[tuple[int, str, str]] = []
+    at = start
+    while at < end:
+        last = at + _parts(d, at, end) - 1
+        before = d.text[d.tokens[at - 1].end : d.tokens[at].start] if at > start else ""
+        found.append((at, d.text[d.tokens[at].start : d.tokens[last].end], before))
+        at = last + 1
+    return found
+
+
+def _parts(d: Discourse, at: int, end: int) -> int:
+    """How many tokens a written word is: two in "he's"."""
+    last = at + 1
+    while last < end and d.tokens[last].start < d.tokens[at].end:
+        last += 1
+    return last - at
+
+
+def _of_another(
+    d: Discourse, start: int, at: int, possessed: bool, data: dict[str, list[str]]
+) -> bool:
+    """Whether the pronoun here may mean somebody spoken of before it in the message: in another
+    clause, or as the owner of something in the same."""
+    boundary = False
+    for position in range(at - 1, start - 1, -1):
+        token = d.tokens[position]
+        boundary = boundary or token.norm == COMMA or token.norm in data["clause_joins"]
+        if (boundary or possessed) and _is_somebody(d, token, data):
+            return True
+    return False
+
+
+def _is_somebody(d: Discourse, token: Token, data: dict[str, list[str]]) -> bool:
+    names = names_of(d.language, d.lexicon)
+    return token.norm in data["somebody"] or any(
+        token.norm in names.tries[slot].branches
+        for slot in ("person", "person_kind")
+        if slot in names.tries
+    )
+
+
+def _noun_follows(d: Discourse, at: int, end: int, data: dict[str, list[str]]) -> bool:
+    if at >= end or d.tokens[at].kind != "word":
+        return False
+    word = d.tokens[at].norm
+    return word not in d.language.closed and word not in data["after_object"]
