@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Final
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.meanings.nouns import is_me, sought
 from grammar.naming import the
 from grammar.plan import Ask, Call, ForEach, Forever, Holds, If, Items, Not, Recall, Text, Value
+
+
+ANYBODY: Final = (ANYONE, "visitor", "patient", "customer")
+"""Whoever is there."""
 
 
 def go(d: Discourse, place: Value) -> Steps:
@@ -71,7 +76,10 @@ def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
         return [Forever((Call("wait_for", {"thing": person.value}), *steps))]
     if person is not None and isinstance(person.group, Items):
         return each_of(d, person.group, steps)
-    if person is None or is_here(d, person):
+    if person is None:
+        return steps
+    person = where_sent(d, person)
+    if is_here(d, person):
         return steps
     if not person.known and person.place is not None and (person.plural or person.text == ANYONE):
         return [*go(d, person.place), *steps]
@@ -99,6 +107,22 @@ def if_missing(d: Discourse, who: Value) -> Steps:
     """Look for somebody, and say so if they are nowhere."""
     found = Holds(Ask("find", {"thing": who}))
     return [If(Not(found), (d.say("not_found", thing=who),))]
+
+
+def where_sent(d: Discourse, person: Thing) -> Thing:
+    """Somebody spoken of right after going somewhere is there: "go to the bar and follow Alex"."""
+    last = d.done[-1] if d.done else None
+    going = isinstance(last, Call) and last.method == "goto" and last.arguments["place"] == d.at
+    if not going or person.place is not None or person.here or person.group is not None:
+        return person
+    if not isinstance(d.at, Text) or not (person.known or particular(person)):
+        return person
+    return replace(person, place=d.at)
+
+
+def particular(person: Thing) -> bool:
+    """Whether somebody is to be told from others: "the girl", "the person waving"."""
+    return not person.plural and person.text not in ANYBODY
 
 
 def is_here(d: Discourse, person: Thing) -> bool:

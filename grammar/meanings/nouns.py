@@ -195,8 +195,14 @@ SUPERLATIVE = "\0"
 """Marks a descriptor that stands before the noun."""
 
 
-def described(d: Discourse, noun: str, node: Node) -> Thing:
-    """A noun with all that its node says about it."""
+POSTURES: Final = ("sitting", "standing", "lying down")
+"""Of people, what is to be seen of them; things are only somewhere."""
+SEXES: Final = {"male": "man", "female": "woman"}
+
+
+def described(d: Discourse, noun: str, node: Node, *, lies_about: bool = False) -> Thing:
+    """A noun with all that its node says about it. Of a thing that lies about, it says nothing that
+    it lies or stands somewhere."""
     before: list[str] = []
     number = node.parts.get("number")
     if number is not None:
@@ -218,8 +224,14 @@ def described(d: Discourse, noun: str, node: Node) -> Thing:
                 after.append(mod.words)
         elif mod.startswith(SUPERLATIVE):
             before.append(mod[len(SUPERLATIVE) :])
-        else:
+        elif not (lies_about and mod in POSTURES):
             after.append(mod)
+    if noun == ANYONE:
+        for words in (before, after):
+            sex = next((each for each in words if each in SEXES), None)
+            if sex is not None:  # "a female person" is a woman
+                words.remove(sex)
+                noun = SEXES[sex]
     if place is None and furniture is None:
         furniture = d.at_furniture
     return Thing(Text(" ".join(word for word in (*before, noun, *after) if word)), place, furniture)
@@ -255,7 +267,7 @@ def thing(d: Discourse, node: Node) -> Thing:
     else:
         one, known, many = str(node.production.fixed.get("what", "object")), False, False
     found = replace(
-        described(d, one, node),
+        described(d, one, node, lies_about=True),
         known=known,
         plural=many,
         here=bool(node.production.fixed.get("here")),

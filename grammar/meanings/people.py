@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Ambiguous, Discourse, NotUnderstood, Steps, Thing, Where
-from grammar.meanings.finding import look_for, meet, named, speak_to
+from grammar.meanings.finding import look_for, meet, named, speak_to, where_sent
 from grammar.meanings.nouns import is_me, kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.things import deliver
@@ -40,7 +40,7 @@ def led(d: Discourse, node: Node) -> Thing:
         return Thing(Text(ANYONE), person=True, here=True)
     if person.coming or person.group is not None or person.count is not None:
         raise NotUnderstood(d.language.phrase("one_person"))
-    return person
+    return where_sent(d, person)
 
 
 def lead(d: Discourse, person: Thing, place: Value) -> Call:

@@ -7,7 +7,7 @@ from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where, capital
-from grammar.meanings.finding import go, if_found, meet, speak_to
+from grammar.meanings.finding import go, if_found, meet, speak_to, where_sent
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import Survey
@@ -34,6 +34,7 @@ def ask(d: Discourse, node: Node) -> Steps:
 def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
     """Ask those who are there, or somebody who has to be found first."""
     steps: Steps = []
+    person = where_sent(d, person) if person is not None else None
     several = person is not None and (person.group is not None or person.count is not None)
     everybody = person is not None and person.plural and person.text == ANYONE and not several
     if person is not None and several:

@@ -217,13 +217,7 @@ def _best(d: Discourse, node: Node) -> Thing:
     noun = "object"
     if isinstance(head, Leaf):
         noun = str(head.value[0]) if head.value else d.words(head.start, head.end)
-    weighs = node.parts.get("weighs")
-    thing = described(d, noun, node)
-    if weighs is not None:
-        least = d.language.speech["least"] in d.norms(weighs.start, weighs.end)
-        word = d.language.speech["lightest" if least else "heaviest"]
-        thing = replace(thing, value=Text(f"{word} {thing.text}"))
-    return thing
+    return described(d, noun, node)
 
 
 @meaning("counted_info")
