@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, Where, as_value
-from grammar.meanings.finding import go, look_for, where_sent, noun_of
+from grammar.meanings.finding import go, look_for, noun_of, where_sent
 from grammar.meanings.nouns import is_me, sought
 from grammar.meanings.registry import meaning
 from grammar.plan import Call, Number, Repeat, Text, Value

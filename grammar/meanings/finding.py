@@ -11,7 +11,6 @@ from grammar.meanings.nouns import is_me, sought
 from grammar.naming import the
 from grammar.plan import Ask, Call, ForEach, Forever, Holds, If, Items, Not, Recall, Text, Value
 
-
 ANYBODY: Final = (ANYONE, "visitor", "patient", "customer")
 """Whoever is there."""
 
