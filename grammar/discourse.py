@@ -135,6 +135,14 @@ class Discourse:
     """What was told last (`grammar.meanings.reports.Report`), so that it can be told to others."""
     fetched: Step | None = None
     """The last step, if it brings somebody here for no other reason than that they were fetched."""
+    notes: dict[tuple[Any, ...], str] = field(default_factory=dict)
+    """The variables with what is noted of a poll, by what that is (`grammar.meanings.news`)."""
+    said: Any = None
+    """The answer that was last told of (`grammar.meanings.answers.Wanted`): "... that is"."""
+    news: Any = None
+    """What was told last of a poll or a round (`grammar.meanings.news.News`)."""
+    counted: Any = None
+    """The step that counts in the last round, the place it is at, and what is counted."""
     told: Step | None = None
     """The last step, if it has told the speaker all there is to tell."""
     report_step: Step | None = None

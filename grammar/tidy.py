@@ -9,9 +9,11 @@ import msgspec
 
 from grammar.plan import (
     Call,
+    Collect,
     ForEach,
     Forever,
     If,
+    Increase,
     Node,
     Number,
     Plan,
@@ -152,9 +154,13 @@ def _goes_back(step: Step) -> bool:
 
 
 def without_unused(plan: Plan) -> Plan:
-    """The plan without names for results, and without kept values, that nothing uses."""
-    used = {value.name for value in nodes(plan.steps) if isinstance(value, Recall)}
-    return msgspec.structs.replace(plan, steps=_forget(plan.steps, used))
+    """The plan without names for results, without kept and counted values, that nothing uses."""
+    while True:
+        used = {value.name for value in nodes(plan.steps) if isinstance(value, Recall)}
+        less = msgspec.structs.replace(plan, steps=_forget(plan.steps, used))
+        if less == plan:
+            return plan
+        plan = less
 
 
 def nodes(value: Any) -> Iterator[Node]:
@@ -172,17 +178,21 @@ def nodes(value: Any) -> Iterator[Node]:
 
 
 def _forget(steps: tuple[Step, ...], used: set[str]) -> tuple[Step, ...]:
-    return tuple(
+    kept = (
         _forget_in(step, used)
         for step in steps
-        if not (isinstance(step, Remember) and step.name not in used)
+        if not (isinstance(step, Remember | Collect | Increase) and step.name not in used)
     )
+    return tuple(step for step in kept if step is not None)
 
 
-def _forget_in(step: Step, used: set[str]) -> Step:
+def _forget_in(step: Step, used: set[str]) -> Step | None:
+    """The step without what nothing uses; None for a condition that nothing hangs on any more."""
     if isinstance(step, Call):
         if step.save_as is not None and step.save_as not in used:
             return msgspec.structs.replace(step, save_as=None)
         return step
     inner = {name: _forget(value, used) for name in BODIES if (value := getattr(step, name, None))}
+    if isinstance(step, If) and inner and not any(inner.values()):
+        return None
     return msgspec.structs.replace(step, **inner) if inner else step

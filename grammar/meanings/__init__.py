@@ -7,11 +7,13 @@ none: its slots are the parameters.
 
 from __future__ import annotations
 
+import grammar.meanings.answers
 import grammar.meanings.body
 import grammar.meanings.conditions
 import grammar.meanings.control
 import grammar.meanings.driving
 import grammar.meanings.messages
+import grammar.meanings.news
 import grammar.meanings.nouns
 import grammar.meanings.people
 import grammar.meanings.questions

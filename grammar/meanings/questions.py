@@ -97,7 +97,8 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
 
 def asked(d: Discourse, call: Call, options: tuple[str, ...], who: Value | None) -> Call:
     """Remember a question, so that its answers can be reported."""
-    d.surveys.append(Survey(call, options, who))
+    round_at = d.place if d.in_loop and isinstance(d.place, Recall) else None
+    d.surveys.append(Survey(call, options, who, round_at))
     return call
 
 
@@ -111,7 +112,7 @@ def remember_answer(d: Discourse, options: tuple[str, ...], name: str) -> str:
         variable = d.variable(name)
     d.answer = variable
     d.answer_options = options
-    d.report = None
+    d.report = d.news = None
     return variable
 
 

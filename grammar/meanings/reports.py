@@ -20,10 +20,11 @@ from grammar.discourse import (
     Where,
     as_value,
 )
+from grammar.meanings import news
 from grammar.meanings.finding import is_here, look_for, meet, not_found, speak_to
 from grammar.meanings.nouns import described, is_me, kind_places, sought
 from grammar.meanings.registry import meaning
-from grammar.meanings.surveys import all_answers, in_loop, moved
+from grammar.meanings.surveys import in_loop, moved
 from grammar.naming import place_called, some, the
 from grammar.plan import (
     Ask,
@@ -108,7 +109,7 @@ def told(d: Discourse, found: Report, person: Thing | None) -> Steps:
     """Say it."""
     saying = _saying(d, found)
     d.report, d.report_step = found, saying
-    d.answer = None
+    d.answer = d.news = d.counted = None
     return speak_to(d, person, [saying])
 
 
@@ -310,7 +311,7 @@ def known_words(d: Discourse) -> Steps:
     """Say the last answer, those of all who were asked, or what the last code says."""
     if d.answer is not None:
         if d.surveys and in_loop(d, d.surveys[-1].call):
-            return all_answers(d)
+            return news.polled(d, "answers", None).words
         return [Call("say", {"text": Recall(d.answer)})]
     if d.code is not None:
         return [d.say("code_is", value=Recall(d.code))]
@@ -325,6 +326,9 @@ def tell_that(d: Discourse, node: Node) -> Steps:
 
 def told_again(d: Discourse, person: Thing | None) -> Steps:
     """Tell somebody what was told or answered last."""
+    again = news.told_again(d, person)
+    if again is not None:
+        return again
     if person is None or is_me(person):
         return tell_speaker(d)
     if d.report is None:
@@ -348,6 +352,72 @@ def retold(d: Discourse, person: Thing | None) -> Steps:
     return told(d, found, person)
 
 
+@meaning("report_told")
+def report_told(d: Discourse, node: Node) -> news.Told:
+    """ "how many people are in the lobby", "what time it is", as one of several things to tell."""
+    found: Report | Steps = d.get(node, "info")
+    if isinstance(found, list):
+        return news.Told(found, [])
+    first: Steps = []
+    if found.place is not None and found.place != d.at:
+        first.append(Call("goto", {"place": found.place}))
+        d.went(found.place)
+    if found.about_here and found.value is not None:
+        name = d.variable(found.name)
+        first.append(Remember(name, found.value))
+        found = replace(found, value=Recall(name))
+    return news.Told([_saying(d, found)], first)
+
+
+@meaning("found_told")
+def found_told(d: Discourse, node: Node | None = None) -> news.Told:
+    """ "the result", "it", "what you found out": whatever was found out last."""
+    told: news.News | None = d.news
+    if told is not None:
+        count = len(told.words)
+        if told.to_all and d.done[len(d.done) - count :] == told.words:
+            del d.done[len(d.done) - count :]
+            _not_back_yet(d)
+        return news.Told(told.words, [])
+    if d.report is not None:
+        return _report_again(d)
+    if d.answer is not None and d.surveys:
+        return news.polled(d, "each" if in_loop(d, d.surveys[-1].call) else "answers", None)
+    return news.Told(known_words(d), [])
+
+
+def _report_again(d: Discourse) -> news.Told:
+    """The last report, which then is told only as is said now."""
+    found: Report = d.report
+    at = next((at for at, step in enumerate(d.done) if step is d.report_step), None)
+    if at is None:
+        return summed_or_said(d, found)
+    if found.value is not None and not isinstance(found.value, Recall):
+        name = d.variable(found.name)
+        d.done[at] = Remember(name, found.value)
+        found = replace(found, value=Recall(name))
+    elif at == len(d.done) - 1:
+        d.done.pop()
+        _not_back_yet(d)
+    return news.Told([_saying(d, found)], [])
+
+
+def summed_or_said(d: Discourse, found: Report) -> news.Told:
+    """What was counted in each place of a round; else the report as it is."""
+    from grammar.meanings.rounds import last_round, summed_up
+
+    if found.name == "count" and last_round(d) is not None:
+        return summed_up(d, "each")
+    return news.Told([_saying(d, found)], [])
+
+
+def _not_back_yet(d: Discourse) -> None:
+    """What was to be told to the speaker is told elsewhere: the way back comes to nothing."""
+    if d.done and d.done[-1] == news.BACK:
+        d.done.pop()
+        d.at = None
+
+
 @meaning("tell_me_that")
 def tell_me_that(d: Discourse, node: Node) -> Steps:
     """ "and tell me": what was found out just before, brought back to the speaker."""
@@ -355,6 +425,9 @@ def tell_me_that(d: Discourse, node: Node) -> Steps:
 
 
 def tell_speaker(d: Discourse) -> Steps:
+    again = news.told_again(d, None)
+    if again is not None:
+        return again
     last = d.done[-1] if d.done else None
     if last is not None and last is d.told:
         return []

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
+from msgspec.structs import replace
+
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing
 from grammar.meanings.finding import speak_to
+from grammar.meanings.news import News, Told, go_back
 from grammar.meanings.nouns import is_me, kind_places, sought
 from grammar.meanings.registry import meaning
-from grammar.meanings.surveys import go_back, note
+from grammar.meanings.surveys import note, replacing
 from grammar.naming import joined_up
 from grammar.plan import (
     Ask,
@@ -31,6 +36,7 @@ from grammar.plan import (
     Text,
     Value,
 )
+from grammar.tidy import nodes
 from grammar.wordforms import plural
 
 
@@ -48,45 +54,93 @@ def round_of(d: Discourse, places: Value, what: Steps, place: str) -> Step:
     return ForEach(place, places, (going, *what))
 
 
-def brought_back(d: Discourse, node: Node, before: Steps, told: Steps) -> Steps:
+def last_round(d: Discourse) -> int | None:
+    """Where among the steps so far the last round of places is."""
+    for at in range(len(d.done) - 1, -1, -1):
+        step = d.done[at]
+        if isinstance(step, ForEach) and step.steps and goes_to(step.steps[0], step.variable):
+            return at
+    return None
+
+
+def goes_to(step: Step, variable: str) -> bool:
+    return step == Call("goto", {"place": Recall(variable)})
+
+
+def brought_back(d: Discourse, node: Node, told: Told) -> Steps:
     """The report, told to who asked for it, or to somebody else."""
     person: Thing | None = d.get(node, "whom")
+    d.done.extend(told.first)
+    d.at = None
+    d.news = News(told.words, person is None)
     if person is not None and not is_me(person):
-        d.at = None
-        return [*before, *speak_to(d, person, told)]
+        return speak_to(d, person, told.words)
     start = d.start()
     d.went(start)
-    d.told = told[-1]
-    return [*before, Call("goto", {"place": start}), *told]
+    d.told = told.words[-1]
+    return [Call("goto", {"place": start}), *told.words]
 
 
 @meaning("round_report")
 def round_report(d: Discourse, node: Node) -> Steps:
     """ "go to every ward and count the patients, then tell me the total"."""
-    loop = d.done[-1] if d.done else None
-    found = d.report
-    if found is not None and not isinstance(loop, ForEach):
+    person: Thing | None = d.get(node, "whom")
+    if d.report is not None and not isinstance(d.done[-1] if d.done else None, ForEach):
         from grammar.meanings.reports import told_again
 
-        return told_again(d, d.get(node, "whom"))
-    if found is None or not isinstance(loop, ForEach) or found.name != "count":
-        raise NotUnderstood(d.language.phrase("count_what"))
-    assert found.value is not None
-    count = d.variable("count")
-    kind = str(node.production.fixed["kind"])
-    here = Recall(loop.variable)
-    first, notes, told = _kept(d, kind, count, here, dict(found.words)["things"])
-    body = [
-        each
-        for step in loop.steps
-        for each in ([Remember(count, found.value), *notes] if step is d.report_step else [step])
-    ]
-    d.done[-1:] = [ForEach(loop.variable, loop.items, tuple(body))]
-    note(d, Call("", {}), [], first)
+        return told_again(d, person)
+    told = summed_up(d, str(node.production.fixed["kind"]))
+    going = go_back(d, []) if person is None or is_me(person) else []
+    return [*going, *speak_to(d, person, told.words)]
+
+
+@meaning("round_told")
+def round_told(d: Discourse, node: Node) -> Told:
+    """ "the total", "how many cups there are in each", "where most are"."""
+    thing: Thing | None = d.get(node, "thing")
+    return summed_up(d, str(node.production.fixed["kind"]), thing)
+
+
+def summed_up(d: Discourse, kind: str, thing: Thing | None = None) -> Told:
+    """What was counted in each place, put together."""
+    if d.counted is None:
+        d.counted = _counting(d, thing)
+    counting, place, things = d.counted
+    first, notes, told = _kept(d, kind, counting.name, place, things)
+    note(d, counting, notes, first)
     d.report = None
-    person: Thing | None = d.get(node, "whom")
-    going = go_back(d) if person is None or is_me(person) else []
-    return [*going, *speak_to(d, person, told)]
+    return Told(told, [])
+
+
+def _counting(d: Discourse, thing: Thing | None) -> tuple[Remember, Recall, str]:
+    """The step in the last round that counts, now with a name for the number; where the round is;
+    what is counted."""
+    found = d.report
+    for at in range(len(d.done) - 1, -1, -1):
+        loop = d.done[at]
+        if not isinstance(loop, ForEach):
+            continue
+        here = Recall(loop.variable)
+        if found is not None and found.name == "count" and _holds(loop, d.report_step):
+            assert found.value is not None
+            counting = Remember(d.variable("count"), found.value)
+            d.done[at] = replacing(loop, d.report_step, [counting])
+            return counting, here, dict(found.words)["things"]
+        if thing is not None and loop.steps and goes_to(loop.steps[0], loop.variable):
+            counting = Remember(d.variable("count"), Ask("count", {"thing": sought(d, thing)}))
+            d.done[at] = replace(loop, steps=(*loop.steps, counting))
+            return counting, here, things_called(d, thing)
+    raise NotUnderstood(d.language.phrase("count_what"))
+
+
+def _holds(step: Step, inner: Step | None) -> bool:
+    return any(each is inner for each in nodes(step))
+
+
+def things_called(d: Discourse, thing: Thing) -> str:
+    """Several such things, as they are spoken of."""
+    noun, _, rest = thing.text.partition(" ") if thing.person else (thing.text, "", "")
+    return joined_up(f"{plural(d.called(noun), d.language)} {rest}".strip(), d.language)
 
 
 def _kept(
@@ -119,32 +173,112 @@ def _kept(
 @meaning("round_count")
 def round_count(d: Discourse, node: Node) -> Steps:
     """ "which ward has the most visitors?", "count the people in the lobby and the kitchen"."""
+    return brought_back(d, node, counted_around(d, node))
+
+
+@meaning("around_told")
+def counted_around(d: Discourse, node: Node) -> Told:
+    """Going round for nothing but to count."""
     thing: Thing = d.get(node, "thing")
     places = places_of(d, node)
-    noun, _, rest = thing.text.partition(" ") if thing.person else (thing.text, "", "")
-    things = joined_up(f"{plural(d.called(noun), d.language)} {rest}".strip(), d.language)
     place, count = d.variable("place"), d.variable("count")
     kind = str(node.production.fixed["kind"])
-    first, notes, told = _kept(d, kind, count, Recall(place), things)
+    first, notes, told = _kept(d, kind, count, Recall(place), things_called(d, thing))
     counting = Remember(count, Ask("count", {"thing": sought(d, thing)}))
-    return brought_back(d, node, [*first, round_of(d, places, [counting, *notes], place)], told)
+    return Told(told, [*first, round_of(d, places, [counting, *notes], place)])
+
+
+# --- what is true of a place
+
+
+@dataclass(frozen=True)
+class Trait:
+    """Something that is true of a place or not."""
+
+    condition: Condition
+    first: Steps
+    """What finds it out, there."""
+
+
+@meaning("trait_seen")
+def trait_seen(d: Discourse, node: Node) -> Trait:
+    """ "is empty", "has a stapler", "there is somebody in"."""
+    thing: Thing | None = d.get(node, "thing") or d.get(node, "person_ref")
+    looked_for = Text(ANYONE) if thing is None else sought(d, thing)
+    seen: Condition = Holds(Ask("sees", {"thing": looked_for}))
+    return Trait(Not(seen) if node.production.fixed.get("no") else seen, [])
+
+
+@meaning("trait_counted")
+def trait_counted(d: Discourse, node: Node) -> Trait:
+    """ "has more than two chairs"."""
+    thing: Thing = d.get(node, "thing")
+    number = Number(int(d.get(node, "count")))
+    count = Ask("count", {"thing": sought(d, thing)})
+    return Trait(Compare(count, d.get(node, "operator", "=="), number), [])
+
+
+@meaning("trait_asked")
+def trait_asked(d: Discourse, node: Node) -> Trait:
+    """ "needs towels": only the people there can tell."""
+    part = node.parts["text"]
+    form = str(node.production.fixed["form"])
+    question = Text(form.format(text=d.words(part.start, part.end)))
+    agree, refuse = d.language.phrase("yes"), d.language.phrase("no")
+    answer = d.variable("answer")
+    options = Items((Text(agree), Text(refuse)))
+    asking = Call("ask", {"question": question, "options": options}, save_as=answer)
+    agreed: Condition = Compare(Recall(answer), "==", Text(agree))
+    return Trait(Not(agreed) if node.production.fixed.get("no") else agreed, [asking])
 
 
 @meaning("round_look")
 def round_look(d: Discourse, node: Node) -> Steps:
     """ "which offices are empty?", "tell me which wards have visitors"."""
-    thing: Thing | None = d.get(node, "thing") or d.get(node, "person_ref")
-    looked_for = Text(ANYONE) if thing is None else thing.value
-    found, place = d.variable("found"), d.variable("place")
-    seen: Condition = Holds(Ask("sees", {"thing": looked_for}))
-    if node.production.fixed.get("no"):
-        seen = Not(seen)
-    looking = If(seen, (Collect(found, Recall(place)),))
-    none = d.say("no_such_places")
-    some = d.say("such_places", places=Recall(found))
-    told = If(Compare(Length(Recall(found)), "==", Number(0)), (none,), (some,))
-    going: Steps = [Remember(found, Items(())), round_of(d, places_of(d, node), [looking], place)]
-    return brought_back(d, node, going, [told])
+    trait = d.get(node, "place_trait") if "place_trait" in node.parts else trait_seen(d, node)
+    return brought_back(d, node, looked_around(d, node, trait))
+
+
+@meaning("places_told")
+def places_told(d: Discourse, node: Node) -> Told:
+    """ "which labs have no stapler", "how many offices are empty", "which of them are"."""
+    return looked_around(d, node, None)
+
+
+def looked_around(d: Discourse, node: Node, trait: Trait | None) -> Told:
+    named = any(name in node.parts for name in ("kinds", "place_list"))
+    named = named or bool(node.production.fixed.get("all"))
+    at = None if named else last_round(d)
+    if not named and at is None:
+        raise NotUnderstood(d.language.phrase("which_places"))
+    loop = None if at is None else d.done[at]
+    place = loop.variable if isinstance(loop, ForEach) else d.variable("place")
+    if trait is None:
+        before, d.at = d.at, Recall(place)
+        trait = d.get(node, "place_trait")
+        d.at = before
+    assert trait is not None
+    found = d.variable("found")
+    noted: Step = If(trait.condition, (Collect(found, Recall(place)),))
+    going: Steps = [Remember(found, Items(()))]
+    if at is not None and isinstance(loop, ForEach):
+        d.done[at] = replace(loop, steps=(*loop.steps, *trait.first, noted))
+        d.done.insert(0, going.pop())
+    else:
+        going.append(round_of(d, places_of(d, node), [*trait.first, noted], place))
+    return Told(_found_places(d, str(node.production.fixed.get("tell", "which")), found), going)
+
+
+def _found_places(d: Discourse, tell: str, found: str) -> Steps:
+    number = Length(Recall(found))
+    if tell == "many":
+        return [d.say("so_many_places", number=number)]
+    none, some = d.say("no_such_places"), d.say("such_places", places=Recall(found))
+    if tell == "any":
+        none, some = d.say("no_none"), d.say("yes_these", places=Recall(found))
+    elif tell == "all":
+        none, some = d.say("yes_all"), d.say("no_not_these", places=Recall(found))
+    return [If(Compare(number, "==", Number(0)), (none,), (some,))]
 
 
 @meaning("compared")
@@ -166,7 +300,7 @@ def compared(d: Discourse, node: Node) -> Steps:
     )
     yes, no = (d.say(phrase, counts=number) for phrase in ("yes_so", "no_so"))
     told = If(Compare(counts[0], operator, counts[1]), (yes,), (no,))
-    return brought_back(d, node, steps, [told])
+    return brought_back(d, node, Told([told], steps))
 
 
 @meaning("nth_place")

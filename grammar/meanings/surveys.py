@@ -8,35 +8,35 @@ before everything the empty list or the zero that it is noted in.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 import msgspec
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, NotUnderstood, Steps, Thing
-from grammar.meanings.finding import speak_to
-from grammar.meanings.nouns import is_me
+from grammar.discourse import Discourse, NotUnderstood, Steps
 from grammar.meanings.registry import meaning
 from grammar.plan import (
     Ask,
     Call,
-    Collect,
     Compare,
     Condition,
+    ForEach,
+    Forever,
     If,
     Increase,
-    Items,
-    Length,
     Number,
     Recall,
     Remember,
-    Sentence,
-    Share,
+    Repeat,
+    RepeatUntil,
     Step,
     Text,
     Value,
+    While,
 )
 from grammar.tidy import BODIES, nodes
+
+LOOPS: Final = (ForEach, Repeat, While, RepeatUntil, Forever)
 
 
 @dataclass(frozen=True)
@@ -47,6 +47,8 @@ class Survey:
     options: tuple[str, ...]
     who: Value | None
     """Who was asked, or where; None if it is not known who they are."""
+    where: Value | None = None
+    """The place, where a round goes from one to the next."""
 
     def said(self, option: str) -> Condition:
         """Whether the answer is this."""
@@ -72,6 +74,20 @@ def noting(step: Any, call: Step, notes: Steps) -> Any:
     return step if inner == bodies else msgspec.structs.replace(step, **inner)
 
 
+def replacing(step: Any, old: Step | None, new: Steps) -> Any:
+    """A step with others in the place of one inside it."""
+    inner = {
+        name: tuple(
+            other
+            for each in body
+            for other in (new if each is old else (replacing(each, old, new),))
+        )
+        for name in BODIES
+        if (body := getattr(step, name, ()))
+    }
+    return msgspec.structs.replace(step, **inner) if inner else step
+
+
 def note(d: Discourse, call: Step, notes: Steps, before: Steps) -> None:
     """Put notes behind a call among the steps so far, and what they need before them all."""
     d.done[:] = [*before, *noting(d.done, call, notes)]
@@ -85,16 +101,6 @@ def moved(steps: Any) -> bool:
     )
 
 
-def go_back(d: Discourse) -> Steps:
-    """Back to who gave the command, unless the robot is there."""
-    start = Call("goto", {"place": Recall("start")})
-    if not moved(d.done) or d.done[-1] == start:
-        return []
-    d.start()
-    d.went(Recall("start"))
-    return [start]
-
-
 def asked_before(d: Discourse) -> list[Survey]:
     surveys: list[Survey] = d.surveys
     calls = [each for each in nodes(tuple(d.done)) if isinstance(each, Call)]
@@ -104,92 +110,10 @@ def asked_before(d: Discourse) -> list[Survey]:
     return found
 
 
-@meaning("survey_report")
-def survey_report(d: Discourse, node: Node) -> Steps:
-    """ "tell me who said yes", "report how many of each", "tell Alice what they said"."""
-    surveys = asked_before(d)
-    person: Thing | None = d.get(node, "whom")
-    kind = str(node.production.fixed["kind"])
-    option = d.get(node, "answer") or d.language.phrase("yes")
-    told = {"who": _who, "many": _many, "each": _each, "share": _share, "answers": _answers}[kind](
-        d, surveys, str(option)
-    )
-    going = go_back(d) if person is None or is_me(person) else []
-    return [*going, *speak_to(d, person, told)]
-
-
-def _who(d: Discourse, surveys: list[Survey], option: str) -> Steps:
-    name = d.variable(f"said_{option}")
-    for survey in surveys:
-        if survey.who is None:
-            raise NotUnderstood(d.language.phrase("who_unknown"))
-        note(d, survey.call, [If(survey.said(option), (Collect(name, survey.who),))], [])
-    note(d, Call("", {}), [], [Remember(name, Items(()))])
-    nobody = d.say("nobody_said", answer=option)
-    some = d.say("who_said", answer=option, names=Recall(name))
-    return [If(Compare(Length(Recall(name)), "==", Number(0)), (nobody,), (some,))]
-
-
-def _counted(d: Discourse, surveys: list[Survey], option: str | None) -> Recall:
-    """A variable that counts how often this was answered, or how often anybody was asked."""
-    name = d.variable("asked" if option is None else f"said_{option}")
-    for survey in surveys:
-        count: Step = Increase(name)
-        if option is not None:
-            count = If(survey.said(option), (count,))
-        note(d, survey.call, [count], [])
-    note(d, Call("", {}), [], [Remember(name, Number(0))])
-    return Recall(name)
-
-
-def _many(d: Discourse, surveys: list[Survey], option: str) -> Steps:
-    said, asked = _counted(d, surveys, option), _counted(d, surveys, None)
-    return [d.say("how_many_said", number=said, asked=asked, answer=option)]
-
-
-def _each(d: Discourse, surveys: list[Survey], option: str) -> Steps:
-    options = surveys[-1].options
-    if not options:
-        return _answers(d, surveys, option)
-    parts: list[Value] = []
-    for each in options:
-        parts += [Text(f"{', ' if parts else ''}{each}: "), _counted(d, surveys, each)]
-    return [d.say("answers_were", answers=Sentence(tuple(parts)))]
-
-
-def _share(d: Discourse, surveys: list[Survey], option: str) -> Steps:
-    said, asked = _counted(d, surveys, option), _counted(d, surveys, None)
-    return [d.say("share_said", share=Share(said, asked), answer=option)]
-
-
-def _answers(d: Discourse, surveys: list[Survey], option: str) -> Steps:
-    if len(surveys) == 1 and not in_loop(d, surveys[0].call):
-        return [Call("say", {"text": Recall(str(surveys[0].call.save_as))})]
-    name = d.variable("answers")
-    for survey in surveys:
-        answer = Recall(str(survey.call.save_as))
-        line = answer if survey.who is None else Sentence((survey.who, Text(": "), answer))
-        note(d, survey.call, [Collect(name, line)], [])
-    note(d, Call("", {}), [], [Remember(name, Items(()))])
-    return [d.say("answers_were", answers=Recall(name))]
-
-
-def all_answers(d: Discourse) -> Steps:
-    """What everybody said who was asked."""
-    return _answers(d, asked_before(d), "")
-
-
 def in_loop(d: Discourse, call: Call) -> bool:
     """Whether it is done more than once."""
-    return not any(
-        each is call or (isinstance(each, If) and any(inner is call for inner in each.then))
-        for each in d.done
-    )
-
-
-@meaning("option_words")
-def option_words(d: Discourse, node: Node) -> str:
-    return str(d.get(node, "text"))
+    loops = [each for each in nodes(tuple(d.done)) if isinstance(each, LOOPS)]
+    return any(each is call for loop in loops for each in nodes(loop))
 
 
 # --- until so many have answered

@@ -1,0 +1,392 @@
+"""Telling what was found out on the way, at the end: who said yes and what share that is, what each
+of them said, the total, which labs have no stapler.
+
+What is to be told is a `Told`; several of them can be told together, to anybody, anywhere, spoken
+or on the screen. What is told of a poll goes back into the steps made for the asking: a note behind
+each question, and before everything the empty list or the zero that it is noted in.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+import msgspec
+
+from grammar.chart import Node
+from grammar.discourse import START, Discourse, NotUnderstood, Steps, Thing
+from grammar.meanings.answers import Said, Wanted, wanted, yes
+from grammar.meanings.finding import go, speak_to
+from grammar.meanings.nouns import is_me
+from grammar.meanings.registry import meaning
+from grammar.meanings.surveys import Survey, asked_before, in_loop, moved, note
+from grammar.plan import (
+    Ask,
+    Call,
+    Collect,
+    Compare,
+    Condition,
+    Holds,
+    If,
+    Increase,
+    Items,
+    Length,
+    Not,
+    Number,
+    Recall,
+    Remember,
+    Sentence,
+    Share,
+    Step,
+    Text,
+    Value,
+)
+from grammar.tidy import BODIES
+
+BACK: Final = Call("goto", {"place": Recall(START)})
+
+
+@dataclass(frozen=True)
+class Told:
+    """Something to tell."""
+
+    words: Steps
+    """What says it."""
+    first: Steps
+    """What finds it out, before the robot goes to those whom it tells."""
+
+
+@dataclass(frozen=True)
+class News:
+    """What was told last, so that it can be told to others."""
+
+    words: Steps
+    to_all: bool
+    """Whether nobody was named whom to tell, so that whoever is named next is who was meant."""
+
+
+# --- telling
+
+
+@meaning("news")
+def news(d: Discourse, node: Node) -> Steps:
+    """ "come back and tell me who said yes", "announce the result in the lobby"."""
+    person: Thing | None = d.get(node, "whom")
+    told: list[Told] = d.get(node, "told") or [last_found(d)]
+    first = [step for each in told for step in each.first]
+    words = [step for each in told for step in each.words]
+    fixed = node.production.fixed
+    steps: Steps = list(first)
+    place: Value | None = d.get(node, "at_place")
+    if "back" in node.parts or (
+        (person is None or is_me(person)) and place is None and not fixed.get("screen")
+    ):
+        steps += go_back(d, first)
+    if place is not None:
+        steps += go(d, place)
+    if fixed.get("screen"):
+        words = [_shown(each) for each in words]
+    if person is not None and not is_me(person):
+        steps += speak_to(d, person, words)
+    else:
+        steps += words
+    if steps:
+        d.told = steps[-1]
+    d.news = News(words, person is None and place is None)
+    return steps
+
+
+def last_found(d: Discourse) -> Told:
+    """What "report back" speaks of."""
+    from grammar.meanings.reports import found_told
+
+    return found_told(d)
+
+
+def go_back(d: Discourse, more: Steps) -> Steps:
+    """Back to who gave the command, unless the robot is there."""
+    if not moved([*d.done, *more]) or (d.done and not more and d.done[-1] == BACK):
+        return []
+    d.went(d.start())
+    return [BACK]
+
+
+def _shown(step: Any) -> Any:
+    """What was to be said, on the screen."""
+    if isinstance(step, Call) and step.method == "say":
+        return Call("show", {"text": step.arguments["text"]})
+    inner = {
+        name: tuple(map(_shown, body)) for name in BODIES if (body := getattr(step, name, ()))
+    }
+    return msgspec.structs.replace(step, **inner) if inner else step
+
+
+def told_again(d: Discourse, person: Thing | None) -> Steps | None:
+    """The last news told to somebody else, too; None if there are none."""
+    found: News | None = d.news
+    if found is None:
+        return None
+    if person is None or is_me(person):
+        back = go_back(d, [])
+        return [*back, *found.words] if back else []
+    if found.to_all and d.done[len(d.done) - len(found.words) :] == found.words:
+        del d.done[len(d.done) - len(found.words) :]
+        if d.done and d.done[-1] == BACK:
+            d.done.pop()
+            d.at = None
+    d.news = replace(found, to_all=False)
+    return speak_to(d, person, found.words)
+
+
+@meaning("told_list")
+def told_list(d: Discourse, node: Node) -> list[Told]:
+    """ "who said yes and what share that is"."""
+    first: Told = d.get(node, "first")
+    rest: list[Told] = d.get(node, "rest") or []
+    return [first, *rest]
+
+
+# --- what people answered
+
+
+@meaning("poll")
+def poll(d: Discourse, node: Node) -> Told:
+    """What was answered: of all, or of those who gave one answer."""
+    return polled(d, str(node.production.fixed["kind"]), said_in(d, node))
+
+
+def said_in(d: Discourse, node: Node) -> Said | None:
+    """The words for an answer, if there are any."""
+    said: Said | None = d.get(node, "said")
+    return said
+
+
+@meaning("survey_report")
+def survey_report(d: Discourse, node: Node) -> Steps:
+    """ "tell me who said yes", "report how many of each", "tell Alice what they said"."""
+    option = d.get(node, "answer")
+    told = polled(d, str(node.production.fixed["kind"]), str(option) if option else None)
+    person: Thing | None = d.get(node, "whom")
+    going = go_back(d, []) if person is None or is_me(person) else []
+    return [*going, *speak_to(d, person, told.words)]
+
+
+def polled(d: Discourse, kind: str, said: Said | str | None) -> Told:
+    surveys = asked_before(d)
+    if isinstance(said, Said):
+        d.said = wanted(d, surveys[-1], said)
+    elif said is not None:
+        d.said = Wanted((said,))
+    answer: Wanted = d.said or yes(d)
+    made = {
+        "who": _who,
+        "where": _where,
+        "many": _many,
+        "share": _share,
+        "each": _each,
+        "answers": _answers,
+        "most": _most,
+        "fewest": _most,
+        "missing": _missing,
+        "asked": _asked,
+        "sum": _sum,
+    }[kind]
+    return Told(made(d, surveys, answer, kind), [])
+
+
+def _kept(d: Discourse, key: tuple[Any, ...], name: str) -> tuple[Recall, bool]:
+    """A variable for what is noted of a poll, and whether it is new."""
+    key = (*key, *(id(survey.call) for survey in asked_before(d)))
+    if key in d.notes:
+        return Recall(d.notes[key]), False
+    d.notes[key] = d.variable(name)
+    return Recall(d.notes[key]), True
+
+
+def _before_all(d: Discourse, name: Recall, value: Value) -> None:
+    d.done.insert(0, Remember(name.name, value))
+
+
+def _name_for(answer: Wanted) -> str:
+    return f"{'not' if answer.no else 'said'}_{'_'.join(answer.options)}"
+
+
+def _who(d: Discourse, surveys: list[Survey], answer: Wanted, kind: str) -> Steps:
+    return _named(d, surveys, answer, [survey.who for survey in surveys])
+
+
+def _where(d: Discourse, surveys: list[Survey], answer: Wanted, kind: str) -> Steps:
+    return _named(d, surveys, answer, [survey.where for survey in surveys])
+
+
+def _named(
+    d: Discourse, surveys: list[Survey], answer: Wanted, names: list[Value | None]
+) -> Steps:
+    """Those who gave an answer, or the places where it was given, each once."""
+    found, new = _kept(d, ("who", answer, *names), _name_for(answer))
+    if new:
+        for survey, name in zip(surveys, names, strict=True):
+            if name is None:
+                raise NotUnderstood(d.language.phrase("who_unknown"))
+            given = answer.given(survey)
+            if name != survey.who and isinstance(name, Recall):
+                given = _and_not(given, Compare(name, "in", found))
+            note(d, survey.call, [If(given, (Collect(found.name, name),))], [])
+        _before_all(d, found, Items(()))
+    label = answer.label(d)
+    nobody = d.say("nobody_said", answer=label)
+    some = d.say("who_said", answer=label, names=found)
+    return [If(Compare(Length(found), "==", Number(0)), (nobody,), (some,))]
+
+
+def _and_not(condition: Condition, other: Condition) -> Condition:
+    from grammar.plan import Both
+
+    return Both((condition, Not(other)))
+
+
+def counted(d: Discourse, surveys: list[Survey], answer: Wanted | None) -> Recall:
+    """A variable that counts how often this was answered, or how often anybody was asked."""
+    name = "asked" if answer is None else _name_for(answer)
+    found, new = _kept(d, ("count", answer), name)
+    if new:
+        for survey in surveys:
+            count: Step = Increase(found.name)
+            if answer is not None:
+                count = If(answer.given(survey), (count,))
+            note(d, survey.call, [count], [])
+        _before_all(d, found, Number(0))
+    return found
+
+
+def _many(d: Discourse, surveys: list[Survey], answer: Wanted, kind: str) -> Steps:
+    said, asked = counted(d, surveys, answer), counted(d, surveys, None)
+    return [d.say("how_many_said", number=said, asked=asked, answer=answer.label(d))]
+
+
+def _share(d: Discourse, surveys: list[Survey], answer: Wanted, kind: str) -> Steps:
+    said, asked = counted(d, surveys, answer), counted(d, surveys, None)
+    return [d.say("share_said", share=Share(said, asked), answer=answer.label(d))]
+
+
+def _asked(d: Discourse, surveys: list[Survey], answer: Wanted, kind: str) -> Steps:
+    return [d.say("so_many_asked", number=counted(d, surveys, None))]
+
+
+def _each(d: Discourse, surveys: list[Survey], answer: Wanted, kind: str) -> Steps:
+    options = surveys[-1].options
+    if not options:
+        return _answers(d, surveys, answer, kind)
+    parts: list[Value] = []
+    for each in options:
+        number = counted(d, surveys, Wanted((each,)))
+        parts += [Text(f"{', ' if parts else ''}{each}: "), number]
+    return [d.say("answers_were", answers=Sentence(tuple(parts)))]
+
+
+def _most(d: Discourse, surveys: list[Survey], answer: Wanted, kind: str) -> Steps:
+    best = chosen_most(d, surveys, kind)
+    nobody = d.say("nobody_answered")
+    some = d.say("most_chose" if kind == "most" else "fewest_chose", answer=best)
+    return [If(Compare(best, "==", Text("")), (nobody,), (some,))]
+
+
+def chosen_most(d: Discourse, surveys: list[Survey], kind: str = "most") -> Recall:
+    """The answer that most gave, or the fewest; it is found out behind all that was done."""
+    options = surveys[-1].options
+    if not options:
+        raise NotUnderstood(d.language.phrase("no_options"))
+    best, new = _kept(d, (kind,), "choice")
+    if not new:
+        return best
+    number = Recall(d.variable(kind))
+    counts = [counted(d, surveys, Wanted((each,))) for each in options]
+    if kind == "most":
+        d.done += [Remember(number.name, Number(0)), Remember(best.name, Text(""))]
+        todo = list(zip(options, counts, strict=True))
+    else:
+        d.done += [Remember(number.name, counts[0]), Remember(best.name, Text(options[0]))]
+        todo = list(zip(options[1:], counts[1:], strict=True))
+    for option, count in todo:
+        better = Compare(count, ">" if kind == "most" else "<", number)
+        d.done.append(
+            If(better, (Remember(number.name, count), Remember(best.name, Text(option))))
+        )
+    return best
+
+
+def _answers(d: Discourse, surveys: list[Survey], answer: Wanted, kind: str) -> Steps:
+    if len(surveys) == 1 and not in_loop(d, surveys[0].call):
+        return [Call("say", {"text": Recall(str(surveys[0].call.save_as))})]
+    found, new = _kept(d, ("answers",), "answers")
+    if new:
+        for survey in surveys:
+            said = Recall(str(survey.call.save_as))
+            line = said if survey.who is None else Sentence((survey.who, Text(": "), said))
+            note(d, survey.call, [Collect(found.name, line)], [])
+        _before_all(d, found, Items(()))
+    return [d.say("answers_were", answers=found)]
+
+
+def _sum(d: Discourse, surveys: list[Survey], answer: Wanted, kind: str) -> Steps:
+    """The sum of answers that are numbers."""
+    if not all(option.isdigit() for survey in surveys for option in survey.options):
+        raise NotUnderstood(d.language.phrase("count_what"))
+    total, new = _kept(d, ("sum",), "total")
+    if new:
+        for survey in surveys:
+            note(d, survey.call, [Increase(total.name, Recall(str(survey.call.save_as)))], [])
+        _before_all(d, total, Number(0))
+    return [d.say("in_total", number=total)]
+
+
+def _missing(d: Discourse, surveys: list[Survey], answer: Wanted, kind: str) -> Steps:
+    """Who was not found and so could not be asked."""
+    found, new = _kept(d, ("missing",), "missing")
+    if new:
+        calls = {id(survey.call): survey for survey in surveys}
+        d.done[:] = [_noting_missing(each, calls, found) for each in d.done]
+        _before_all(d, found, Items(()))
+    nobody, some = d.say("nobody_missing"), d.say("who_missing", names=found)
+    return [If(Compare(Length(found), "==", Number(0)), (nobody,), (some,))]
+
+
+def _noting_missing(step: Any, calls: dict[int, Survey], found: Recall) -> Any:
+    """A step, with a note where somebody was not found."""
+    match step:
+        case If(Holds(Ask("find", arguments)), then) if any(id(each) in calls for each in then):
+            missing = Collect(found.name, arguments["thing"])
+            return msgspec.structs.replace(step, otherwise=(missing,))
+    inner = {
+        name: tuple(_noting_missing(each, calls, found) for each in body)
+        for name in BODIES
+        if (body := getattr(step, name, ()))
+    }
+    return msgspec.structs.replace(step, **inner) if inner else step
+
+
+@meaning("answer_of")
+def answer_of(d: Discourse, node: Node) -> Told:
+    """ "what Alice said", "whether Bob said yes"."""
+    person: Thing | None = d.get(node, "person_ref")
+    surveys = asked_before(d)
+    if person is not None and person.known and len(surveys) > 1:
+        surveys = [each for each in surveys if each.who == person.value] or surveys
+    survey = surveys[-1]
+    said = said_in(d, node)
+    of_one = person is not None and person.known and in_loop(d, survey.call)
+    if of_one and person is not None and survey.who is not None:
+        name = d.variable("answer_of")
+        same = Compare(survey.who, "==", person.value)
+        kept = Remember(name, Recall(str(survey.call.save_as)))
+        note(d, survey.call, [If(same, (kept,))], [])
+        d.done.insert(0, Remember(name, Text("")))
+        survey = replace(survey, call=Call("ask", survey.call.arguments, save_as=name))
+    elif in_loop(d, survey.call):
+        return polled(d, "answers" if said is None else "who", said)
+    answer = Recall(str(survey.call.save_as))
+    if said is None:
+        return Told([Call("say", {"text": answer})], [])
+    meant = wanted(d, survey, said)
+    told_yes, told_no = d.say("yes_said", answer=answer), d.say("no_said", answer=answer)
+    return Told([If(meant.given(survey), (told_yes,), (told_no,))], [])
