@@ -115,9 +115,7 @@ def _shown(step: Any) -> Any:
     """What was to be said, on the screen."""
     if isinstance(step, Call) and step.method == "say":
         return Call("show", {"text": step.arguments["text"]})
-    inner = {
-        name: tuple(map(_shown, body)) for name in BODIES if (body := getattr(step, name, ()))
-    }
+    inner = {name: tuple(map(_shown, body)) for name in BODIES if (body := getattr(step, name, ()))}
     return msgspec.structs.replace(step, **inner) if inner else step
 
 
@@ -219,9 +217,7 @@ def _where(d: Discourse, surveys: list[Survey], answer: Wanted, kind: str) -> St
     return _named(d, surveys, answer, [survey.where for survey in surveys])
 
 
-def _named(
-    d: Discourse, surveys: list[Survey], answer: Wanted, names: list[Value | None]
-) -> Steps:
+def _named(d: Discourse, surveys: list[Survey], answer: Wanted, names: list[Value | None]) -> Steps:
     """Those who gave an answer, or the places where it was given, each once."""
     found, new = _kept(d, ("who", answer, *names), _name_for(answer))
     if new:
@@ -309,9 +305,7 @@ def chosen_most(d: Discourse, surveys: list[Survey], kind: str = "most") -> Reca
         todo = list(zip(options[1:], counts[1:], strict=True))
     for option, count in todo:
         better = Compare(count, ">" if kind == "most" else "<", number)
-        d.done.append(
-            If(better, (Remember(number.name, count), Remember(best.name, Text(option))))
-        )
+        d.done.append(If(better, (Remember(number.name, count), Remember(best.name, Text(option)))))
     return best
 
 
