@@ -20,7 +20,10 @@ from grammar.tokens import Token
 
 NAMES: Final = frozenset({"noun", "object", "person", "place", "furniture"})
 TEXTS: Final = frozenset({"text", "word", "quote"})
-NO_PART: Final = frozenset({"corrected", "place_corrected", "statement", "refused"})
+NO_PART: Final = frozenset(
+    {"corrected", "place_corrected", "statement", "refused"}
+    | {"remark", "remark_name", "remark_where"}  # kept word for word as background
+)
 """Meanings whose words need not be in the plan: taken back, or said for what follows."""
 ALIKE: Final = 3
 """Letters that a word and its form in the plan share: "wants" and "want"."""

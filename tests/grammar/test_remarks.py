@@ -7,6 +7,7 @@ import pytest
 from grammar.explain import explain
 from grammar.program import write_program
 from grammar.understand import understand
+from tests.grammar import ward_de, ward_fr
 from tests.grammar.ward import WARD
 
 
@@ -62,3 +63,32 @@ def test_reasons_stand_in_the_program_and_in_its_words() -> None:
 )
 def test_remarks_alone_and_duties_are_no_background(sentence: str) -> None:
     assert understand(sentence, WARD).plan is None
+
+
+@pytest.mark.parametrize(
+    ("language", "sentence", "background", "last"),
+    [
+        (
+            "de",
+            "Ich höre schlecht. Stell die Lautstärke auf 80 Prozent.",
+            "Ich höre schlecht",
+            "80",
+        ),
+        ("de", "Bring die Tasse zu Alice, sie ist in der Küche", "sie ist in der Küche", "kitchen"),
+        ("de", "Ich suche meine Frau, sie heißt Alice. Kannst du sie finden?", "Alice", "Alice"),
+        ("fr", "J'entends mal. Mets le volume à 80 pour cent.", "J'entends mal", "80"),
+        (
+            "fr",
+            "Apporte la tasse à Alice, elle est à la cuisine",
+            "elle est à la cuisine",
+            "kitchen",
+        ),
+        ("fr", "J'ai froid, apporte-moi une couverture", "J'ai froid", "couverture"),
+    ],
+)
+def test_in_every_language(language: str, sentence: str, background: str, last: str) -> None:
+    words = {"de": ward_de.STATION, "fr": ward_fr.HOPITAL}[language]
+    plan = understand(sentence, words, language).plan
+    assert plan is not None
+    assert background in "; ".join(plan.background)
+    assert last in write_program(plan)
