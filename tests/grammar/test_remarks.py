@@ -83,7 +83,7 @@ def test_remarks_alone_and_duties_are_no_background(sentence: str) -> None:
             "elle est à la cuisine",
             "kitchen",
         ),
-        ("fr", "J'ai froid, apporte-moi une couverture", "J'ai froid", "couverture"),
+        ("fr", "J'ai froid, apporte-moi une couverture", "J'ai froid", "blanket"),
     ],
 )
 def test_in_every_language(language: str, sentence: str, background: str, last: str) -> None:
