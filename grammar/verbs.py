@@ -3,6 +3,9 @@
     verbs: {fetch: holen, ab|holen}     "hol die Tasse", "hol die Tasse ab", "die Tasse abholen"
     say: "~fetch <thing>"
 
+What follows ">>" stands after a verb that ends its clause: "say: ~report <person> >> , <news>" is
+"sag mir, wie spät es ist" and "mir zu sagen, wie spät es ist".
+
 `forms` makes the rules `<fetch_1>` (as a command begins), `<fetch_off>` (what a verb that parts
 leaves at the end) and `<fetch_2>` (as a clause ends); `ordered` makes the templates with them. Both
 follow patterns in the language's data, so that another language may order its clauses otherwise.
@@ -16,6 +19,8 @@ from typing import Any, Final
 
 PARTS: Final = "|"
 """Between the particle of a verb that may part and the rest of it."""
+AFTER: Final = ">>"
+"""Before what stands behind the end of a clause."""
 
 _MARKED: Final = re.compile(r"~(\w+)")
 
@@ -67,7 +72,9 @@ def ordered(say: str, orders: Sequence[str], rules: Mapping[str, Any]) -> Iterat
         yield say
         return
     before, after, name = say[: marked.start()], say[marked.end() :], marked.group(1)
+    inside, _, behind = after.partition(AFTER)
     for order in orders:
         if "_off>" in order and f"{name}_off" not in rules:
             order = re.sub(r"\s*\[?<VERB_off>\]?", "", order)
-        yield before + order.replace("VERB", name).replace("REST", after.strip())
+        clause = order.replace("VERB", name).replace("REST", inside.strip())
+        yield f"{before}{clause} {behind.strip()}".rstrip()

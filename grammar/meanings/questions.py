@@ -122,9 +122,12 @@ def question(d: Discourse, node: Node) -> str:
     form: str = node.production.fixed["form"]
     past = node.production.fixed.get("past")
     values: dict[str, str] = {}
+    you = "to_you_who" if "asked" in node.parts else "to_you"
     for name, part in node.parts.items():
-        values[name] = turn_to_you(d, part.start, part.end)
+        values[name] = turn_to_you(d, part.start, part.end, you)
     values.setdefault("rest", "")
+    if "tail" in values:
+        values["rest"] = f"{values['rest']} {values['tail']}"
     if "verb" in values:
         verb, particle = parted(d, values["verb"])
         base = past_base(d, verb) if past else None
@@ -138,9 +141,10 @@ def question(d: Discourse, node: Node) -> str:
     return capital(text.replace(" ?", mark).replace(" ,", ","))
 
 
-def turn_to_you(d: Discourse, start: int, end: int) -> str:
-    """The original words with "they", "their", "her" ... turned to the person spoken to."""
-    you: dict[str, str] = d.language.speech.get("to_you", {})
+def turn_to_you(d: Discourse, start: int, end: int, words: str = "to_you") -> str:
+    """The original words with "they", "their", "her" ... turned to the person spoken to. Where
+    that person is the subject, only what is theirs: "ob er ihn mag" asks about somebody else."""
+    you: dict[str, str] = d.language.speech.get(words) or d.language.speech.get("to_you", {})
     pieces: list[str] = []
     position = start
     while position < end:
@@ -195,7 +199,12 @@ def options_of(d: Discourse, node: Node) -> tuple[str, ...]:
     if listed is not None:
         return split_options(d, listed.start, listed.end)
     joins = set(d.language.speech.get("or", ()))
-    rest = node.parts.get("rest")
+    rest, tail = node.parts.get("rest"), node.parts.get("tail")
+    if rest is not None and tail is not None and d.tokens[tail.start].norm in joins:
+        later = split_options(d, tail.start, tail.end)
+        words = max(len(each.split()) for each in later) if later else 1
+        start = max(rest.start, rest.end - words)
+        return (*split_options(d, start, rest.end), *later)
     if rest is not None and joins & set(d.norms(rest.start, rest.end)):
         start = rest.start
         if "wh" in node.parts and d.tokens[start - 1].norm != COMMA:
