@@ -19,7 +19,7 @@ from grammar.tidy import nodes
 from grammar.tokens import Token
 
 NAMES: Final = frozenset({"noun", "object", "person", "place", "furniture"})
-TEXTS: Final = frozenset({"text", "word", "quote"})
+TEXTS: Final = frozenset({"text", "word", "verb", "quote"})
 NO_PART: Final = frozenset(
     {"corrected", "place_corrected", "statement", "refused"}
     | {"remark", "remark_name", "remark_where"}  # kept word for word as background
@@ -49,6 +49,7 @@ def left_out(
             names = [_name_of(value) for value in leaf.value]
             names += [homes[name] for name in names if name in homes]
             words = {_stem(word) for name in names for word in language.tokens_of(name)}
+            words |= {_stem(token.norm) for token in tokens[leaf.start : leaf.end]}
             if not words & known:
                 missing.append(names[0])
             continue

@@ -20,6 +20,8 @@ from robot_api.methods import METHODS
 
 START: Final = "start"
 """The variable that holds the place where the command was given."""
+SETTING: Final = "setting"
+"""The part of a command that says where or when it is to be done."""
 ANYONE: Final = "person"
 """What the robot looks for when it is anybody's turn."""
 
@@ -161,6 +163,8 @@ class Discourse:
 
         if isinstance(part, Leaf):
             return self._leaf(part)
+        if SETTING in part.parts:
+            return MEANINGS[SETTING](self, part)
         meaning = MEANINGS.get(part.means)
         if meaning is not None:
             return meaning(self, part)

@@ -33,7 +33,7 @@ from grammar.network import Network, Production, RuleError, compile_rules
 from grammar.templates import NOTHING, Choice, Sequence, Template, TemplateError, Word
 from grammar.templates import parse_template as _parse
 from grammar.tokens import Spelling, words_of
-from grammar.verbs import forms, ordered
+from grammar.verbs import always_parting, forms, ordered
 
 _FOLDER: Final = Path(__file__).parent / "languages"
 _NOT_RULES: Final = frozenset({"explain"})
@@ -164,11 +164,14 @@ def _language(code: str, data: Mapping[str, Any]) -> Language:
     entries_of = dict(data.get("rules", {}))
     if "verbs" in data:
         entries_of |= forms(data["verbs"], data["conjugation"])
-    orders: list[str] = data.get("orders", [])
+    orders: list[Any] = data.get("orders", [])
+    parting = always_parting(data.get("verbs", {}))
     rules = {
         name: tuple(
             _productions(
-                name, _entries(entries), functools.partial(ordered, orders=orders, rules=entries_of)
+                name,
+                _entries(entries),
+                functools.partial(_ordered, name, orders=orders, rules=entries_of, parting=parting),
             )
         )
         for name, entries in entries_of.items()
@@ -250,26 +253,43 @@ def _number_words(numbers: Mapping[str, Any], letters: Mapping[str, str]) -> dic
     return words
 
 
+def _ordered(
+    rule: str, say: str, orders: list[Any], rules: Mapping[str, Any], parting: frozenset[str]
+) -> Iterator[tuple[float, str]]:
+    """The templates that one stands for, each with what its order costs more than the usual ones.
+    An order may be for the entries of one rule only: {order: ..., of: command, cost: 0.5}."""
+    usual = [order for order in orders if isinstance(order, str)]
+    yield from ((0.0, each) for each in ordered(say, usual, rules, parting))
+    for order in orders:
+        if not isinstance(order, str) and order["of"] == rule:
+            rarer = ordered(say, [order["order"]], rules, parting)
+            yield from ((float(order["cost"]), each) for each in rarer if each != say)
+
+
 def _productions(
-    rule: str, entries: list[Any], ordered: Callable[[str], Iterable[str]]
+    rule: str, entries: list[Any], ordered: Callable[[str], Iterable[tuple[float, str]]]
 ) -> Iterator[Production]:
     plain: list[str] = []
     for entry in entries:
         if isinstance(entry, str):
-            plain += ordered(entry)
+            plain += (each for _, each in ordered(entry))
             continue
-        says = [each for say in _entries(entry["say"]) for each in ordered(str(say))]
+        by_cost: dict[float, list[str]] = {}
+        for say in _entries(entry["say"]):
+            for cost, each in ordered(str(say)):
+                by_cost.setdefault(cost, []).append(each)
         unknown = set(entry) - {"say", "means", "cost", "with"}
         if unknown:
             raise RuleError(f"the rule <{rule}> has an entry with {', '.join(sorted(unknown))}")
-        yield Production(
-            rule,
-            entry.get("means"),
-            tuple(_template(say, rule) for say in says),
-            float(entry.get("cost", 0)),
-            entry.get("with", {}),
-            tuple(says),
-        )
+        for cost, says in by_cost.items():
+            yield Production(
+                rule,
+                entry.get("means"),
+                tuple(_template(say, rule) for say in says),
+                float(entry.get("cost", 0)) + cost,
+                entry.get("with", {}),
+                tuple(says),
+            )
     if plain:
         templates = tuple(_template(say, rule) for say in plain)
         yield Production(rule, None, templates, 0.0, {}, tuple(plain))

@@ -162,6 +162,9 @@ class Slots:
         self._command_words = _command_words(self.language)
         self._noun_joins = frozenset(self.language.speech.get("noun_joins", ()))
         self._fillers = {word for filler in self.language.fillers for word in filler}
+        clause = self.language.speech.get("clause", {})
+        no_verbs = ("pronouns", "determiners", "prepositions", "and", "subordinating", "reflexive")
+        self._no_verbs = self._fillers.union(*(clause.get(each, ()) for each in no_verbs))
 
     def all(self) -> dict[str, Slot]:
         slots: dict[str, Slot] = {
@@ -178,6 +181,7 @@ class Slots:
             "{text}": self._text,
             "{noun}": self._noun,
             "{word}": self._word,
+            "{verb}": self._verb,
             "{remark}": self._remark,
             "{unknown}": self._unknown,
         }
@@ -309,6 +313,12 @@ class Slots:
         if at < len(self.tokens) and self.tokens[at].kind == "word":
             return [(at + 1, FREE_WORD, self.tokens[at].norm)]
         return []
+
+    def _verb(self, at: int) -> list[Match]:
+        """A word that may be the verb at the end of a clause."""
+        if at >= len(self.tokens) or self.tokens[at].capital:
+            return []
+        return [] if self.tokens[at].norm in self._no_verbs else self._word(at)
 
     # --- open slots
 

@@ -14,7 +14,7 @@ follow patterns in the language's data, so that another language may order its c
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from typing import Any, Final
 
 PARTS: Final = "|"
@@ -65,7 +65,18 @@ def _conjugated(infinitive: str, conjugation: Mapping[str, Any]) -> dict[str, st
     return made
 
 
-def ordered(say: str, orders: Sequence[str], rules: Mapping[str, Any]) -> Iterator[str]:
+def always_parting(verbs: Mapping[str, Sequence[str]]) -> frozenset[str]:
+    """The verbs that leave their particle at the end in each of their forms: "fahr ... zurück" is
+    not "fahr"."""
+    return frozenset(name for name, each in verbs.items() if all(PARTS in verb for verb in each))
+
+
+def ordered(
+    say: str,
+    orders: Sequence[str],
+    rules: Mapping[str, Any],
+    parting: Container[str] = (),
+) -> Iterator[str]:
     """The templates that one with a verb marked by ~ stands for; any other stands for itself."""
     marked = _MARKED.search(say)
     if marked is None:
@@ -76,5 +87,7 @@ def ordered(say: str, orders: Sequence[str], rules: Mapping[str, Any]) -> Iterat
     for order in orders:
         if "_off>" in order and f"{name}_off" not in rules:
             order = re.sub(r"\s*\[?<VERB_off>\]?", "", order)
+        if name in parting:
+            order = order.replace("[<VERB_off>]", "<VERB_off>")
         clause = order.replace("VERB", name).replace("REST", inside.strip())
         yield f"{before}{clause} {behind.strip()}".rstrip()

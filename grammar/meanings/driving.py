@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from grammar.chart import Node
-from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, Where, as_value
+from dataclasses import replace
+
+from grammar.chart import Leaf, Node
+from grammar.discourse import SETTING, Discourse, NotUnderstood, Steps, Thing, Where, as_value
 from grammar.meanings.finding import go, look_for, noun_of, where_sent
 from grammar.meanings.nouns import is_me, sought
 from grammar.meanings.registry import meaning
@@ -51,10 +53,25 @@ def go_point(d: Discourse, node: Node) -> Steps:
 @meaning("in_place")
 def in_place(d: Discourse, node: Node) -> Steps:
     """ "in the kitchen, count the cups": go there first."""
-    spot: Where = d.get(node, "spot")
+    return done_there(d, d.get(node, "spot"), node.parts["then"])
+
+
+@meaning("setting")
+def setting(d: Discourse, node: Node) -> Steps:
+    """A command with a part that says where or when: "say in the kitchen that lunch is ready"."""
+    where_or_when: Where | Steps = d.build(node.parts[SETTING])
+    parts = {name: part for name, part in node.parts.items() if name != SETTING}
+    bare = replace(node, parts=parts)
+    if isinstance(where_or_when, Where):
+        return done_there(d, where_or_when, bare)
+    return [*where_or_when, *d.build(bare)]
+
+
+def done_there(d: Discourse, spot: Where, part: Leaf | Node) -> Steps:
+    """Go to a spot and do something there."""
     going = go(d, spot.place) if spot.place is not None else []
     d.at_furniture = spot.furniture
-    inner: Steps = d.build(node.parts["then"])
+    inner: Steps = d.build(part)
     d.at_furniture = None
     if spot.furniture and not going and not speaks_of(inner, spot.furniture):
         raise NotUnderstood(d.language.phrase("where_is_thing", thing=spot.furniture))

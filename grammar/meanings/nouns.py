@@ -46,11 +46,13 @@ def place_own(d: Discourse, node: Node) -> Value:
     """ "his office", after Bob: Bob's office; of nobody by name, the only office there is."""
     kind = d.get(node, "kind")
     mark = d.language.speech["possessive"]
-    owner = d.person.text.lower() if d.person is not None and d.person.known else None
+    said: Thing | None = d.get(node, "owner")
+    who = d.person if said is None else said
+    owner = who.text.lower() if who is not None and who.known else None
     places = d.lexicon.place_kinds[kind]
     own = [each for each in places if owner and each.name.lower().startswith(owner + mark)]
     if owner and not own:
-        words = f"{d.person.text if d.person else ''}{mark}{kind}"
+        words = f"{who.text if who else ''}{mark}{kind}"
         raise NotUnderstood(
             d.language.phrase("unknown_place", name=words),
             tuple(each.name for each in places[:3]),
