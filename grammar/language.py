@@ -33,7 +33,7 @@ from grammar.network import Network, Production, RuleError, compile_rules
 from grammar.templates import NOTHING, Choice, Sequence, Template, TemplateError, Word
 from grammar.templates import parse_template as _parse
 from grammar.tokens import Spelling, words_of
-from grammar.verbs import always_parting, forms, ordered
+from grammar.verbs import forms, ordered
 
 _FOLDER: Final = Path(__file__).parent / "languages"
 _NOT_RULES: Final = frozenset({"explain"})
@@ -165,13 +165,12 @@ def _language(code: str, data: Mapping[str, Any]) -> Language:
     if "verbs" in data:
         entries_of |= forms(data["verbs"], data["conjugation"])
     orders: list[Any] = data.get("orders", [])
-    parting = always_parting(data.get("verbs", {}))
     rules = {
         name: tuple(
             _productions(
                 name,
                 _entries(entries),
-                functools.partial(_ordered, name, orders=orders, rules=entries_of, parting=parting),
+                functools.partial(_ordered, name, orders=orders, rules=entries_of),
             )
         )
         for name, entries in entries_of.items()
@@ -254,15 +253,15 @@ def _number_words(numbers: Mapping[str, Any], letters: Mapping[str, str]) -> dic
 
 
 def _ordered(
-    rule: str, say: str, orders: list[Any], rules: Mapping[str, Any], parting: frozenset[str]
+    rule: str, say: str, orders: list[Any], rules: Mapping[str, Any]
 ) -> Iterator[tuple[float, str]]:
     """The templates that one stands for, each with what its order costs more than the usual ones.
     An order may be for the entries of one rule only: {order: ..., of: command, cost: 0.5}."""
     usual = [order for order in orders if isinstance(order, str)]
-    yield from ((0.0, each) for each in ordered(say, usual, rules, parting))
+    yield from ((0.0, each) for each in ordered(say, usual, rules))
     for order in orders:
         if not isinstance(order, str) and order["of"] == rule:
-            rarer = ordered(say, [order["order"]], rules, parting)
+            rarer = ordered(say, [order["order"]], rules)
             yield from ((float(order["cost"]), each) for each in rarer if each != say)
 
 

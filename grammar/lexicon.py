@@ -57,6 +57,8 @@ class Lexicon:
     objects: tuple[Name, ...] = ()
     furniture: tuple[Name, ...] = ()
     contacts: tuple[str, ...] = ()
+    contact_aliases: tuple[Name, ...] = ()
+    """Contacts that go by other names too."""
     gestures: tuple[str, ...] = SUGGESTED_GESTURES
     emotions: tuple[str, ...] = SUGGESTED_EMOTIONS
     joints: tuple[str, ...] = ()

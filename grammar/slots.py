@@ -66,6 +66,10 @@ class Names:
                 self._add("furniture", furniture.kind, furniture.kind)
         for contact in lexicon.contacts:
             self._add("contact", contact, contact)
+        for contact_name in lexicon.contact_aliases:
+            for text in contact_name.aliases:
+                for variant in self._variants(text):
+                    self._add("contact", variant, contact_name.name)
         for question in lexicon.questions:
             for text in (question.question, *question.aliases):
                 for words in self._asked(language.tokens_of(text.rstrip("?"))):
@@ -182,6 +186,7 @@ class Slots:
             "{noun}": self._noun,
             "{word}": self._word,
             "{verb}": self._verb,
+            "{zu_infinitive}": self._zu_infinitive,
             "{remark}": self._remark,
             "{unknown}": self._unknown,
         }
@@ -319,6 +324,16 @@ class Slots:
         if at >= len(self.tokens) or self.tokens[at].capital:
             return []
         return [] if self.tokens[at].norm in self._no_verbs else self._word(at)
+
+    def _zu_infinitive(self, at: int) -> list[Match]:
+        """A verb with "zu" inside: "anzurufen"; its value is the verb without it."""
+        particles = self.language.speech.get("clause", {}).get("particles", ())
+        word = self.tokens[at].norm if at < len(self.tokens) else ""
+        for particle in particles:
+            if word.startswith(f"{particle}zu") and word.endswith("n"):
+                rest = word[len(particle) + 2 :]
+                return [(at + 1, FREE_WORD, particle + rest)] if len(rest) > 2 else []
+        return []
 
     # --- open slots
 

@@ -14,7 +14,7 @@ follow patterns in the language's data, so that another language may order its c
 from __future__ import annotations
 
 import re
-from collections.abc import Container, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
 PARTS: Final = "|"
@@ -23,6 +23,7 @@ AFTER: Final = ">>"
 """Before what stands behind the end of a clause."""
 
 _MARKED: Final = re.compile(r"~(\w+)")
+_WITHOUT: Final = re.compile(r"\s*<VERB_off>")
 
 
 def forms(
@@ -32,6 +33,8 @@ def forms(
     rules: dict[str, list[str]] = {}
     for name, infinitives in verbs.items():
         first: dict[str, None] = {}
+        whole: dict[str, None] = {}
+        parting: dict[str, None] = {}
         last: dict[str, None] = {}
         particles: dict[str, None] = {}
         for infinitive in infinitives:
@@ -40,12 +43,20 @@ def forms(
                 particles[particle] = None
             made = _conjugated(base, conjugation)
             patterns = conjugation["last_parted" if particle else "last"]
-            first |= dict.fromkeys(pattern.format(**made) for pattern in conjugation["first"])
+            begins = dict.fromkeys(pattern.format(**made) for pattern in conjugation["first"])
+            first |= begins
+            if particle:
+                parting |= begins
+            else:
+                whole |= begins
             last |= dict.fromkeys(pattern.format(particle=particle, **made) for pattern in patterns)
         rules[f"{name}_1"] = [f"({'|'.join(first)})"]
         rules[f"{name}_2"] = [f"({'|'.join(last)})"]
         if particles:
             rules[f"{name}_off"] = [f"({'|'.join(particles)})"]
+        if whole and parting:
+            rules[f"{name}_whole"] = [f"({'|'.join(whole)})"]
+            rules[f"{name}_parting"] = [f"({'|'.join(parting)})"]
     return rules
 
 
@@ -65,19 +76,9 @@ def _conjugated(infinitive: str, conjugation: Mapping[str, Any]) -> dict[str, st
     return made
 
 
-def always_parting(verbs: Mapping[str, Sequence[str]]) -> frozenset[str]:
-    """The verbs that leave their particle at the end in each of their forms: "fahr ... zurück" is
-    not "fahr"."""
-    return frozenset(name for name, each in verbs.items() if all(PARTS in verb for verb in each))
-
-
-def ordered(
-    say: str,
-    orders: Sequence[str],
-    rules: Mapping[str, Any],
-    parting: Container[str] = (),
-) -> Iterator[str]:
-    """The templates that one with a verb marked by ~ stands for; any other stands for itself."""
+def ordered(say: str, orders: Sequence[str], rules: Mapping[str, Any]) -> Iterator[str]:
+    """The templates that one with a verb marked by ~ stands for; any other stands for itself. A
+    verb that parts leaves its particle at the end: "fahr zurück" is not "fahr"."""
     marked = _MARKED.search(say)
     if marked is None:
         yield say
@@ -85,9 +86,12 @@ def ordered(
     before, after, name = say[: marked.start()], say[marked.end() :], marked.group(1)
     inside, _, behind = after.partition(AFTER)
     for order in orders:
-        if "_off>" in order and f"{name}_off" not in rules:
-            order = re.sub(r"\s*\[?<VERB_off>\]?", "", order)
-        if name in parting:
-            order = order.replace("[<VERB_off>]", "<VERB_off>")
-        clause = order.replace("VERB", name).replace("REST", inside.strip())
-        yield f"{before}{clause} {behind.strip()}".rstrip()
+        if f"{name}_parting" in rules and "<VERB_off>" in order:
+            parted = order.replace("VERB_1", "VERB_parting")
+            ways = [_WITHOUT.sub("", order.replace("VERB_1", "VERB_whole")), parted]
+        else:
+            ways = [order if f"{name}_off" in rules else _WITHOUT.sub("", order)]
+        for way in ways:
+            clause = way.replace("VERB", name).replace("REST", inside.strip())
+            yield f"{before}{clause} {behind.strip()}".rstrip()
+

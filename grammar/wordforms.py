@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from grammar.language import Language
 
@@ -37,10 +37,27 @@ def _changed(noun: str, language: Language, change: Callable[[str, Language], st
     return " ".join((*(change(word, language) for word in words[:last]), *words[last:]))
 
 
+def _last_part(
+    word: str, table: Mapping[str, object], language: Language
+) -> tuple[str | None, str]:
+    """The word of the table that this is or, where the language writes compounds in one, ends in;
+    and what stands before it: "Besucherstuhl" is a chair."""
+    low = word.lower()
+    if low in table:
+        return low, ""
+    if language.plurals.get("compounds"):
+        for ending in sorted(table, key=len, reverse=True):
+            if len(ending) > 3 and low.endswith(ending) and len(low) > len(ending) + 2:
+                return ending, word[: len(word) - len(ending)]
+    return None, ""
+
+
 def _plural(word: str, language: Language) -> str:
-    many = language.plurals.get("irregular", {}).get(word.lower())
-    if many is not None:
-        return str(many)
+    table = language.plurals.get("irregular", {})
+    one, head = _last_part(word, table, language)
+    if one is not None:
+        many = str(table[one])
+        return head + (many.lower() if head else many)
     for one_ending, many_ending in language.plurals.get("endings", ()):
         if word.lower().endswith(one_ending):
             return word[: len(word) - len(one_ending)] + str(many_ending)
@@ -54,6 +71,11 @@ def _singular(word: str, language: Language) -> str:
     for one, many in language.plurals.get("irregular", {}).items():
         if low == many:
             return str(one)
+    ones = {str(many).lower(): one for one, many in language.plurals.get("irregular", {}).items()}
+    last, head = _last_part(word, ones, language)
+    if last is not None:
+        one = ones[last]
+        return head + one if head else (one.capitalize() if word[:1].isupper() else one)
     for one_ending, many_ending in language.plurals.get("singular_endings", ()):
         if low.endswith(many_ending) and len(low) > len(many_ending) + 1:
             return word[: len(word) - len(many_ending)] + str(one_ending)

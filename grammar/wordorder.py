@@ -8,8 +8,8 @@ are data of the language: `speech: {clause: ...}`. A language without them keeps
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from grammar.discourse import Discourse
@@ -38,14 +38,19 @@ class Group:
         return self.spelled[:1].isupper()
 
 
-def direct_clause(d: Discourse, start: int, end: int) -> str:
-    """The words of a reported clause, in the order of a direct one."""
+def direct_clause(
+    d: Discourse, start: int, end: int, instead: Mapping[int, str] | None = None
+) -> str:
+    """The words of a reported clause, in the order of a direct one; `instead` has what some of its
+    tokens are written as."""
     rules = d.language.speech.get("clause")
     if rules is None:
         return d.words(start, end)
     clauses: list[list[Group]] = [[]]
     joints: list[str] = []
     groups = _groups(d, start, end)
+    if instead:
+        groups = [replace(group, spelled=instead.get(group.at, group.spelled)) for group in groups]
     for position, group in enumerate(groups):
         ended = bool(clauses[-1]) and clauses[-1][-1].norm in rules["finite"]
         begins = groups[position + 1 : position + 2]
@@ -158,7 +163,9 @@ def _noun_end(rules: Any, groups: Sequence[Group], at: int) -> int:
     """Where a noun ends that begins here: "Frau Doktor Weber", "Zimmer 12", "Alice und Bob"."""
     titled = groups[at].norm in rules["titles"]
     at += 1
-    while at < len(groups) - 1 and (groups[at].number or (titled and groups[at].capital)):
+    while at < len(groups) - 1 and (
+        (groups[at].number and not groups[at + 1].capital) or (titled and groups[at].capital)
+    ):  # "Zimmer 12", but not "die Sprechstunde zwanzig Minuten später"
         at += 1
     if (
         at + 2 < len(groups)

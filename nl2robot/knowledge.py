@@ -59,6 +59,11 @@ class Knowledge:
                 Name(f.name, f.kind, said(f.aliases), inside=f.at) for f in world.furniture
             ),
             contacts=tuple(contact.name for contact in world.contacts),
+            contact_aliases=tuple(
+                Name(contact.name, contact.kind, said(contact.aliases))
+                for contact in world.contacts
+                if said(contact.aliases)
+            ),
             questions=tuple(
                 Question(q.ask[language][0], q.answer.get(language, ""), q.ask[language][1:])
                 for q in world.questions

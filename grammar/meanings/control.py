@@ -36,6 +36,7 @@ from grammar.plan import (
     While,
 )
 from grammar.tidy import nodes
+from grammar.wordorder import direct_clause
 
 NEEDS_IT: Final = frozenset({"grab", "put", "give", "guide", "follow", "describe"})
 """Methods that say themselves when what was looked for is not there."""
@@ -157,7 +158,7 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
     condition: Condition = d.get(node, "condition")
     before_it, d.pending = d.pending, []
     part = node.parts["condition"]
-    text = Text(sentence_form(d.words(part.start, part.end)))
+    text = Text(sentence_form(direct_clause(d, part.start, part.end)))
     saying = Call("say", {"text": text})
     then = speak_to(d, d.get(node, "person_ref"), [saying])
     d.at = d.with_person = None

@@ -28,7 +28,7 @@ def say_that(d: Discourse, node: Node) -> Steps:
     elif node.production.fixed.get("to_you"):
         text = sentence_form(turn_to_you(d, part.start, part.end))
     else:
-        ordered = direct_clause(d, part.start, part.end)
+        ordered = direct_clause(d, part.start, part.end, turned(d, part.start, part.end, person))
         if ordered == d.words(part.start, part.end):
             ordered = addressed(d, part.start, part.end, person)
         text = sentence_form(ordered)
@@ -57,6 +57,25 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
                 subject = word in data["subjects"]
         pieces.append(space + (original if changed == tokens else " ".join(changed)))
     return "".join(pieces).strip()
+
+
+def turned(d: Discourse, start: int, end: int, person: Thing | None) -> dict[int, str]:
+    """What the words of a reported clause become for its receiver where the verb stands last: "dass
+    er spät ist" -> "Sie", "sind". After the first comma a pronoun may mean anything named so far."""
+    data = d.language.speech.get("addressing_last")
+    changed: dict[int, str] = {}
+    if person is None or person.me or not data:
+        return changed
+    last = next((at for at in range(start, end) if d.tokens[at].norm in data["ends"]), end)
+    for at in range(start, last):
+        word = d.tokens[at].norm
+        if word not in data["you"]:
+            continue
+        owned = word in data["possessives"] and at + 1 < last and d.tokens[at + 1].capital
+        changed[at] = data["possessives" if owned else "you"][word]
+        if at == start and word in data["subjects"]:
+            changed[last - 1] = base_form(d, d.words(last - 1, last))
+    return changed
 
 
 def _written(d: Discourse, start: int, end: int) -> list[tuple[int, str, str]]:

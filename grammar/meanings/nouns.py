@@ -284,6 +284,8 @@ def thing_it(d: Discourse, node: Node) -> Thing:
         return replace(d.thing, pronoun=True)
     if d.holding is not None:
         return Thing(d.holding, pronoun=True)
+    if d.person is not None:  # "where is Victor? look for him"
+        return person_pronoun(d, node)
     raise NotUnderstood(d.language.phrase("what_is_it", word=d.words(node.start, node.end)))
 
 

@@ -279,10 +279,14 @@ def _place_at_end(d: Discourse, start: int, end: int) -> str | None:
 @meaning("ask_to")
 def ask_to(d: Discourse, node: Node) -> Steps:
     """ "ask them to wait" -> "Please wait."."""
-    part = node.parts["text"]
-    text = turn_to_you(d, part.start, part.end)
-    if "verb" in node.parts:  # "hier zu warten": the verb stands last
-        text = f"{text} {turn_to_you(d, node.parts['verb'].start, node.parts['verb'].end)}"
+    part = node.parts.get("text")
+    text = turn_to_you(d, part.start, part.end) if part is not None else ""
+    verb = node.parts.get("verb")
+    if verb is not None:  # "hier zu warten": the verb stands last
+        last = verb.value if isinstance(verb, Leaf) and verb.value else None
+        text = f"{text} {last or turn_to_you(d, verb.start, verb.end)}".strip()
+    if "why" in node.parts:
+        text += d.words(node.parts["why"].start, node.parts["why"].end)
     request = d.sentence("please_do", what=text)
     return speak_to(d, d.get(node, "person_ref"), [Call("say", {"text": request})])
 

@@ -27,13 +27,24 @@ def test_a_verb_has_forms_for_the_beginning_and_the_end_of_a_clause() -> None:
         "fetch_1": ["(hol|holst|nehm|nimmst)"],
         "fetch_2": ["(holen|mitnehmen)"],
         "fetch_off": ["(mit)"],
+        "fetch_whole": ["(hol|holst)"],
+        "fetch_parting": ["(nehm|nimmst)"],
     }
 
 
 def test_a_marked_verb_stands_where_the_language_puts_it() -> None:
-    orders = ["<VERB_1> REST [<VERB_off>]", "REST <VERB_2>"]
+    orders = ["<VERB_1> REST <VERB_off>", "REST <VERB_2>"]
     assert list(ordered("~go <place>", orders, {})) == ["<go_1> <place>", "<place> <go_2>"]
-    assert next(ordered("~get it", orders, {"get_off": []})) == "<get_1> it [<get_off>]"
+    assert next(ordered("~get it", orders, {"get_off": []})) == "<get_1> it <get_off>"
+    both = {"get_off": [], "get_whole": [], "get_parting": []}
+    assert list(ordered("~get it", orders[:1], both)) == [
+        "<get_whole> it",
+        "<get_parting> it <get_off>",
+    ]
+    assert list(ordered("~tell her >> , why", orders, {})) == [
+        "<tell_1> her , why",
+        "her <tell_2> , why",
+    ]
     assert list(ordered("stop", orders, {})) == ["stop"]
 
 
