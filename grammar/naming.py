@@ -55,7 +55,13 @@ def naming(lexicon: Lexicon, language: Language) -> Naming:
     if not language.speech.get("aliases_first"):
         return Naming()
     names: dict[str, str] = dict(language.speech.get("names", {}))
-    known = (*lexicon.contact_aliases, *lexicon.objects, *lexicon.furniture, *lexicon.people, *lexicon.places)
+    known = (
+        *lexicon.contact_aliases,
+        *lexicon.objects,
+        *lexicon.furniture,
+        *lexicon.people,
+        *lexicon.places,
+    )
     names |= {name.name: name.aliases[0] for name in known if name.aliases}
     looks: dict[str, str] = language.speech.get("looks", {})
     relations: dict[str, str] = language.speech.get("relations", {})

@@ -94,4 +94,3 @@ def ordered(say: str, orders: Sequence[str], rules: Mapping[str, Any]) -> Iterat
         for way in ways:
             clause = way.replace("VERB", name).replace("REST", inside.strip())
             yield f"{before}{clause} {behind.strip()}".rstrip()
-

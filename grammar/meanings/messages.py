@@ -61,7 +61,7 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
 
 def turned(d: Discourse, start: int, end: int, person: Thing | None) -> dict[int, str]:
     """What the words of a reported clause become for its receiver where the verb stands last: "dass
-    er spät ist" -> "Sie", "sind". After the first comma a pronoun may mean anything named so far."""
+    er spät ist" -> "Sie", "sind". After a comma a pronoun may mean anything."""
     data = d.language.speech.get("addressing_last")
     changed: dict[int, str] = {}
     if person is None or person.me or not data:
