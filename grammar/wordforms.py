@@ -74,7 +74,7 @@ def _singular(word: str, language: Language) -> str:
     ones = {str(many).lower(): one for one, many in language.plurals.get("irregular", {}).items()}
     last, head = _last_part(word, ones, language)
     if last is not None:
-        one = ones[last]
+        one = str(ones[last])
         return head + one if head else (one.capitalize() if word[:1].isupper() else one)
     for one_ending, many_ending in language.plurals.get("singular_endings", ()):
         if low.endswith(many_ending) and len(low) > len(many_ending) + 1:
