@@ -32,7 +32,11 @@ class NotUnderstood(Exception):
     """A part of the sentence means nothing here; `message` is for the person who said it."""
 
     def __init__(
-        self, message: str, nearest: tuple[str, ...] = (), span: tuple[int, int] = (0, 0)
+        self,
+        message: str,
+        nearest: tuple[str, ...] = (),
+        span: tuple[int, int] = (0, 0),
+        gap: tuple[int, int] = (0, 0),
     ) -> None:
         super().__init__(message)
         self.message = message
@@ -40,6 +44,8 @@ class NotUnderstood(Exception):
         """Names that may have been meant."""
         self.span = span
         """The tokens that would then be replaced."""
+        self.gap = gap
+        """The tokens in whose place a name would do: "it", where nothing was spoken of."""
 
 
 class Ambiguous(Exception):

@@ -13,7 +13,7 @@ from typing import Literal
 from grammar.language import load_language
 from grammar.tokens import tokenise
 
-Kind = Literal["help", "learn", "list", "explain", "change", "forget", "schedule"]
+Kind = Literal["help", "learn", "list", "explain", "change", "forget", "schedule", "cancel", "undo"]
 
 
 @dataclass(frozen=True)

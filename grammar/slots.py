@@ -20,6 +20,8 @@ from grammar.wordforms import kind_words, plural
 
 FREE_WORD: Final = 1.0
 """Cost of a word that only an open slot understands."""
+REST_WORD: Final = 0.2
+"""Cost of a word of what is read once more by itself."""
 SWALLOWED_COMMAND: Final = 40.0
 """Cost of a text that goes on over what begins like another command."""
 UNKNOWN_NAME: Final = 30.0
@@ -183,6 +185,7 @@ class Slots:
             "{selector}": functools.partial(self._kind, "selector"),
             "{quote}": self._quote,
             "{text}": self._text,
+            "{rest}": self._rest,
             "{noun}": self._noun,
             "{word}": self._word,
             "{verb}": self._verb,
@@ -372,6 +375,14 @@ class Slots:
                 break
             matches.append((position + 1, FREE_WORD * (position + 1 - at), None))
         return matches
+
+    def _rest(self, at: int) -> list[Match]:
+        """Any words at all, for what is read once more by itself."""
+        return [
+            (end, REST_WORD * (end - at), None)
+            for end in range(at + 1, len(self.tokens) + 1)
+            if self.tokens[end - 1].kind != "mark" and self.tokens[at].kind != "mark"
+        ]
 
     def _goes_on(self, at: int) -> bool:
         """Whether after a comma or full stop something else is said to be done: ", then"."""

@@ -10,12 +10,11 @@ would be.
 from __future__ import annotations
 
 import functools
-import itertools
 from dataclasses import dataclass, field, replace
 from typing import Final, Literal
 
 from grammar.accounts import left_out
-from grammar.chart import Chart, Node, TooMuch
+from grammar.chart import Chart, Node, Slot, TooMuch
 from grammar.discourse import Ambiguous, Discourse, NotUnderstood, Thing
 from grammar.language import Language, load_language
 from grammar.lexicon import Lexicon
@@ -33,16 +32,6 @@ MOST_WORDS: Final = 150
 COMMA_PASSED_OVER: Final = 1.5
 FILLER_PASSED_OVER: Final = 0.1
 MOST_SUGGESTIONS: Final = 3
-CORRECTABLE: Final = (
-    "place_ref",
-    "length",
-    "angle",
-    "duration",
-    "percentage",
-    "person_ref",
-    "thing",
-)
-"""Rules of which a part of the last sentence can be put right: "no, the pharmacy"."""
 SHORTEST_CORRECTED: Final = 4
 """Letters of a word that may be misspelt."""
 
@@ -63,11 +52,22 @@ class Context:
     """What was spoken of last: "it", "her", "there"."""
     question: Clarification | None = None
     """The question that waits for an answer."""
+    before: Context | None = None
+    """What was known when the last sentence was said, for it to be understood anew."""
+    carried_out: bool = False
+    """Whether the last plan has been carried out, so that what comes is not a part of it."""
+
+    def referents(self) -> Context:
+        """Only what was spoken of last."""
+        person = self.person
+        if person is not None and not self.carried_out:
+            person = replace(person, here=False)  # nobody has gone there yet
+        return Context(thing=self.thing, person=person, place=self.place)
 
 
 @dataclass(frozen=True)
 class Clarification:
-    """A question back: which of several was meant."""
+    """A question back: which of several was meant, or what was left out."""
 
     text: str
     """The sentence it is about."""
@@ -77,10 +77,16 @@ class Clarification:
     choices: tuple[str, ...]
     before: str = ""
     """What must stand before the choice, where a contraction was opened: "ins Büro"."""
+    question: str = ""
+    """As it was asked."""
+    asked: bool = True
+    """Whether it was put as a question; otherwise the words were only not understood, and an answer
+    puts others in their place."""
 
     def completed(self, choice: str) -> str:
         """The sentence with the choice in place."""
-        return self.text[: self.start] + self.before + choice + self.text[self.end :]
+        space = " " if self.start == self.end and not choice.startswith(" ") else ""
+        return self.text[: self.start] + self.before + space + choice + self.text[self.end :]
 
 
 @dataclass(frozen=True)
@@ -114,49 +120,22 @@ def understand(
 ) -> Understanding:
     """Understand a sentence. Never raises for any text; `UnknownLanguage` for a language that
     there is no folder for."""
+    from grammar import conversation
+
     pack = load_language(language)
     context = context or Context()
     if not text.strip():
-        return _rejected(text, pack.phrase("empty"), context)
+        return rejected(text, pack.phrase("empty"), context)
     if len(text) > LONGEST_TEXT or len(text.split()) > MOST_WORDS:
-        return _rejected(text, pack.phrase("too_long"), context)
-    if context.question is not None:
-        answered = _answered(text, context.question, pack)
-        context = replace(context, question=None)
-        if answered is not None:
-            return understand(answered, lexicon, language, context)
-    reader = _Reader(text, lexicon, pack, context)
-    if context.plan is not None:
-        said = tuple(token.norm for token in reader.tokens if token.kind != "mark")
-        if said in map(pack.tokens_of, pack.speech["again"]):
-            return Understanding(text, "ok", context.plan, 1.0, context=context)
-        corrected = reader.correction()
-        if corrected is not None:
-            return understand(corrected, lexicon, language, context)
-    return reader.understand()
+        return rejected(text, pack.phrase("too_long"), context)
+    return conversation.understood(text, lexicon, pack, context)
 
 
-def _answered(text: str, question: Clarification, language: Language) -> str | None:
-    """The sentence completed by the answer to the question back, if it is one."""
-    from rapidfuzz import fuzz
-
-    said = " ".join(language.tokens_of(text))
-    best = max(
-        question.choices,
-        key=lambda choice: fuzz.token_set_ratio(said, " ".join(language.tokens_of(choice))),
-    )
-    close = fuzz.token_set_ratio(said, " ".join(language.tokens_of(best)))
-    if close < 80:
-        yes = len(question.choices) == 1 and said == language.phrase("yes")
-        return question.completed(best) if yes else None
-    return question.completed(best)
-
-
-def _rejected(text: str, message: str, context: Context) -> Understanding:
+def rejected(text: str, message: str, context: Context) -> Understanding:
     return Understanding(text, "rejected", message=message, context=context)
 
 
-class _Reader:
+class Reader:
     """Reads one sentence."""
 
     def __init__(self, text: str, lexicon: Lexicon, language: Language, context: Context) -> None:
@@ -171,12 +150,12 @@ class _Reader:
 
     def understand(self) -> Understanding:
         if not self.tokens:
-            return _rejected(self.text, self.language.phrase("empty"), self.context)
+            return rejected(self.text, self.language.phrase("empty"), self.context)
         chart = self.chart()
         try:
             tree = chart.best("utterance")
         except (TooMuch, RecursionError):
-            return _rejected(self.text, self.language.phrase("too_complicated"), self.context)
+            return rejected(self.text, self.language.phrase("too_complicated"), self.context)
         if tree is None:
             return self._not_understood(chart)
         understood = self._meant(tree, chart)
@@ -219,12 +198,12 @@ class _Reader:
                 )
             )
         except Unbound:
-            return _rejected(self.text, self.language.phrase("too_complicated"), self.context)
+            return rejected(self.text, self.language.phrase("too_complicated"), self.context)
         lost = left_out(tree, self.tokens, plan, self.language, self.lexicon)
         if lost:
             words = " ".join(lost)
             message = self.language.phrase("not_understood", part=words)
-            return replace(_rejected(self.text, message, self.context), unclear=words)
+            return replace(rejected(self.text, message, self.context), unclear=words)
         plan = without_unused(plan)
         return Understanding(
             self.text,
@@ -237,6 +216,7 @@ class _Reader:
                 thing=discourse.thing,
                 person=discourse.person,
                 place=discourse.place if isinstance(discourse.place, Text) else None,
+                before=self.context.referents(),
             ),
         )
 
@@ -244,46 +224,30 @@ class _Reader:
         doubts = 0.15 * len(tree.corrections) + 0.1 * len(discourse.assumptions)
         return round(max(0.1, 1.0 - doubts), 2)
 
-    def correction(self) -> str | None:
-        """ "no, the pharmacy": the last sentence with this in the place of what it corrects."""
-        said = [token.norm for token in self.tokens if token.norm != COMMA]
-        marks = [[*self.language.tokens_of(way)] for way in self.language.speech["corrections"]]
-        mark = max((each for each in marks if said[: len(each)] == each), key=len, default=None)
-        if mark is None:
-            return None
-        words = 0
-        start = 0
-        while words < len(mark) or (start < len(self.tokens) and self.tokens[start].norm == COMMA):
-            words += self.tokens[start].norm != COMMA
-            start += 1
-        if start >= len(self.tokens):
-            return None
-        rest = _Reader(
-            self.text[self.tokens[start].start :], self.lexicon, self.language, Context()
-        )
-        before = _Reader(self.context.text, self.lexicon, self.language, Context())
-        try:
-            old_tree = before.chart().best("utterance")
-            for rule, lead in itertools.product(CORRECTABLE, (0, 1)):
-                if lead >= len(rest.tokens) or not rest.is_little(range(lead)):
-                    continue
-                new = rest.chart().longest(rule, lead)
-                if old_tree is None or new is None or new.end < rest.last_word:
-                    continue
-                old = _last(old_tree, rule)
-                if old is None or not before.is_little(range(old.start - lead, old.start)):
-                    continue
-                return before.with_words(old.start - lead, old.end, rest.text.strip(" .!?"))
-        except TooMuch:
-            pass
-        return None
-
     def is_little(self, positions: range) -> bool:
         """Whether these tokens are function words, such as "to"."""
         return all(
             position >= 0 and self.tokens[position].norm in self.language.closed
             for position in positions
         )
+
+    def content(self, start: int, end: int) -> set[str]:
+        """The words among these tokens that are no function words."""
+        return {
+            token.norm
+            for at, token in enumerate(self.tokens[start:end], start)
+            if token.kind != "mark"
+            and token.norm not in self.language.closed
+            and (at not in self.skips)
+        }
+
+    @property
+    def lead(self) -> int:
+        """How many function words it begins with."""
+        count = 0
+        while count < len(self.tokens) and self.is_little(range(count, count + 1)):
+            count += 1
+        return count
 
     def opened(self, first: int) -> str:
         """What of a contraction stands before a token that is a part of it: "zu" of "zur"."""
@@ -305,12 +269,19 @@ class _Reader:
             self.text[: self.tokens[first].start] + words + self.text[self.tokens[last - 1].end :]
         )
 
+    @functools.cached_property
+    def slots(self) -> dict[str, Slot]:
+        return Slots(self.names, self.tokens, self.corrections).all()
+
     def chart(self) -> Chart:
-        slots = Slots(self.names, self.tokens, self.corrections).all()
+        return self._chart
+
+    @functools.cached_property
+    def _chart(self) -> Chart:
         return Chart(
             self.language.network,
             self.tokens,
-            slots,
+            self.slots,
             skips=self.skips,
             corrections=self.corrections,
         )
@@ -368,8 +339,25 @@ class _Reader:
             "rejected",
             message=message,
             suggestions=suggestions,
-            unclear=self._words(*reason.span),
-            context=self.context,
+            unclear=self.words(*reason.span),
+            context=replace(self.context, question=self._open(reason)),
+        )
+
+    def _open(self, reason: NotUnderstood) -> Clarification | None:
+        """What an answer to a refusal may still complete: "the lobby", after an unknown place."""
+        first, last = reason.span if reason.span != (0, 0) else reason.gap
+        if first >= last:
+            return None
+        names = (place_called(name, self.lexicon, self.language) for name in reason.nearest)
+        before = self.opened(first)
+        return Clarification(
+            self.text,
+            self.tokens[first].start,
+            self.tokens[last - 1].end,
+            tuple(names),
+            f"{before} " if before else "",
+            reason.message,
+            asked=False,
         )
 
     def _listed(self, names: list[str]) -> str:
@@ -382,7 +370,12 @@ class _Reader:
         start = self.tokens[which.start].start if which.start < which.end else end
         before = self.opened(which.start)
         question = Clarification(
-            self.text, start, end, which.choices, f"{before} " if before else ""
+            self.text,
+            start,
+            end,
+            which.choices,
+            f"{before} " if before else "",
+            which.question,
         )
         return Understanding(
             self.text,
@@ -445,19 +438,8 @@ class _Reader:
             last += 1
         return self.text[self.tokens[first].start : self.tokens[last - 1].end]
 
-    def _words(self, start: int, end: int) -> str:
+    def words(self, start: int, end: int) -> str:
         return self.text[self.tokens[start].start : self.tokens[end - 1].end] if end > start else ""
-
-
-def _last(tree: Node, rule: str) -> Node | None:
-    """The last part of a reading that this rule made."""
-    found: Node | None = None
-    for part in tree.parts.values():
-        if isinstance(part, Node):
-            inner = part if part.production.rule == rule else _last(part, rule)
-            if inner is not None and (found is None or inner.start >= found.start):
-                found = inner
-    return found
 
 
 @functools.cache

@@ -54,6 +54,8 @@ def reply(request: Request, knowledge: Knowledge, language: str, before: str = "
     pack = load_language(language)
     if request.kind == "help":
         return _help(request.part, knowledge.lexicon(language), pack)
+    if request.kind in ("cancel", "undo"):
+        return Reply("ok", pack.phrase("dropped"))
     if request.kind == "schedule":
         said = understand(request.sentence, knowledge.lexicon(language), language)
         message = pack.phrase("routine_scheduled", part=request.part)
@@ -70,7 +72,7 @@ def reply(request: Request, knowledge: Knowledge, language: str, before: str = "
             return teacher.list()
         case "explain":
             return teacher.explain(request.name)
-        case "forget":
+        case _:
             return teacher.forget(request.name)
 
 

@@ -11,6 +11,7 @@ import grammar.meanings.answers
 import grammar.meanings.body
 import grammar.meanings.conditions
 import grammar.meanings.control
+import grammar.meanings.conversation
 import grammar.meanings.driving
 import grammar.meanings.messages
 import grammar.meanings.news

@@ -67,7 +67,7 @@ def place_own(d: Discourse, node: Node) -> Value:
 @meaning("place_there")
 def place_there(d: Discourse, node: Node) -> Value:
     if d.place is None:
-        raise NotUnderstood(d.language.phrase("where_is_there"))
+        raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
     return d.place
 
 
@@ -286,7 +286,8 @@ def thing_it(d: Discourse, node: Node) -> Thing:
         return Thing(d.holding, pronoun=True)
     if d.person is not None:  # "where is Victor? look for him"
         return person_pronoun(d, node)
-    raise NotUnderstood(d.language.phrase("what_is_it", word=d.words(node.start, node.end)))
+    word = d.words(node.start, node.end)
+    raise NotUnderstood(d.language.phrase("what_is_it", word=word), gap=(node.start, node.end))
 
 
 # --- people

@@ -17,7 +17,7 @@ from grammar.chart import Node
 from grammar.language import languages, load_language
 from grammar.program import write_program
 from grammar.samples import random_sentence
-from grammar.understand import Context, _Reader, understand
+from grammar.understand import Context, Reader, understand
 from tests.grammar.hospitals import hospital
 from tests.grammar.ward import WARD, program
 
@@ -104,7 +104,7 @@ def test_programs_know_all_names_and_sentences_lose_no_word(sentence: str) -> No
         return
     assert not unbound(write_program(understood.plan)), program(understood.plan)
     language = load_language("en")
-    reader = _Reader(sentence, WARD, language, Context())
+    reader = Reader(sentence, WARD, language, Context())
     tree = reader.chart().best("utterance")
     assert isinstance(tree, Node)
     lost = left_out(tree, reader.tokens, understood.plan, language, WARD, NAMES | TEXTS)

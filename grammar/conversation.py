@@ -1,0 +1,385 @@
+"""What a sentence means after others: an answer to a question back, a change to the command before,
+a piece that goes on with it, or simply the next command.
+
+Whatever it is, the outcome is a whole sentence, understood anew: "ask Bob if he wants coffee" and
+"no, Alice" make "ask Alice if he wants coffee". So nothing is done that could not have been said at
+once, and the person sees the whole program again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from typing import Final
+
+from grammar.accounts import TEXTS
+from grammar.answers import Answer, answer_to
+from grammar.chart import Leaf, Node, TooMuch
+from grammar.discourse import Discourse
+from grammar.edits import Edit, Sentence, same_word
+from grammar.language import Language
+from grammar.lexicon import Lexicon
+from grammar.plan import calls
+from grammar.requests import Request
+from grammar.understand import Context, Reader, Understanding, rejected
+
+MANNER: Final = frozenset({"set_volume", "set_language"})
+"""What is set before something is said rather than after it."""
+SPEAKING: Final = frozenset({"say", "ask", "answer", "listen"})
+MOST_TRIED: Final = 12
+"""Sentences that are tried for one change."""
+
+
+def understood(text: str, lexicon: Lexicon, language: Language, context: Context) -> Understanding:
+    """Understand a sentence of a conversation."""
+    return _Turn(text, lexicon, language, context).understood()
+
+
+class _Turn:
+    """One sentence and what was said before it."""
+
+    def __init__(self, text: str, lexicon: Lexicon, language: Language, context: Context) -> None:
+        self.text = text
+        self.lexicon = lexicon
+        self.language = language
+        self.context = replace(context, question=None)
+        self.question = context.question
+        self.base = context.before or Context()
+        """What was known when the command before was given."""
+
+    def understood(self) -> Understanding:
+        question = self.question
+        if question is not None and question.asked:
+            answered = self._answered(answer_to(self.text, question, self.language))
+            if answered is not None:
+                return answered
+        reader = self._reader(self.text, self.context)
+        plain = reader.understand()
+        if plain.request is not None:
+            return plain
+        edit = self._edit(reader)
+        if edit is not None and edit.kind == "correct" and question is not None:
+            answered = self._answered(Answer((question.completed(edit.new),), certain=False))
+            if answered is not None:
+                return answered
+        if edit is not None:
+            changed = self._changed(edit)
+            if changed is not None:
+                return changed
+        if edit is not None and reader.tokens[0].norm in self.language.speech["only"]:
+            narrowed = self._gone_on()  # "only if she is there"
+            if narrowed is not None:
+                return narrowed
+        if plain.status != "rejected":
+            return self._in_that_manner(plain) or plain
+        if question is not None:
+            answered = self._answered(answer_to(self.text, question, self.language, loosely=True))
+            if answered is not None:
+                return answered
+        gone_on = self._gone_on()
+        if gone_on is not None:
+            return gone_on
+        if edit is not None and edit.kind in ("correct", "instead", "drop", "drop step"):
+            return self._unclear(edit)
+        return plain
+
+    # --- trying sentences
+
+    def _reader(self, text: str, context: Context) -> Reader:
+        return Reader(text, self.lexicon, self.language, context)
+
+    def _read(self, text: str, base: Context) -> Understanding | None:
+        """A sentence made from what was said, if it is one."""
+        reader = self._reader(text, base)
+        if not reader.tokens:
+            return None
+        result = reader.understand()
+        if result.status == "rejected" or result.request is not None:
+            return None
+        return replace(result, context=replace(result.context, before=base))
+
+    def _first_read(
+        self, texts: Iterable[str | None], base: Context | None = None
+    ) -> Understanding | None:
+        tried = 0
+        for text in texts:
+            if text is None:
+                continue
+            result = self._read(text, base or self.base)
+            if result is not None:
+                return result
+            tried += 1
+            if tried == MOST_TRIED:
+                break
+        return None
+
+    # --- answers
+
+    def _answered(self, answer: Answer | None) -> Understanding | None:
+        if answer is None:
+            return None
+        if answer.dropped:
+            return self._dropped()
+        if answer.again and self.question is not None:
+            return replace(
+                rejected(self.text, answer.again, self.context),
+                status="clarify",
+                suggestions=[self.question.completed(each) for each in self.question.choices[:3]],
+                context=replace(self.context, question=self.question),
+            )
+        alone = None if answer.certain else self._reader(self.text, self.context).understand()
+        if alone is not None and (alone.plan is not None or alone.request is not None):
+            return None  # another command instead of an answer
+        base = self.context.referents()
+        return self._first_read(answer.sentences, base)
+
+    def _dropped(self) -> Understanding:
+        return Understanding(
+            self.text,
+            "ok",
+            confidence=1.0,
+            request=Request("cancel"),
+            context=self.context.referents(),
+        )
+
+    # --- changes to the command before
+
+    def _edit(self, reader: Reader) -> Edit | None:
+        """The change to the command before that a sentence asks for, if it reads as one."""
+        if not self.context.text and self.question is None:
+            return None
+        try:
+            tree = reader.chart().best("edit")
+        except (TooMuch, RecursionError):
+            return None
+        if tree is None:
+            return None
+        edit: Edit = Discourse(self.language, self.lexicon, reader.tokens, self.text).build(tree)
+        return edit
+
+    def _before(self) -> Sentence:
+        return Sentence(self._reader(self.context.text, self.base))
+
+    def _changed(self, edit: Edit) -> Understanding | None:
+        """The command before with a change; None if that makes no sense."""
+        match edit.kind:
+            case "cancel":
+                return self._dropped() if self.context.text else None
+            case _ if not self.context.text:
+                return None
+            case "drop step" if self.context.carried_out:
+                return Understanding(
+                    self.text, "ok", confidence=1.0, request=Request("undo"), context=self.context
+                )
+            case "drop step":
+                return self._without_step(edit.which)
+            case "drop":
+                return self._first_read(self._without(edit.old))
+            case "instead":
+                return self._first_read(self._instead(edit))
+            case "correct":
+                return self._first_read(self._corrected(edit.new))
+            case "first" if not self.context.carried_out:
+                return self._first_read(self._with_first(edit.new), self.context.referents())
+            case "add" if not self.context.carried_out:
+                return self._added(edit.new)
+            case "add" if not self._commands(edit.new):
+                return self._first_read(self._same(edit.new))
+            case "again":
+                return self._again(edit.new)
+            case "same":
+                return self._first_read(self._same(edit.new))
+            case _:
+                return None
+
+    def _corrected(self, said: str) -> Iterator[str | None]:
+        """ "no, the pharmacy": the sentence with this in the place of what it corrects."""
+        before, new = self._before(), self._reader(said, Context())
+        yield before.with_other_look(new)
+        yield from before.corrected(new)
+        if self._commands(said):
+            yield before.with_clause(new)
+            yield said
+        yield from before.corrected(new, everywhere=True)
+        if self._goes_on(new):
+            yield self._joined(said)
+
+    def _instead(self, edit: Edit) -> Iterator[str | None]:
+        """ "tea instead of coffee"."""
+        before = self._before()
+        old, new = self._reader(edit.old, Context()), self._reader(edit.new, Context())
+        yield before.swapped(old, new)
+        yield from before.corrected(new)
+
+    def _with_first(self, said: str) -> Iterator[str | None]:
+        """ "first go to the lab"."""
+        old = self.context.text
+        if self._commands(said):
+            yield f"{said.rstrip(' .!')}. {old}"
+            return
+        before, new = self._before(), self._reader(said, Context())
+        for start, end in before.siblings()[0] if before.siblings() else []:
+            clause = Sentence(self._reader(before.reader.words(start, end), self.base))
+            for variant in clause.corrected(new):
+                yield f"{variant.rstrip(' .!')}. {old}"
+
+    def _added(self, said: str) -> Understanding | None:
+        """ "and then wave": at the end of the command before."""
+        whole = self._joined(self.text)
+        separate = self._separate(said)
+        if self._commands(said):
+            alone = self._reader(said, self.context).understand()
+            more = len(calls(alone.plan)) if alone.plan is not None else 1
+            least = len(calls(self.context.plan)) + more if self.context.plan else 1
+            for text in (whole, separate):
+                result = self._read(text, self.base)
+                if result is not None and (
+                    result.plan is None or len(calls(result.plan)) >= least or text is separate
+                ):
+                    return result
+            return None
+        result = self._read(whole, self.base)
+        if result is not None and not self._swallowed(whole):
+            return result
+        before, new = self._before(), self._reader(said, Context())
+        like = self._first_read(self._separate(variant) for variant in before.corrected(new))
+        return like or result or self._read(separate, self.base)
+
+    def _again(self, said: str) -> Understanding | None:
+        if not said:
+            plan = self.context.plan
+            assert plan is not None
+            context = replace(self.context, carried_out=False)
+            return Understanding(self.text, "ok", plan, 1.0, context=context)
+        return self._first_read(self._same(said))
+
+    def _same(self, said: str) -> Iterator[str | None]:
+        """ "the same for Bob": again, with Bob in the place of who it was for."""
+        before, new = self._before(), self._reader(said, Context())
+        done = self.context.carried_out
+        for variant in before.corrected(new):
+            yield variant if done else self._separate(variant)
+        yield self._separate(self.text)
+        if self._goes_on(new):
+            yield self._joined(said) if done else self._separate(self._joined(said))
+
+    def _without(self, said: str) -> Iterator[str | None]:
+        """ "without the greeting", "not the kitchen"."""
+        before, what = self._before(), self._reader(said, Context())
+        words = what.content(0, what.last_word)
+        if not words:
+            return
+        for piece in before.pieces():
+            if _has(before.reader.content(piece.start, piece.end), words):
+                yield from before.without_words(piece)
+        named = [
+            clause
+            for clause in before.clauses()
+            if _has(before.reader.content(*clause), words) or self._does(before, clause, words)
+        ]
+        smallest = min((end - start for start, end in named), default=0)
+        named = [clause for clause in named if clause[1] - clause[0] == smallest]
+        if len(named) == 1:
+            yield before.without(*named[0])
+
+    def _does(self, before: Sentence, clause: tuple[int, int], words: set[str]) -> bool:
+        """Whether a clause does what these words speak of: "the greeting"."""
+        part = self._reader(before.reader.words(*clause), self.base).understand()
+        if part.plan is None:
+            return False
+        methods = {call.method for call in calls(part.plan)}
+        called = self.language.speech.get("part_words", {})
+        return all(any(word in called.get(method, ()) for method in methods) for word in words)
+
+    def _without_step(self, which: int) -> Understanding | None:
+        """ "undo the last step": the innermost clause that is a sentence less."""
+        before = self._before()
+        rows = before.siblings()
+        ends = [row[which] for row in (rows if which == 0 else reversed(rows)) if len(row) > 1]
+        result = self._first_read(before.without(*clause) for clause in ends)
+        return result or rejected(self.text, self.language.phrase("drop_all"), self.context)
+
+    # --- what goes on with the command before
+
+    def _gone_on(self) -> Understanding | None:
+        """A sentence that is none in itself, but goes on with the one before: "..., in German",
+        "only if she is there"; or asks for the like: "and in the lobby?"."""
+        if not self.context.text:
+            return None
+        before, new = self._before(), self._reader(self.text, Context())
+        joined = self._joined(self.text)
+        if not self.context.carried_out and self._goes_on(new):
+            for text in (joined, self._separate(self.text)):
+                if not self._swallowed(text):
+                    result = self._read(text, self.base)
+                    if result is not None:
+                        return result
+        variants = [*before.corrected(new)]
+        if not self._goes_on(new) or not variants:
+            return None
+        joins = self.language.speech["joins"]
+        more = new.tokens[0].norm in joins and not self.context.carried_out
+        return self._first_read(self._separate(each) if more else each for each in variants)
+
+    def _in_that_manner(self, plain: Understanding) -> Understanding | None:
+        """ "louder", while something to say waits for its approval: that is to be said louder."""
+        plan, before = plain.plan, self.context.plan
+        if plan is None or before is None or self.context.carried_out:
+            return None
+        if not {call.method for call in calls(plan)} <= MANNER:
+            return None
+        if not SPEAKING & {call.method for call in calls(before)}:
+            return None
+        return self._read(f"{self.text.rstrip(' .!?')}. {self.context.text}", self.base)
+
+    def _joined(self, more: str) -> str:
+        """The command before and more, in one sentence."""
+        return f"{self.context.text.rstrip(' .!?')} {more.lstrip(' ,.')}"
+
+    def _separate(self, more: str) -> str:
+        """The command before and more, in sentences of their own."""
+        return f"{self.context.text.rstrip(' .!?')}. {more.lstrip(' ,.')}"
+
+    def _goes_on(self, new: Reader) -> bool:
+        """Whether words may go on with a sentence: "in the kitchen", "three times"."""
+        begins = self.language.speech["goes_on"]
+        return bool(new.tokens) and (
+            new.tokens[0].norm in begins or new.tokens[0].kind in ("number", "time")
+        )
+
+    def _commands(self, said: str) -> bool:
+        """Whether this is a command in itself."""
+        result = self._reader(said, self.context).understand()
+        return result.plan is not None or result.status == "clarify"
+
+    def _swallowed(self, whole: str) -> bool:
+        """Whether what goes on with the command before was only read as more of its free text."""
+        reader = self._reader(whole, self.base)
+        boundary = len(self.context.text.rstrip(" .!?"))
+        try:
+            tree = reader.chart().best("utterance")
+        except (TooMuch, RecursionError):
+            return True
+        return tree is None or any(
+            reader.tokens[leaf.start].start < boundary < reader.tokens[leaf.end - 1].end
+            for leaf in _texts_in(tree)
+        )
+
+    def _unclear(self, edit: Edit) -> Understanding:
+        """Nothing of the command before fits what is said of it."""
+        name = "drop_what" if edit.kind in ("drop", "drop step") else "correct_what"
+        part = edit.new or edit.old or self.text
+        message = self.language.phrase(name, part=part)
+        return replace(rejected(self.text, message, self.context), unclear=part)
+
+
+def _texts_in(node: Node) -> Iterator[Leaf]:
+    for part in node.parts.values():
+        if isinstance(part, Node):
+            yield from _texts_in(part)
+        elif part.slot in TEXTS:
+            yield part
+
+
+def _has(words: set[str], sought: set[str]) -> bool:
+    return all(any(same_word(word, each) for word in words) for each in sought)

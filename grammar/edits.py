@@ -1,0 +1,426 @@
+"""Changes to the words of the command before: "no, the pharmacy", "without the greeting".
+
+A change is made to the sentence, not to its plan: what comes out is a sentence that somebody could
+have said at once, and it is understood as such, with all that hangs together in it.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, Literal
+
+from grammar.chart import Leaf, Node, TooMuch
+from grammar.language import Language
+from grammar.lexicon import Lexicon
+from grammar.readings import SEQUENCE
+from grammar.slots import UNKNOWN_NAME
+from grammar.tokens import Token
+
+if TYPE_CHECKING:
+    from grammar.understand import Context, Reader
+
+EditKind = Literal[
+    "cancel", "drop step", "drop", "instead", "correct", "first", "add", "again", "same"
+]
+
+CORRECTABLE: Final = (
+    "place_ref",
+    "person_ref",
+    "thing",
+    "length",
+    "angle",
+    "duration",
+    "times",
+    "clock_time",
+    "percentage",
+    "language",
+    "emotion",
+    "gesture",
+)
+"""Rules and slots whose words can be put in the place of others."""
+NOUNS: Final = frozenset({"place_ref", "person_ref", "thing"})
+"""Those of them that may stand for each other: "go to Alice" - "no, the kitchen"."""
+PRONOUNS: Final = frozenset({"person_pronoun", "person_me", "thing_it", "place_there"})
+MOST_ENDING: Final = 3
+"""Letters that an adjective may be longer than another of its forms."""
+SAME_LETTERS: Final = 4
+"""With how many letters two words must begin alike to be forms of one: "waving" and "wave"."""
+
+
+@dataclass(frozen=True)
+class Edit:
+    """What is to become of the command before."""
+
+    kind: EditKind
+    new: str = ""
+    """The words that come in."""
+    old: str = ""
+    """The words that they take the place of, or that are left out."""
+    which: int = -1
+    """Of "drop step": the last step, or the first (0)."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A part of what is said in a correction: "to the pharmacy"."""
+
+    rule: str
+    start: int
+    end: int
+    means: str = ""
+
+
+class Sentence:
+    """The words of a command, as they can be changed."""
+
+    def __init__(self, reader: Reader) -> None:
+        self.reader = reader
+        self.text = reader.text
+        self.tokens = reader.tokens
+        try:
+            self.tree = reader.chart().best("utterance")
+        except TooMuch:
+            self.tree = None
+
+    # --- its parts
+
+    def pieces(self) -> list[Piece]:
+        """All parts that another of its kind could take the place of, in their order."""
+        found: list[Piece] = []
+
+        def visit(node: Node) -> None:
+            for part in node.parts.values():
+                name = part.slot if isinstance(part, Leaf) else part.production.rule
+                means = part.means if isinstance(part, Node) else ""
+                if name in CORRECTABLE:
+                    found.append(Piece(name, part.start, part.end, means))
+                if isinstance(part, Node):
+                    visit(part)
+
+        if self.tree is not None:
+            visit(self.tree)
+        return sorted(found, key=lambda piece: (piece.start, -piece.end))
+
+    def clauses(self) -> list[tuple[int, int]]:
+        """The tokens of each clause, the outer before the inner."""
+        found: list[tuple[int, int]] = []
+
+        def visit(node: Node) -> None:
+            for name, part in node.parts.items():
+                if not isinstance(part, Node):
+                    continue
+                if node.means == SEQUENCE and name == "first":
+                    found.append((part.start, part.end))
+                visit(part)
+
+        if self.tree is not None:
+            visit(self.tree)
+        return list(dict.fromkeys(found))
+
+    def siblings(self) -> list[list[tuple[int, int]]]:
+        """The clauses of each sequence, the outer sequences first."""
+        found: list[list[tuple[int, int]]] = []
+
+        def visit(node: Node, row: list[tuple[int, int]] | None) -> None:
+            if node.means == SEQUENCE:
+                if row is None:
+                    row = []
+                    found.append(row)
+                first = node.parts["first"]
+                row.append((first.start, first.end))
+            for name, part in node.parts.items():
+                if isinstance(part, Node):
+                    visit(part, row if name == "rest" else None)
+
+        if self.tree is not None:
+            visit(self.tree, None)
+        return found
+
+    def _world(self) -> tuple[Lexicon, Language, Context]:
+        return self.reader.lexicon, self.reader.language, self.reader.context
+
+    # --- changed
+
+    def with_words(self, start: int, end: int, words: str) -> str:
+        return self.reader.with_words(start, end, words)
+
+    def corrected(self, new: Reader, *, everywhere: bool = False) -> Iterator[str]:
+        """The sentence with the parts of `new` in the places of parts of their kind, the likeliest
+        first. `everywhere`: a part may stand for any noun."""
+        for said in _pieces_of(new):
+            text = self._with_pieces(new, said, everywhere)
+            if text is not None:
+                yield text
+
+    def _with_pieces(self, new: Reader, said: list[Piece], everywhere: bool) -> str | None:
+        changes: list[tuple[int, int, str]] = []
+        taken: set[int] = set()
+        for piece in said:
+            old = self._counterpart(new, piece, taken, everywhere)
+            if old is None:
+                return None
+            taken.update(range(old.start, old.end))
+            lead, old_lead = leading(new, piece.start), leading(self.reader, old.start)
+            kept = (
+                not lead
+                or not old_lead
+                or _words(new, piece.start - lead, piece.start)
+                in (_data(new.language, "same_for_words"))
+            )
+            first = piece.start if kept else piece.start - lead
+            start = old.start if kept else old.start - old_lead
+            changes.append((start, old.end, new.words(first, piece.end)))
+        text = self.text
+        for start, end, words in sorted(changes, reverse=True):
+            changed = self.with_words(start, end, words)
+            tail = len(self.text) - self.tokens[end - 1].end
+            text = changed[: len(changed) - tail] + text[self.tokens[end - 1].end :]
+        return text
+
+    def _counterpart(
+        self, new: Reader, piece: Piece, taken: set[int], everywhere: bool
+    ) -> Piece | None:
+        """The part of the sentence that a new one most likely corrects."""
+        lead = _lead_words(new, piece)
+        away = _data(new.language, "from_words")
+        words = new.content(piece.start, piece.end)
+        best: Piece | None = None
+        best_score: tuple[bool, bool, bool, int] | None = None
+        for old in self.pieces():
+            alike = old.rule == piece.rule or (
+                everywhere and old.rule in NOUNS and piece.rule in NOUNS
+            )
+            before = _lead_words(self.reader, old)
+            if not alike or taken.intersection(range(old.start, old.end)):
+                continue
+            if lead and (lead in away) != (before in away):
+                continue  # "from the kitchen" is no other place to go to
+            score = (
+                old.means not in PRONOUNS,
+                bool(lead) and before == lead,
+                bool(words & self.reader.content(old.start, old.end)),
+                old.start,
+            )
+            if best_score is None or score > best_score:
+                best, best_score = old, score
+        return best
+
+    def with_other_look(self, new: Reader) -> str | None:
+        """ "no, the red one": the last thing with another word for how it looks."""
+        language, lexicon = self.reader.language, self.reader.lexicon
+        counted = {word for (word,) in _data(language, "counted_words")}
+        words = [token for token in new.tokens[new.lead : new.last_word] if token.kind == "word"]
+        with_one = bool(words) and words[-1].norm in counted
+        words = words[:-1] if with_one else words
+        thing = next((each for each in reversed(self.pieces()) if each.rule == "thing"), None)
+        if not words or thing is None or thing.means in PRONOUNS:
+            return None
+        if not with_one and not all(_is_look(word.norm, language, lexicon) for word in words):
+            return None
+        look = new.text[words[0].start : words[-1].end]
+        first = thing.start
+        while first < thing.end and self.reader.is_little(range(first, first + 1)):
+            first += 1
+        head = first
+        while head < thing.end and _is_look(self.tokens[head].norm, language, lexicon):
+            head += 1
+        if head == thing.end:
+            return None
+        if first < head:  # there is a look already
+            return self.with_words(first, head, look)
+        after = head + 1
+        while after < thing.end and _is_look(self.tokens[after].norm, language, lexicon):
+            after += 1
+        if after > head + 1:  # or behind the noun
+            return self.with_words(head + 1, after, look)
+        noun = self.reader.words(head, head + 1)
+        first_noun = language.speech.get("adjectives_first") or "adjectives_first" not in (
+            language.speech
+        )
+        return self.with_words(head, head + 1, f"{look} {noun}" if first_noun else f"{noun} {look}")
+
+    def with_clause(self, new: Reader) -> str | None:
+        """The sentence with a whole clause in the place of the last one that does the like."""
+        other = Sentence(new)
+        doing = other.first_meaning()
+        for row in reversed(self.siblings()):
+            for start, end in reversed(row):
+                part = Sentence(type(new)(self.reader.words(start, end), *self._world()))
+                if doing and part.first_meaning() == doing:
+                    return self.with_words(start, end, new.words(0, new.last_word))
+        return None
+
+    def first_meaning(self) -> str:
+        """What the first clause does."""
+        row = self.siblings()[0] if self.siblings() else []
+        found = ""
+
+        def visit(node: Node) -> None:
+            nonlocal found
+            if not found and node.means not in (SEQUENCE, "utterance") and node.production.means:
+                found = node.means
+            for part in node.parts.values():
+                if isinstance(part, Node) and not found:
+                    visit(part)
+
+        if row and self.tree is not None:
+            visit(self.tree)
+        return found
+
+    def swapped(self, old: Reader, new: Reader) -> str | None:
+        """The sentence with some of its words put for others, wherever they stand."""
+        stripped_old, stripped_new = old.lead, new.lead
+        for skip in (0, stripped_old):
+            words = [token for token in old.tokens[skip : old.last_word] if token.kind != "mark"]
+            spots = self._spots(words)
+            if spots and words:
+                put = new.words(min(stripped_new, skip), new.last_word)
+                text = self.text
+                for start, end in reversed(spots):
+                    first, last = self.tokens[start].start, self.tokens[end - 1].end
+                    text = text[:first] + put + text[last:]
+                return text
+        return None
+
+    def _spots(self, words: list[Token]) -> list[tuple[int, int]]:
+        """Where these words stand in the sentence, in any of their forms."""
+        count = len(words)
+        return [
+            (at, at + count)
+            for at in range(len(self.tokens) - count + 1)
+            if all(
+                same_word(self.tokens[at + number].norm, word.norm)
+                for number, word in enumerate(words)
+            )
+        ]
+
+    def without(self, start: int, end: int) -> str | None:
+        """The sentence without a clause, and without what joined it to the others."""
+        row = next((row for row in self.siblings() if (start, end) in row), None)
+        if row is None or len(row) < 2:
+            return None
+        at = row.index((start, end))
+        if at == 0:
+            return self.text[: self.tokens[start].start] + self.text[self.tokens[row[1][0]].start :]
+        return self.text[: self.tokens[row[at - 1][1] - 1].end] + self.text[self._tail(end) :]
+
+    def without_words(self, piece: Piece) -> Iterator[str]:
+        """The sentence without a name in a list of several."""
+        first = piece.start
+        while first > 0 and (
+            self.tokens[first - 1].kind == "mark" or self.reader.is_little(range(first - 1, first))
+        ):
+            first -= 1
+            yield (
+                self.text[: self.tokens[first].start].rstrip() + self.text[self._tail(piece.end) :]
+            )
+        last = piece.end
+        while last < len(self.tokens) and (
+            self.tokens[last].kind == "mark" or self.reader.is_little(range(last, last + 1))
+        ):
+            last += 1
+            if last < len(self.tokens):
+                yield (
+                    self.text[: self.tokens[piece.start].start]
+                    + self.text[self.tokens[last].start :]
+                )
+
+    def _tail(self, end: int) -> int:
+        return self.tokens[end - 1].end
+
+
+def _is_look(word: str, language: Language, lexicon: Lexicon) -> bool:
+    """Whether a word says how something looks: "red", "rote", "verte"."""
+    return any(
+        word[:3] == look[:3] and abs(len(word) - len(look)) <= MOST_ENDING
+        for look in _looks(language, lexicon)
+    )
+
+
+@functools.lru_cache(maxsize=16)
+def _looks(language: Language, lexicon: Lexicon) -> frozenset[str]:
+    known = {word for name in lexicon.objects for word in name.attributes}
+    looks: dict[str, str] = language.speech.get("looks", {})
+    told = (look.partition("⟨")[0].split()[-1:] for look in looks.values() if look)
+    said = {word for words in told for text in words for word in language.tokens_of(text)}
+    listed = language.lists.get("superlative", {}).values()
+    said |= {word for ways in listed for way in ways for word in way}
+    return frozenset({each for each in said if len(each) > 2} | (known if not looks else set()))
+
+
+def same_word(one: str, other: str) -> bool:
+    """Whether two words are forms of one."""
+    if one == other:
+        return True
+    shared = min(len(one), len(other))
+    return (
+        shared >= SAME_LETTERS
+        and one[: max(SAME_LETTERS, shared - 2)] == (other[: max(SAME_LETTERS, shared - 2)])
+    )
+
+
+def _pieces_of(reader: Reader) -> Iterator[list[Piece]]:
+    """The ways to read all words of a correction as parts that can be put in, the longest parts
+    first."""
+    try:
+        yield from _rows(reader, 0)
+    except TooMuch:
+        return
+
+
+def _rows(reader: Reader, at: int) -> Iterator[list[Piece]]:
+    end = reader.last_word
+    while at < end and (reader.tokens[at].kind == "mark" or at in reader.skips):
+        at += 1
+    if at >= end:
+        yield []
+        return
+    joined = _data(reader.language, "joins")
+    begins = [at + 1] if (reader.tokens[at].norm,) in joined else []
+    for begin in (at, *begins):
+        leads = (len(each) for each in _data(reader.language, "prepositions"))
+        for start in sorted({begin, *(begin + lead for lead in leads)}):
+            if start > begin and leading(reader, start) < start - begin:
+                continue
+            for piece in sorted(_pieces_at(reader, start), key=lambda piece: -piece.end):
+                for rest in _rows(reader, piece.end):
+                    yield [piece, *rest]
+
+
+def leading(reader: Reader, start: int) -> int:
+    """How many words before a part belong to it: "to" of "to the pharmacy"."""
+    return max(
+        (
+            len(words)
+            for words in _data(reader.language, "prepositions")
+            if _words(reader, start - len(words), start) == words
+        ),
+        default=0,
+    )
+
+
+def _lead_words(reader: Reader, piece: Piece) -> tuple[str, ...]:
+    return _words(reader, piece.start - leading(reader, piece.start), piece.start)
+
+
+def _words(reader: Reader, start: int, end: int) -> tuple[str, ...]:
+    return tuple(token.norm for token in reader.tokens[max(start, 0) : end])
+
+
+@functools.cache
+def _data(language: Language, name: str) -> frozenset[tuple[str, ...]]:
+    """Words that the language lists by this name."""
+    return frozenset(map(language.tokens_of, language.speech.get(name, ())))
+
+
+def _pieces_at(reader: Reader, start: int) -> Iterator[Piece]:
+    for rule in CORRECTABLE:
+        if rule in reader.language.rules:
+            node = reader.chart().longest(rule, start)
+            if node is not None and node.cost < UNKNOWN_NAME:
+                yield Piece(rule, node.start, node.end, node.means)
+        else:
+            for end, _, _ in reader.slots[f"{{{rule}}}"](start):
+                yield Piece(rule, start, end)
