@@ -16,6 +16,11 @@ Two ways of writing them. YAML; each test says some of `program`, `calls`, `effe
           said: [Here you are.]
           asked: []
           holds: []                                      # at the end
+          in order:                                      # all together, others in between
+            - was at: supply room
+            - took: stapler
+            - was at: lobby
+            - gave: stapler
       - say: what is the meaning of life
         status: rejected                                 # ok | clarify | rejected
 
@@ -23,6 +28,7 @@ Or plain lines, for sentences that just have to be understood, or with the calls
 
     go to the pharmacy
     wave and say hello => gesture say
+    what is the meaning of life => rejected
     # a comment
 
 Every mistake in the file is told with its line.
@@ -39,12 +45,15 @@ import yaml
 from grammar.plan import calls, from_data
 from nl2robot.errors import UserError
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
-from nl2robot.rehearsal import rehearse
+from nl2robot.rehearsal import EventKind, rehearse
 from nl2robot.translation import Translation, translate
 from sim.world import World, load_world
 
 PATIENCE = 60.0
 """Real seconds that a run may take here: nobody waits at a prompt, and a busy machine is slow."""
+
+
+STATUSES = ("ok", "clarify", "rejected")
 
 
 class Effects(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -54,6 +63,8 @@ class Effects(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     said: tuple[str, ...] | None = None
     asked: tuple[str, ...] | None = None
     holds: tuple[str, ...] | None = None
+    in_order: tuple[dict[EventKind, str], ...] | None = msgspec.field(name="in order", default=None)
+    """Events of all kinds, one after the other."""
 
 
 class Test(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -85,6 +96,7 @@ class Result(msgspec.Struct, frozen=True):
     failures: tuple[str, ...]
     program: str | None
     """What the sentence became."""
+    status: str
 
 
 # --- reading a file ------------------------------------------------------------------------------
@@ -105,11 +117,11 @@ def _from_lines(text: str) -> Iterable[Test]:
     for number, line in enumerate(text.splitlines(), 1):
         words, arrow, methods = line.partition("=>")
         if words.strip() and not words.lstrip().startswith("#"):
-            yield Test(
-                say=words.strip(),
-                calls=tuple(methods.split()) if arrow else None,
-                line=number,
-            )
+            expected = tuple(methods.split())
+            if len(expected) == 1 and expected[0] in STATUSES:
+                yield Test(say=words.strip(), status=expected[0], line=number)
+            else:
+                yield Test(say=words.strip(), calls=expected if arrow else None, line=number)
 
 
 def _from_yaml(text: str, file: Path) -> Suite:
@@ -165,7 +177,8 @@ def check(suite: Suite, world: World | None = None) -> Iterable[Result]:
     knowledge = Knowledge(world or load_world(suite.world))
     for test in suite.tests:
         translation = translate(test.say, knowledge, suite.language)
-        yield Result(test, tuple(_failures(test, translation, knowledge)), translation.program)
+        failures = tuple(_failures(test, translation, knowledge))
+        yield Result(test, failures, translation.program, translation.status)
 
 
 def _failures(test: Test, translation: Translation, knowledge: Knowledge) -> Iterable[str]:
@@ -178,7 +191,7 @@ def _failures(test: Test, translation: Translation, knowledge: Knowledge) -> Ite
             yield f"expected a program, got an answer: {translation.message}"
         return
     if test.program is not None and translation.program.strip() != test.program.strip():
-        yield _difference(test.program, translation.program)
+        yield difference(test.program, translation.program, "expected program", "program now")
     if test.calls is not None:
         methods = tuple(call.method for call in calls(from_data(translation.plan)))
         if methods != test.calls:
@@ -187,16 +200,12 @@ def _failures(test: Test, translation: Translation, knowledge: Knowledge) -> Ite
         yield from _missing_effects(test.effects, translation.program, knowledge.world)
 
 
-def _difference(expected: str, got: str) -> str:
+def difference(before: str, now: str, before_is: str, now_is: str) -> str:
     """What changed in a program, as a unified diff."""
     from difflib import unified_diff
 
     lines = unified_diff(
-        expected.strip().splitlines(),
-        got.strip().splitlines(),
-        "expected program",
-        "program now",
-        lineterm="",
+        before.strip().splitlines(), now.strip().splitlines(), before_is, now_is, lineterm=""
     )
     return "\n".join(lines)
 
@@ -215,11 +224,28 @@ def _missing_effects(effects: Effects, program: str, world: World) -> Iterable[s
     ):
         if expected is not None and not _in_order(expected, found):
             yield f"expected {what} {list(expected)}, got {list(found)}"
+    if effects.in_order is not None:
+        events = [pair for entry in effects.in_order for pair in entry.items()]
+        course = [(event.kind, event.what) for event in run.course]
+        if not _in_order(events, course):
+            told = ", ".join(f"{kind} {what}" for kind, what in course)
+            yield f"“{_first_missing(events, course)}” did not come in its turn; it was: {told}"
     if effects.holds is not None and sorted(run.holds) != sorted(effects.holds):
         yield f"expected it to hold {list(effects.holds)} at the end, got {list(run.holds)}"
 
 
-def _in_order(expected: Sequence[str], found: Sequence[str]) -> bool:
+def _first_missing(
+    expected: Sequence[tuple[EventKind, str]], found: Sequence[tuple[EventKind, str]]
+) -> str:
+    """The first event that does not come in its turn."""
+    rest = iter(found)
+    for kind, what in expected:
+        if all(item != (kind, what) for item in rest):
+            return f"{kind} {what}"
+    return ""
+
+
+def _in_order(expected: Sequence[object], found: Sequence[object]) -> bool:
     """Whether all expected are found in this order, with others in between; none means none."""
     if not expected:
         return not found

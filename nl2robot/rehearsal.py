@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import threading
-from typing import TYPE_CHECKING, Any, Literal
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import msgspec
 
@@ -11,6 +13,7 @@ from robot_api.driver import StopFlag
 from robot_api.errors import Stopped
 
 if TYPE_CHECKING:
+    from sim.record import Sample
     from sim.simulation import Simulation
 
 REAL_SECONDS = 3.0
@@ -42,6 +45,25 @@ class DryRun(msgspec.Struct, frozen=True, kw_only=True):
     path: tuple[tuple[float, float], ...]
     """Where it would drive, in metres, a point every half metre or so."""
     calls: int
+    course: tuple[Event, ...] = ()
+    """All of it in the order in which it would happen."""
+
+
+class Event(msgspec.Struct, frozen=True):
+    """Something that would happen: a place reached, words spoken, asked or shown, a thing moved."""
+
+    kind: EventKind
+    what: str
+
+
+EventKind = Literal["was at", "said", "asked", "showed", "took", "put", "gave"]
+_KIND_OF_HAPPENING: Final[dict[str, EventKind]] = {
+    "speech": "said",
+    "screen": "showed",
+    "grab": "took",
+    "put": "put",
+    "give": "gave",
+}
 
 
 def rehearse(
@@ -58,7 +80,7 @@ def rehearse(
     driver = simulated(simulation)
     began = simulation.time
     stop = StopFlag()
-    asks: list[str] = []
+    asks: list[tuple[float, Event]] = []
     cut_short = threading.Event()
     calls = 0
 
@@ -69,7 +91,7 @@ def rehearse(
             cut()
         stop.check()
         if method == "ask":
-            asks.append(arguments["question"])
+            asks.append((simulation.time, Event("asked", arguments["question"])))
         if method == "stop":
             raise Stopped  # as the real robot's stop ends every program
         return driver.call(method, arguments, stop)
@@ -94,39 +116,49 @@ def rehearse(
         driver.close()
 
     record = simulation.record.between(began)
-    path = _thinned([(sample.x, sample.y) for sample in record.samples])
+    way = _thinned(record.samples)
+    course = [*_visited(simulation, way), *asks]
+    for happening in record.happenings:
+        kind = _KIND_OF_HAPPENING.get(happening.kind)
+        if kind is not None:
+            what = str(next(iter(happening.data.values()), ""))
+            course.append((happening.time, Event(kind, what)))
+    events = tuple(event for _, event in sorted(course, key=lambda timed: timed[0]))
     return DryRun(
         status="unfinished" if cut_short.is_set() else outcome.status,
         message=None if cut_short.is_set() or outcome.status == "done" else outcome.message,
         line=outcome.line,
         seconds=round(simulation.time - began, 1),
         metres=round(record.distance, 1),
-        says=tuple(str(h.data["text"]) for h in record.happenings if h.kind == "speech"),
-        asks=tuple(asks),
+        says=_of("said", events),
+        asks=_of("asked", events),
         holds=tuple(simulation.robot.holding),
-        shows=tuple(
-            str(next(iter(h.data.values()), "")) for h in record.happenings if h.kind == "screen"
-        ),
-        places=_visited(simulation, path),
-        path=path,
+        shows=_of("showed", events),
+        places=_of("was at", events),
+        path=tuple((round(sample.x, 2), round(sample.y, 2)) for sample in way),
         calls=calls,
+        course=events,
     )
 
 
-def _thinned(
-    points: list[tuple[float, float]], apart: float = 0.5
-) -> tuple[tuple[float, float], ...]:
-    kept = points[:1]
-    for x, y in points[1:]:
-        if (x - kept[-1][0]) ** 2 + (y - kept[-1][1]) ** 2 >= apart**2:
-            kept.append((round(x, 2), round(y, 2)))
-    return tuple(kept)
+def _of(kind: EventKind, events: Iterable[Event]) -> tuple[str, ...]:
+    return tuple(event.what for event in events if event.kind == kind)
 
 
-def _visited(simulation: Simulation, path: tuple[tuple[float, float], ...]) -> tuple[str, ...]:
-    names: list[str] = []
-    for x, y in path:
-        place = simulation.world.place_at(x, y)
-        if place is not None and names[-1:] != [place.name]:
-            names.append(place.name)
-    return tuple(names)
+def _thinned(samples: Sequence[Sample], apart: float = 0.5) -> list[Sample]:
+    """Samples with some way between them, in metres."""
+    kept = list(samples[:1])
+    for sample in samples[1:]:
+        if math.dist((sample.x, sample.y), (kept[-1].x, kept[-1].y)) >= apart:
+            kept.append(sample)
+    return kept
+
+
+def _visited(simulation: Simulation, way: Iterable[Sample]) -> list[tuple[float, Event]]:
+    """The places on the way, each with the time at which it was reached."""
+    found: list[tuple[float, Event]] = []
+    for sample in way:
+        place = simulation.world.place_at(sample.x, sample.y)
+        if place is not None and (not found or found[-1][1].what != place.name):
+            found.append((sample.time, Event("was at", place.name)))
+    return found

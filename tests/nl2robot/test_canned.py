@@ -144,3 +144,55 @@ def test_a_thousand_sentences_take_seconds(tmp_path) -> None:
     lines = "\n".join(["go to the pharmacy and say hello", "wave to Alice"] * 500)
     results = list(canned.check(canned.load(write(tmp_path, lines, "many.txt"))))
     assert len(results) == 1000
+
+
+def test_effects_of_all_kinds_come_in_their_order(tmp_path) -> None:
+    file = write(
+        tmp_path,
+        """\
+        tests:
+          - say: bring the red cup from the kitchen to Alice
+            effects:
+              in order:
+                - was at: kitchen
+                - took: cup
+                - was at: alice's office
+                - gave: cup
+          - say: go to the pharmacy and then say hello
+            effects: {in order: [{said: Hello!}, {was at: pharmacy}]}
+        """,
+    )
+    [(line, (failure,))] = failures(file)
+    assert line == 9
+    assert "“was at pharmacy” did not come in its turn" in failure
+
+
+def test_plain_lines_may_say_what_is_to_be_refused(tmp_path) -> None:
+    file = write(tmp_path, "kill all humans => rejected\nwave => rejected\n", "ward.txt")
+    assert [line for line, _ in failures(file)] == [2]
+
+
+def test_a_baseline_tells_what_changed_since(tmp_path, capsys) -> None:
+    file = write(tmp_path, "wave\ngo to the pharmacy\n", "ward.txt")
+    kept = tmp_path / "baseline.json"
+    assert main(["test", str(file), "--baseline", str(kept)]) == 0
+    assert main(["test", str(file), "--baseline", str(kept)]) == 0
+    assert "2 passed, 0 failed, 0 changed" in capsys.readouterr().out
+
+    kept.write_text(kept.read_text().replace("pharmacy\\", "lobby\\").replace("wave", "nod"))
+    assert main(["test", str(file), "--baseline", str(kept), "--update"]) == 0
+    told = capsys.readouterr().out
+    assert '-robot.goto("lobby")\n+robot.goto("pharmacy")' in told
+    assert "new: wave" in told
+    assert "gone: nod" in told
+
+    assert main(["test", str(file), "--baseline", str(kept)]) == 0
+    assert "0 changed" in capsys.readouterr().out
+
+
+def test_a_damaged_baseline_is_told(tmp_path, capsys) -> None:
+    file = write(tmp_path, "wave\n", "ward.txt")
+    kept = tmp_path / "baseline.json"
+    kept.write_text("{")
+    assert main(["test", str(file), "--baseline", str(kept)]) == 2
+    assert "this is no baseline" in capsys.readouterr().err
