@@ -10,10 +10,10 @@ import msgspec
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, as_value
 from grammar.meanings.finding import not_found, speak_to
-from grammar.meanings.nouns import kind_places
+from grammar.meanings.nouns import is_me, kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.speaking import sentence_form
-from grammar.meanings.surveys import counting
+from grammar.meanings.surveys import counting, moved
 from grammar.plan import (
     Ask,
     Call,
@@ -159,8 +159,10 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
     before_it, d.pending = d.pending, []
     part = node.parts["condition"]
     text = Text(sentence_form(direct_clause(d, part.start, part.end)))
-    saying = Call("say", {"text": text})
-    then = speak_to(d, d.get(node, "person_ref"), [saying])
+    person: Thing = d.get(node, "person_ref")
+    then = speak_to(d, person, [Call("say", {"text": text})])
+    if is_me(person) and moved([*before_it, If(condition, ())]):  # looked for somewhere else
+        then = [Call("goto", {"place": d.start()}), *then]
     d.at = d.with_person = None
     return [*before_it, If(condition, tuple(then))]
 

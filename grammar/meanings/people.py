@@ -30,7 +30,8 @@ def guide(d: Discourse, node: Node) -> Steps:
     spot: Where = d.get(node, "spot") or Where(d.get(node, "place"))
     if spot.place is None:
         raise NotUnderstood(d.language.phrase("guide_needs_place"))
-    return [*steps, lead(d, thing, spot.place)]
+    further: list[Value] = d.get(node, "place_list") or []
+    return [*steps, *(lead(d, thing, place) for place in (spot.place, *further))]
 
 
 def led(d: Discourse, node: Node) -> Thing:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import Final
 
@@ -137,6 +138,8 @@ def question(d: Discourse, node: Node) -> str:
         values["verb"] = verb if as_it_is else base_form(d, verb)
         values["rest"] = f"{values['rest']} {particle}"
     text = " ".join(form.format_map(values).split())
+    for pattern, instead in d.language.speech.get("question_joined", ()):
+        text = re.sub(pattern, instead, text)  # "Est-ce que Alice" -> "Est-ce qu'Alice"
     mark = d.language.speech.get("question_mark", "?")
     return capital(text.replace(" ?", mark).replace(" ,", ","))
 
