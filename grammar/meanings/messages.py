@@ -6,6 +6,10 @@ mean was spoken of in a clause before it ("tell Alice that her patient is here a
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
+from typing import Final
+
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.meanings.finding import speak_to
@@ -16,6 +20,9 @@ from grammar.plan import Call, Text
 from grammar.slots import names_of
 from grammar.tokens import COMMA, Token
 from grammar.wordorder import direct_clause
+
+CHANGED: Final = "\0"
+"""Marks a word of a message that stands in the place of another, until the words are joined."""
 
 
 @meaning("say_that")
@@ -39,8 +46,10 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
     """The words of a message as its receiver hears them. Unchanged where nobody receives it, and in
     languages without `addressing` in their data."""
     data = d.language.speech.get("addressing")
-    if person is None or person.me or not data:
+    if not data:
         return d.words(start, end)
+    if person is None or person.me:
+        return _joined(d.words(start, end), data)
     pieces: list[str] = []
     subject = False
     for at, original, space in _written(d, start, end):
@@ -48,15 +57,39 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
         changed = list(tokens)
         for number, word in enumerate(tokens):
             if subject and word not in data["between"]:
-                changed[number] = base_form(d, word) if word not in data["unchanged"] else word
+                spelled = d.tokens[at + number].spelled or word
+                changed[number] = word if word in data["unchanged"] else base_form(d, spelled)
                 subject = False
-            you = data["you"].get(word)
-            possessed = word in data["possessives"] and _noun_follows(d, at + 1, end, data)
-            if you and not _of_another(d, start, at, possessed, data):
+            clitic = at > start and d.tokens[at - 1].norm in data.get("subjects_before", ())
+            you = data["you"].get(word) or (data.get("objects", {}).get(word) if clitic else None)
+            noun = not clitic and _noun_follows(d, at + 1, end, data)
+            possessed = word in data["possessives"] and noun
+            impersonal = _begins(d, at, end, data.get("impersonal", ()))
+            if you and not impersonal and not _of_another(d, start, at, possessed, data):
                 changed[number] = data["possessives"][word] if possessed else you
-                subject = word in data["subjects"]
-        pieces.append(space + (original if changed == tokens else " ".join(changed)))
-    return "".join(pieces).strip()
+                subject = subject or word in data["subjects"]
+        pieces.append(space + (original if changed == tokens else CHANGED + " ".join(changed)))
+    return _joined("".join(pieces), data)
+
+
+def _joined(text: str, data: dict[str, list[str]]) -> str:
+    """The words joined as the language does: "qu'vous" -> "que vous"."""
+    for pattern, instead in data.get("seams", ()):
+        text = re.sub(pattern, instead, text)
+    return text.replace(CHANGED, "").strip()
+
+
+def _begins(d: Discourse, at: int, end: int, phrases: Sequence[str]) -> bool:
+    """Whether one of some phrases begins here, "#" standing for any number: "il est #"."""
+    return any(
+        len(words) <= end - at
+        and all(
+            d.tokens[at + number].norm == word
+            or (word == "#" and d.tokens[at + number].value is not None)
+            for number, word in enumerate(words)
+        )
+        for words in (phrase.split() for phrase in phrases)
+    )
 
 
 def turned(d: Discourse, start: int, end: int, person: Thing | None) -> dict[int, str]:
