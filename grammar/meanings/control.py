@@ -51,6 +51,7 @@ def steps(d: Discourse, node: Node) -> Steps:
     def make() -> None:
         clauses: list[tuple[str, int]] = []
         each: Node | None = node
+        further: list[Node] = []
         joint = "stop"
         while each is not None:
             before = len(d.done)
@@ -59,8 +60,10 @@ def steps(d: Discourse, node: Node) -> Steps:
             d.done.extend(d.build(first))
             clauses.append((joint, len(d.done) - before))
             joint = str(each.production.fixed.get("joint", "and"))
-            rest = each.parts.get("rest")
-            each = rest if isinstance(rest, Node) else None
+            rest, beyond = each.parts.get("rest"), each.parts.get("further")
+            if isinstance(beyond, Node):  # after the rest
+                further.append(beyond)
+            each = rest if isinstance(rest, Node) else further.pop() if further else None
         d.done[:] = guard_finds(d, speak_codes(d, d.done))
 
     return d.sequence(make)
