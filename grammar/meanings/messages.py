@@ -7,8 +7,8 @@ mean was spoken of in a clause before it ("tell Alice that her patient is here a
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from typing import Final
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing
@@ -61,7 +61,12 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
                 changed[number] = word if word in data["unchanged"] else base_form(d, spelled)
                 subject = False
             clitic = at > start and d.tokens[at - 1].norm in data.get("subjects_before", ())
-            you = data["you"].get(word) or (data.get("objects", {}).get(word) if clitic else None)
+            reflexive = data.get("reflexives", {}).get(word) if subject else None
+            you = (
+                reflexive
+                or data["you"].get(word)
+                or (data.get("objects", {}).get(word) if clitic else None)
+            )
             noun = not clitic and _noun_follows(d, at + 1, end, data)
             possessed = word in data["possessives"] and noun
             impersonal = _begins(d, at, end, data.get("impersonal", ()))
@@ -72,7 +77,7 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
     return _joined("".join(pieces), data)
 
 
-def _joined(text: str, data: dict[str, list[str]]) -> str:
+def _joined(text: str, data: Mapping[str, Any]) -> str:
     """The words joined as the language does: "qu'vous" -> "que vous"."""
     for pattern, instead in data.get("seams", ()):
         text = re.sub(pattern, instead, text)
@@ -132,7 +137,7 @@ def _parts(d: Discourse, at: int, end: int) -> int:
 
 
 def _of_another(
-    d: Discourse, start: int, at: int, possessed: bool, data: dict[str, list[str]]
+    d: Discourse, start: int, at: int, possessed: bool, data: Mapping[str, Any]
 ) -> bool:
     """Whether the pronoun here may mean somebody spoken of before it in the message: in another
     clause, or as the owner of something in the same."""
@@ -145,7 +150,7 @@ def _of_another(
     return False
 
 
-def _is_somebody(d: Discourse, token: Token, data: dict[str, list[str]]) -> bool:
+def _is_somebody(d: Discourse, token: Token, data: Mapping[str, Any]) -> bool:
     names = names_of(d.language, d.lexicon)
     return token.norm in data["somebody"] or any(
         token.norm in names.tries[slot].branches
@@ -154,7 +159,7 @@ def _is_somebody(d: Discourse, token: Token, data: dict[str, list[str]]) -> bool
     )
 
 
-def _noun_follows(d: Discourse, at: int, end: int, data: dict[str, list[str]]) -> bool:
+def _noun_follows(d: Discourse, at: int, end: int, data: Mapping[str, Any]) -> bool:
     if at >= end or d.tokens[at].kind != "word":
         return False
     word = d.tokens[at].norm
