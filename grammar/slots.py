@@ -56,6 +56,9 @@ class Names:
         self._places()
         for name in lexicon.people:
             self._add_name("person", name)
+            for owner in self.language.speech.get("bare_possessive", ()):
+                for text in (name.name, *name.aliases):
+                    self._add_words("owner", language.tokens_of(f"{text}{owner}"), name)
         for thing in lexicon.objects:
             for text in (thing.name, *thing.aliases):
                 for form in self._forms(text):

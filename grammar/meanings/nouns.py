@@ -107,6 +107,8 @@ def nearest(words: str, names: tuple[Name, ...]) -> tuple[str, ...]:
 def where(d: Discourse, node: Node) -> Where:
     furniture = d.get(node, "furniture")
     place = d.get(node, "place_at") or d.get(node, "place")
+    if place is None and "beside" in node.parts:  # "the sofa by the window"
+        place = home_of(d, d.get(node, "beside"))
     if place is None and furniture:
         place = home_of(d, furniture)
     return Where(place, furniture)

@@ -13,6 +13,7 @@ from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import Survey
 from grammar.plan import Ask, Call, ForEach, Forever, Items, Number, Recall, Repeat, Text, Value
+from grammar.tidy import nodes
 from grammar.tokens import COLON, COMMA
 from grammar.wordorder import parted
 
@@ -320,6 +321,8 @@ def answer(d: Discourse, node: Node) -> Steps:
     if isinstance(known, Leaf):
         arguments["question"] = Text(known.value[0].question)
     steps = [Call("answer", arguments)]
+    if node.production.fixed.get("it") and any(each == steps[0] for each in nodes(tuple(d.done[-1:]))):
+        return []  # "the girl has a question, answer it"
     spot: Where | None = d.get(node, "from") or d.get(node, "where")
     if person is not None and spot is not None:
         person = replace(person, place=spot.place, here=False)

@@ -196,7 +196,11 @@ def seen_here(d: Discourse, node: Node) -> Report:
 @meaning("looks_of")
 def looks_of(d: Discourse, node: Node) -> Report:
     """How something looks; a description says it all."""
-    thing: Thing = d.get(node, "thing") or d.get(node, "person_ref")
+    thing: Thing = (
+        d.get(node, "thing")
+        or d.get(node, "person_ref")
+        or Thing(Text(ANYONE), person=True, here=True)
+    )
     extra = described(d, "", node)
     place = thing.place or extra.place
     return Report("only", Ask("describe", {"thing": sought(d, thing)}), place, name="description")
@@ -208,6 +212,9 @@ def best_of(d: Discourse, node: Node) -> Report:
     thing: Thing | None = d.get(node, "thing")
     if thing is None:
         thing = _best(d, node)
+    else:
+        more = described(d, thing.text, node)
+        thing = replace(thing, place=thing.place or more.place, furniture=thing.furniture or more.furniture)
     value = sought(d, thing)
     d.thing, d.thing_last = replace(thing, here=True), True
     return Report("only", Ask("describe", {"thing": value}), thing.place, name="description")
