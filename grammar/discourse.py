@@ -126,6 +126,8 @@ class Discourse:
     in_loop: bool = False
     at_furniture: str | None = None
     """The furniture that a command is about: "on the table, ..."."""
+    at_place: Value | None = None
+    """The place that a question is about: "in the kitchen, ..."."""
     answer: str | None = None
     """The variable with the last answer."""
     answer_options: tuple[str, ...] = ()

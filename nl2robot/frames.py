@@ -253,6 +253,11 @@ class _Walk:
         self.looked[text] = self._do(_frame("find", (f"thing.{each}" for each in features)))
         self.whom = features
 
+    def _wait_for(self, arguments: dict[str, Value], save_as: str | None) -> None:
+        self._find(arguments, save_as)  # whoever is waited for is there then
+        if self.at == "at" and self.whom is not None:
+            self.whom |= {"at"}
+
     def _arrive(self) -> None:
         """The last way was for what is done now."""
         if self.way is not None:
@@ -275,7 +280,11 @@ class _Walk:
         self.taken[name] = self._do(_frame("take", (f"thing.{each}" for each in features)))
 
     def _give(self, arguments: dict[str, Value], save_as: str | None) -> None:
-        to = self._use(_text(arguments["person"])) if "person" in arguments else self._here()
+        if "person" in arguments:
+            to = self._use(_text(arguments["person"]))
+        else:
+            to = self._here()
+            self._met()
         self._hand_over("bring", _text(arguments["thing"]), to)
 
     def _put(self, arguments: dict[str, Value], save_as: str | None) -> None:
@@ -331,10 +340,14 @@ class _Walk:
     def _speak(self, frame: Frame) -> None:
         to = self._here()
         self._arrive()
+        self._met()
+        self._do(_frame(frame.head, frame.features, (f"to.{each}" for each in to)))
+
+    def _met(self) -> None:
+        """Whoever was looked for is dealt with now."""
         for text, features in self.found.items():
             if features is self.whom:
                 self._use(text)
-        self._do(_frame(frame.head, frame.features, (f"to.{each}" for each in to)))
 
     def _here(self) -> set[str]:
         """Whom the robot speaks to, or hands something to, where it is."""

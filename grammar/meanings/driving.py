@@ -24,6 +24,16 @@ def go_to(d: Discourse, node: Node) -> Steps:
     return [Call("goto", {"place": spot.place})]
 
 
+@meaning("find_furniture")
+def find_furniture(d: Discourse, node: Node) -> Steps:
+    """ "find the wardrobe": where the world says that it stands, else it has to be looked for."""
+    spot: Where = d.get(node, "spot")
+    if spot.place is not None:
+        return go_to(d, node)
+    steps = look_for(d, Thing(Text(str(spot.furniture)), d.at))
+    return [*steps]
+
+
 @meaning("go_find")
 def go_find(d: Discourse, node: Node) -> Steps:
     """ "go to the kitchen to find the cup"."""
@@ -69,6 +79,11 @@ def setting(d: Discourse, node: Node) -> Steps:
 
 def done_there(d: Discourse, spot: Where, part: Leaf | Node) -> Steps:
     """Go to a spot and do something there."""
+    if isinstance(part, Node) and part.means == "report" and d.at_place is None and d.at is None:
+        d.at_place, d.at_furniture = spot.place, spot.furniture
+        told: Steps = d.build(part)
+        d.at_place = d.at_furniture = None
+        return told
     going = go(d, spot.place) if spot.place is not None else []
     d.at_furniture = spot.furniture
     inner: Steps = d.build(part)

@@ -237,7 +237,7 @@ def described(d: Discourse, noun: str, node: Node, *, lies_about: bool = False) 
                 words.remove(sex)
                 noun = SEXES[sex]
     if place is None and furniture is None:
-        furniture = d.at_furniture
+        place, furniture = d.at_place, d.at_furniture
     return Thing(Text(" ".join(word for word in (*before, noun, *after) if word)), place, furniture)
 
 

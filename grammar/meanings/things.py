@@ -6,9 +6,10 @@ from dataclasses import replace
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
-from grammar.meanings.finding import found, go, if_missing, look_for, meet, noun_of
-from grammar.meanings.nouns import is_me, kind_places, sought, thing_it
+from grammar.meanings.finding import found, go, if_missing, look_for, meet, noun_of, where_sent
+from grammar.meanings.nouns import described, is_me, kind_places, sought, thing_it
 from grammar.meanings.registry import meaning
+from grammar.meanings.remarks import known_to_be
 from grammar.plan import Call, ForEach, Items, Recall, Text, Value
 
 
@@ -42,6 +43,9 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
     if d.holding == thing.value:
         return []
     last = d.done[-1] if d.done else None
+    if last == Call("put", {"thing": thing.value}):
+        d.done.pop()  # "take the cup to the kitchen and give it to Alex": never put down
+        return []
     looked = isinstance(last, Call) and last == found(d, thing)
     if isinstance(last, Call) and last.method == "find" and thing.pronoun:
         looked = True  # "find the cup and bring it to me"
@@ -139,7 +143,7 @@ def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None
         steps.append(Call("goto", {"place": start}))
         d.at_pick_up = d.at
         d.went(start)
-        d.delivered = thing.value if person is None else None
+        d.delivered = thing.value
         return [*steps, Call("give", give)]
     left = any(isinstance(step, Call) and step.method == "find" for step in steps)
     if left and person.here and not person.known:  # back to where they are
@@ -147,6 +151,7 @@ def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None
         d.went(place)
         steps.append(Call("goto", {"place": place}))
     elif left or not person.here:
+        person = where_sent(d, person) if not steps else person
         steps += meet(d, replace(person, here=False)) or look_for(d, person)
     d.thing, d.thing_last = thing, True
     if person.text != ANYONE:
@@ -161,8 +166,17 @@ def statement(d: Discourse, node: Node) -> Steps:
     spot: Where | None = d.get(node, "from")
     if thing is None:  # "he is in the kitchen"
         thing = d.person or d.thing or Thing(Text(ANYONE), person=True)
+    posture = node.parts.get("activity")
+    if posture is not None and not thing.known:
+        thing = replace(thing, value=Text(f"{thing.text} {d.described_by(posture)}"))
+    more = d.get(node, "mods")
+    if more is not None:
+        thing = described(d, thing.text, node)
     if spot is not None:
         thing = replace(thing, place=spot.place, furniture=spot.furniture)
+    if thing.place is not None:
+        d.place = thing.place
+        known_to_be(d, thing.value, thing.place)
     if thing.person:
         d.person, d.thing_last = thing, False
         d.with_person = None
