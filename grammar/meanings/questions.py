@@ -321,7 +321,9 @@ def answer(d: Discourse, node: Node) -> Steps:
     if isinstance(known, Leaf):
         arguments["question"] = Text(known.value[0].question)
     steps = [Call("answer", arguments)]
-    if node.production.fixed.get("it") and any(each == steps[0] for each in nodes(tuple(d.done[-1:]))):
+    if node.production.fixed.get("it") and any(
+        each == steps[0] for each in nodes(tuple(d.done[-1:]))
+    ):
         return []  # "the girl has a question, answer it"
     spot: Where | None = d.get(node, "from") or d.get(node, "where")
     if person is not None and spot is not None:

@@ -214,7 +214,9 @@ def best_of(d: Discourse, node: Node) -> Report:
         thing = _best(d, node)
     else:
         more = described(d, thing.text, node)
-        thing = replace(thing, place=thing.place or more.place, furniture=thing.furniture or more.furniture)
+        thing = replace(
+            thing, place=thing.place or more.place, furniture=thing.furniture or more.furniture
+        )
     value = sought(d, thing)
     d.thing, d.thing_last = replace(thing, here=True), True
     return Report("only", Ask("describe", {"thing": value}), thing.place, name="description")
