@@ -101,6 +101,42 @@ class Where:
     """What else tells the thing: "behind the cup"."""
 
 
+@dataclass(frozen=True)
+class Meeting:
+    """Somebody or something that is here if a condition holds, or if it does not."""
+
+    thing: Thing
+    holds: bool = True
+    """Whether it is here if the condition holds."""
+
+
+@dataclass(frozen=True)
+class Claim:
+    """What is so in a branch of a condition, for "if there is a cup, tell me"."""
+
+    saying: Step
+    known: tuple[Any, ...]
+    """What was known besides (`known_by_now`): where more is found out, that is told instead."""
+
+
+SCENE: Final = (
+    "thing",
+    "person",
+    "thing_last",
+    "place",
+    "at",
+    "with_person",
+    "holding",
+    "delivered",
+    "at_pick_up",
+    "at_furniture",
+    "group",
+    "missing",
+)
+"""What the robot and the speaker have before them; each branch of a condition begins with the same
+scene."""
+
+
 @dataclass
 class Discourse:
     language: Language
@@ -137,6 +173,12 @@ class Discourse:
     """What was asked so far (`grammar.meanings.surveys.Survey`)."""
     pending: Steps = field(default_factory=list)
     """Steps that a condition needs before it can be checked."""
+    met: Meeting | None = None
+    """Who or what the last condition was about."""
+    missing: Thing | None = None
+    """What was looked for in vain: "if not, look in the kitchen"."""
+    claim: Claim | None = None
+    """What is so in this branch of a condition."""
     counting: Any = None
     """The answers that the loop around has to count."""
     group: Value | None = None
@@ -330,6 +372,18 @@ class Discourse:
         self.at = self.place = place
         self.at_furniture = None
         self.with_person = None
+
+    def scene(self) -> dict[str, Any]:
+        """Where everything is by now, to go back to it with `set_scene`."""
+        return {name: getattr(self, name) for name in SCENE}
+
+    def known_by_now(self) -> tuple[Any, ...]:
+        """What could be told: the last answer, code and report."""
+        return (self.answer, self.code, self.report)
+
+    def set_scene(self, scene: dict[str, Any]) -> None:
+        for name, value in scene.items():
+            setattr(self, name, value)
 
     def prologue(self) -> Steps:
         if not self.needs_start:

@@ -355,6 +355,8 @@ class Slots:
                 if self._goes_on(position + 1):
                     break
                 if token.norm == STOP:
+                    if position + 1 < len(self.tokens) and self._condition(position + 1):
+                        break
                     cost += 4.0
                 continue
             if position > at and (self._begins_command(position) or self._condition(position)):
@@ -393,10 +395,11 @@ class Slots:
         return at < len(self.tokens) and self.tokens[at].norm in ends
 
     def _condition(self, at: int) -> bool:
-        """Whether a condition of its own begins: "and if so, ..."."""
+        """Whether a condition of its own begins: "and if so, ...", "Otherwise ..."."""
         begins = self.language.speech.get("condition_words", ())
         joins = self.language.speech.get("joins", ())
-        return self.tokens[at].norm in begins and self.tokens[at - 1].norm in joins
+        before = self.tokens[at - 1]
+        return self.tokens[at].norm in begins and (before.norm in joins or before.kind == "mark")
 
     def _begins_command(self, at: int) -> bool:
         if self.tokens[at].norm not in self._command_words:

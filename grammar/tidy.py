@@ -177,6 +177,11 @@ def nodes(value: Any) -> Iterator[Node]:
             yield from nodes(each)
 
 
+def mentions(steps: Any, value: Node) -> bool:
+    """Whether some steps use a value, such as a variable."""
+    return any(node == value for node in nodes(steps))
+
+
 def _forget(steps: tuple[Step, ...], used: set[str]) -> tuple[Step, ...]:
     kept = (
         _forget_in(step, used)

@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import grammar.meanings.answers
 import grammar.meanings.body
+import grammar.meanings.branches
 import grammar.meanings.conditions
 import grammar.meanings.control
 import grammar.meanings.conversation
 import grammar.meanings.driving
+import grammar.meanings.loops
 import grammar.meanings.messages
 import grammar.meanings.news
 import grammar.meanings.nouns
@@ -24,7 +26,8 @@ import grammar.meanings.requests
 import grammar.meanings.rounds
 import grammar.meanings.speaking
 import grammar.meanings.surveys
-import grammar.meanings.things  # noqa: F401 (each enters its meanings)
+import grammar.meanings.things
+import grammar.meanings.waiting  # noqa: F401 (each enters its meanings)
 from grammar.meanings.registry import MEANINGS
 
 __all__ = ["MEANINGS"]

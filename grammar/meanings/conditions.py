@@ -2,8 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Final
+
 from grammar.chart import Node
-from grammar.discourse import Discourse, NotUnderstood, Thing, as_value
+from grammar.discourse import (
+    ANYONE,
+    Discourse,
+    Meeting,
+    NotUnderstood,
+    Steps,
+    Thing,
+    Where,
+    as_value,
+)
 from grammar.meanings.finding import noun_of
 from grammar.meanings.nouns import sought
 from grammar.meanings.registry import meaning
@@ -15,6 +27,7 @@ from grammar.plan import (
     Condition,
     Either,
     Holds,
+    Items,
     Not,
     Number,
     Recall,
@@ -25,52 +38,155 @@ from grammar.plan import (
 
 @meaning("and")
 def and_(d: Discourse, node: Node) -> Condition:
-    return Both((d.get(node, "left"), d.get(node, "right")))
+    left = d.get(node, "left")
+    met = d.met
+    right = d.get(node, "right")
+    d.met = d.met or met
+    return Both((left, right))
 
 
 @meaning("or")
 def or_(d: Discourse, node: Node) -> Condition:
-    return Either((d.get(node, "left"), d.get(node, "right")))
+    either = Either((d.get(node, "left"), d.get(node, "right")))
+    d.met = None
+    return either
 
 
 @meaning("not")
 def not_(d: Discourse, node: Node) -> Condition:
-    from grammar.meanings.control import negated
+    condition = negated(d.get(node, "condition"))
+    if d.met is not None:
+        d.met = replace(d.met, holds=not d.met.holds)
+    return condition
 
-    return negated(d.get(node, "condition"))
+
+_OPPOSITE: Final = {"<": ">=", "<=": ">", ">": "<=", ">=": "<", "==": "!=", "!=": "=="}
+
+
+def negated(condition: Condition) -> Condition:
+    if isinstance(condition, Not):
+        return condition.condition
+    if isinstance(condition, Compare) and condition.operator in _OPPOSITE:
+        return Compare(condition.left, _OPPOSITE[condition.operator], condition.right)
+    return Not(condition)
+
+
+def condition_of(d: Discourse, node: Node) -> tuple[Steps, Condition]:
+    """The condition of a clause, and the steps that it needs before it can be checked; whom it is
+    about is then `d.met`."""
+    outer, d.pending, d.met = d.pending, [], None
+    condition: Condition = d.get(node, "condition")
+    before, d.pending = d.pending, outer
+    return before, condition
+
+
+# --- what is there
 
 
 @meaning("is_seen")
 def is_seen(d: Discourse, node: Node) -> Condition:
-    """ "you see a cup", "Alice is there", "there is somebody"."""
-    thing = noun_of(d, node)
-    if thing.person:
-        d.person = Thing(thing.value, known=thing.known, person=True, here=True)
-        d.with_person = thing.value
-    method = "find" if thing.place is not None and thing.place != d.at else "sees"
-    arguments: dict[str, Value] = {"thing": sought(d, thing)}
-    if method == "find" and thing.place is not None:
-        arguments["place"] = thing.place
-    result: Condition = Holds(Ask(method, arguments))
-    return Not(result) if node.production.fixed.get("no") else result
+    """ "you see a cup", "Alice is there", "nobody is in the lobby", "a visitor is waving"."""
+    return looked_for(d, node, search=False)
 
 
 @meaning("is_found")
 def is_found(d: Discourse, node: Node) -> Condition:
+    """ "you find a cup": the robot drives about to look for it."""
+    return looked_for(d, node, search=True)
+
+
+def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
     thing = noun_of(d, node)
+    if isinstance(thing.group, Items):
+        result = _each_of_them(d, node, thing.group.items, search)
+    else:
+        result = _is_doing(d, node, thing) or is_there(d, thing, search)
+    if node.production.fixed.get("no"):
+        d.met = replace(d.met, holds=False) if d.met is not None else None
+        result = Not(result)
+    return result
+
+
+def _is_doing(d: Discourse, node: Node, thing: Thing) -> Condition | None:
+    """Whether somebody is seen who does something: "visitor waving"; who goes by a name is looked
+    for first."""
+    doing = node.parts.get("doing")
+    if doing is None:
+        return None
+    so = Text(f"{thing.text} {d.described_by(doing)}")
+    if not thing.known:
+        return is_there(d, replace(thing, value=so))
+    seen = Holds(Ask("sees", {"thing": so}))
+    if thing.here or d.with_person == thing.value:
+        return seen
+    there = is_there(d, thing, search=True)
+    d.met = None
+    return Both((there, seen))
+
+
+def is_there(d: Discourse, thing: Thing, search: bool = False) -> Condition:
+    """Whether somebody or something is seen here, or found where it is said to be."""
+    asked: Ask | None = just_looked_for(d, thing)
+    if asked is None:
+        elsewhere = thing.place is not None and thing.place != d.at
+        arguments: dict[str, Value] = {"thing": sought(d, thing)}
+        if thing.place is not None and (elsewhere or search):
+            arguments["place"] = thing.place
+        asked = Ask("find" if search or elsewhere else "sees", arguments)
     if thing.person:
-        d.person = Thing(thing.value, known=thing.known, person=True, here=True)
-    arguments: dict[str, Value] = {"thing": sought(d, thing)}
-    if thing.place is not None:
-        arguments["place"] = thing.place
-    result: Condition = Holds(Ask("find", arguments))
-    return Not(result) if node.production.fixed.get("no") else result
+        d.person, d.thing_last = thing, False
+    d.met = Meeting(thing)
+    return Holds(asked)
+
+
+def just_looked_for(d: Discourse, thing: Thing | None) -> Ask | None:
+    """The search that the step before is, if it is for this; it is taken out of the steps:
+    "look for a wheelchair. If there is one, ..."."""
+    last = d.done[-1] if d.done else None
+    if not (isinstance(last, Call) and last.method == "find"):
+        return None
+    if thing is not None and last.arguments["thing"] != sought(d, thing):
+        return None
+    if thing is not None and thing.place not in (None, last.arguments.get("place")):
+        return None
+    d.done.pop()
+    return Ask("find", last.arguments)
+
+
+def _each_of_them(d: Discourse, node: Node, people: tuple[Value, ...], search: bool) -> Condition:
+    """ "Alice and Bob are in their offices", "Alice or Bob is there"."""
+    found: list[Condition] = []
+    for value in people:
+        person = Thing(value, known=True, person=True)
+        d.person = person
+        spot: Where | None = d.get(node, "from")
+        if spot is not None:
+            person = replace(person, place=spot.place, furniture=spot.furniture)
+        found.append(is_there(d, person, search))
+    d.met = None
+    part = node.parts["person_ref"]
+    either = node.production.fixed.get("any") or set(d.language.speech.get("or", ())) & set(
+        d.norms(part.start, part.end)
+    )
+    return Either(tuple(found)) if either else Both(tuple(found))
+
+
+@meaning("place_empty")
+def place_empty(d: Discourse, node: Node) -> Condition:
+    """ "the lobby is empty": nobody is there."""
+    anybody = Thing(Text(ANYONE), d.get(node, "place"), person=True)
+    there = is_there(d, anybody)
+    d.met = Meeting(anybody, holds=bool(node.production.fixed.get("occupied")))
+    return there if node.production.fixed.get("occupied") else Not(there)
 
 
 @meaning("counted")
 def counted(d: Discourse, node: Node) -> Condition:
     """ "there are more than three people"."""
     thing = noun_of(d, node)
+    spot: Where | None = d.get(node, "where")
+    if spot is not None:
+        thing = replace(thing, place=spot.place, furniture=spot.furniture)
     if thing.person:
         d.person = thing
     if thing.place is not None and thing.place != d.at:
@@ -80,6 +196,16 @@ def counted(d: Discourse, node: Node) -> Condition:
     return Compare(
         Ask("count", {"thing": sought(d, thing)}), operator, Number(int(d.get(node, "count")))
     )
+
+
+@meaning("cannot_check")
+def cannot_check(d: Discourse, node: Node) -> Condition:
+    """Something that is neither seen nor heard nor known: "the patient feels better"."""
+    words = d.words(node.start, node.end)
+    raise NotUnderstood(d.language.phrase("cannot_check", what=words), span=(node.start, node.end))
+
+
+# --- the battery, the time
 
 
 @meaning("battery_is")
@@ -102,8 +228,10 @@ def weekday_is(d: Discourse, node: Node) -> Condition:
 
 @meaning("weekend")
 def weekend(d: Discourse, node: Node) -> Condition:
+    """ "it is the weekend", or no day of the weekend."""
     day = Ask("clock", field="weekday")
-    return Either((Compare(day, "==", Text("Saturday")), Compare(day, "==", Text("Sunday"))))
+    free = Either((Compare(day, "==", Text("Saturday")), Compare(day, "==", Text("Sunday"))))
+    return Not(free) if node.production.fixed.get("no") else free
 
 
 @meaning("robot_is_at")
@@ -131,6 +259,30 @@ def answered(d: Discourse, node: Node) -> Condition:
         if option.lower() == wanted.lower():
             return Compare(Recall(d.answer), "==", Text(option))
     return Compare(Text(wanted), "in", Recall(d.answer))
+
+
+def said_so(d: Discourse, no: bool) -> Condition:
+    """ "if so", "if he is not": what was looked for in the step before was found, or the last
+    answer was yes."""
+    looked = just_looked_for(d, None)
+    if looked is not None:
+        person = d.person if not d.thing_last else None
+        if person is not None or d.thing is not None:
+            d.met = Meeting(person or d.thing or Thing(looked.arguments["thing"]), holds=not no)
+        found = Holds(looked)
+        return Not(found) if no else found
+    if d.answer is None:
+        raise NotUnderstood(d.language.phrase("no_question"))
+    wanted = d.language.phrase("no" if no else "yes")
+    for option in d.answer_options:
+        if option.lower() == wanted.lower():
+            return Compare(Recall(d.answer), "==", Text(option))
+    return Compare(Text(wanted), "in", Recall(d.answer))
+
+
+@meaning("so")
+def so(d: Discourse, node: Node) -> Condition:
+    return said_so(d, no=bool(node.production.fixed.get("no")))
 
 
 @meaning("code_is")

@@ -34,6 +34,15 @@ def find_furniture(d: Discourse, node: Node) -> Steps:
     return [*steps]
 
 
+@meaning("look_in")
+def look_in(d: Discourse, node: Node) -> Steps:
+    """ "look in the kitchen": go there; for what was looked for in vain, where there is such."""
+    spot: Where = d.get(node, "spot")
+    if d.missing is None or spot.place is None:
+        return go_to(d, node)
+    return look_for(d, replace(d.missing, place=spot.place, furniture=spot.furniture))
+
+
 @meaning("go_find")
 def go_find(d: Discourse, node: Node) -> Steps:
     """ "go to the kitchen to find the cup"."""

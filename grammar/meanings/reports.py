@@ -270,7 +270,7 @@ def whether_seen(d: Discourse, node: Node) -> Report:
     thing = replace(
         thing, place=thing.place or more.place, furniture=thing.furniture or more.furniture
     )
-    named = _named(d, thing)
+    named = named_some(d, thing)
     return Report(
         "yes_seen",
         Ask("sees", {"thing": sought(d, thing)}),
@@ -281,7 +281,8 @@ def whether_seen(d: Discourse, node: Node) -> Report:
     )
 
 
-def _named(d: Discourse, thing: Thing) -> str:
+def named_some(d: Discourse, thing: Thing) -> str:
+    """A thing as one speaks of it for the first time: "somebody", "a cup"."""
     if thing.person and thing.text == ANYONE:
         return d.language.phrase("somebody")
     called = d.called(thing.text)
@@ -340,6 +341,8 @@ def told_again(d: Discourse, person: Thing | None) -> Steps:
         return again
     if person is None or is_me(person):
         return tell_speaker(d)
+    if d.claim is not None and d.claim.known == d.known_by_now():
+        return speak_to(d, person, [d.claim.saying])
     if d.report is None:
         return speak_to(d, person, known_words(d))
     return retold(d, person)
@@ -440,6 +443,12 @@ def tell_speaker(d: Discourse) -> Steps:
     last = d.done[-1] if d.done else None
     if last is not None and last is d.told:
         return []
+    if d.claim is not None and d.claim.known == d.known_by_now():
+        if d.at is None or d.at == Recall(START):
+            return [d.claim.saying]
+        start = d.start()
+        d.went(start)
+        return [Call("goto", {"place": start}), d.claim.saying]
     if d.report is not None and d.report_step is last and d.at is not None:
         start = d.start()
         if d.at == start:

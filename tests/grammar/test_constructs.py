@@ -15,10 +15,11 @@ from sandbox.check import check
 from tests.grammar.test_honest import unbound
 from tests.grammar.ward import WARD, program
 
-FILE = Path(__file__).with_name("constructs_en.yaml")
+FILES = [Path(__file__).with_name(name) for name in ("constructs_en.yaml", "clauses_en.yaml")]
 ROWS = [
     (row["say"], row["means"])
-    for rows in yaml.load(FILE.read_text(encoding="utf-8"), Loader=yaml.BaseLoader).values()
+    for file in FILES
+    for rows in yaml.load(file.read_text(encoding="utf-8"), Loader=yaml.BaseLoader).values()
     for row in rows
 ]
 STUB = stub()

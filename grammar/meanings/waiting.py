@@ -1,0 +1,65 @@
+"""Waiting for a time, or for something to happen, and what is done then."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from grammar.chart import Node
+from grammar.discourse import Discourse, Steps
+from grammar.inference import takes_time
+from grammar.meanings.branches import meet_there
+from grammar.meanings.conditions import condition_of, negated
+from grammar.meanings.registry import meaning
+from grammar.plan import Ask, Call, Compare, Condition, Forever, Holds, Number, Text, While
+
+LOOK_EVERY: Final = 10
+"""Seconds between two looks at a condition that is waited for."""
+
+
+@meaning("when")
+def when(d: Discourse, node: Node) -> Steps:
+    """ "when somebody comes, ...": wait for it, then do it; "whenever": again and again."""
+    wait = waiting(d, node)
+    body = d.build(node.parts["then"])
+    if node.production.fixed.get("always"):
+        return [Forever((*wait, *body))]
+    return [*wait, *body]
+
+
+def waiting(d: Discourse, node: Node) -> Steps:
+    """Wait until the condition of a clause holds; whoever is waited for is then here."""
+    before, condition = condition_of(d, node)
+    meet_there(d, d.met)
+    return [*before, *wait_until(condition)]
+
+
+def wait_until(condition: Condition) -> Steps:
+    """Wait until a condition holds."""
+    if isinstance(condition, Holds) and isinstance(condition.value, Ask):
+        asked = condition.value
+        if asked.method in ("sees", "wait_for"):
+            return [Call("wait_for", asked.arguments)]
+        if asked.method == "find" and "place" in asked.arguments:
+            there = Call("goto", {"place": asked.arguments["place"]})
+            return [there, Call("wait_for", {"thing": asked.arguments["thing"]})]
+    pause = 1 if takes_time(condition) else LOOK_EVERY
+    return [While(negated(condition), (Call("wait", {"seconds": Number(pause)}),))]
+
+
+@meaning("wait_until")
+def wait_until_(d: Discourse, node: Node) -> Steps:
+    return waiting(d, node)
+
+
+@meaning("delayed")
+def delayed(d: Discourse, node: Node) -> Steps:
+    """ "in five minutes, ...", "at three o'clock, ..."."""
+    waiting: Steps = d.build(node.parts["delay"])
+    return [*waiting, *d.build(node.parts["then"])]
+
+
+@meaning("at_time")
+def at_time(d: Discourse, node: Node) -> Steps:
+    """Wait until it is that late."""
+    time = Compare(Ask("clock", field="time"), ">=", Text(d.get(node, "clock_time")))
+    return wait_until(time)
