@@ -68,11 +68,17 @@ class Language:
     """The same words as people write and speak them, for the recogniser."""
 
     def tokens_of(self, text: str) -> tuple[str, ...]:
-        return words_of(text, self.spelling)
+        """The normal forms of the words of a text."""
+        return _tokens_of(self, text)
 
     def phrase(self, name: str, /, **values: object) -> str:
         """What the language says by this name, with the values put in."""
         return self.phrases[name].format(**values)
+
+
+@functools.lru_cache(maxsize=10_000)  # mostly names and phrases, asked for again and again
+def _tokens_of(language: Language, text: str) -> tuple[str, ...]:
+    return words_of(text, language.spelling)
 
 
 def spoken_name(name: str, language: Language) -> str:

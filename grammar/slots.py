@@ -268,37 +268,28 @@ class Slots:
             position += 1
             matches.append((position, 0.0, total + (current or 0.0)))
         whole = matches[-1] if matches else None
-        for phrase, value in self._fractions():
-            if whole and self._reads((*phrase,), whole[0], after_number=True):
-                matches.append((whole[0] + len(phrase), 0.0, whole[2] + value))
-        for words, value in self._articles():
-            if self._reads(words, at):
-                matches.append((at + len(words), 0.2, value))
+        if whole:
+            for end, value in self._said_number("and_fractions", whole[0]):
+                matches.append((end, 0.0, whole[2] + value))
+        matches += [(end, 0.2, value) for end, value in self._said_number("phrases", at)]
         return matches
 
     def _compound(self, at: int) -> tuple[float, int] | None:
         """A number said in several words that do not add up one by one, "quatre-vingt-dix", and
         how many words it has."""
-        if at >= len(self.tokens) or self.tokens[at].kind != "word":
-            return None
-        for words, value in _compounds(self.language).get(self.tokens[at].norm, ()):
-            if self._reads(words, at):
-                return value, len(words)
-        return None
+        found = max(self._said_number("compounds", at), default=None)
+        return None if found is None else (found[1], found[0] - at)
 
-    def _fractions(self) -> Iterable[tuple[tuple[str, ...], float]]:
-        for phrase, value in self.language.numbers.get("and_fractions", {}).items():
-            yield self.language.tokens_of(phrase), value
-
-    def _articles(self) -> Iterable[tuple[tuple[str, ...], float]]:
-        for phrase, value in self.language.numbers.get("phrases", {}).items():
-            yield self.language.tokens_of(phrase), value
-
-    def _reads(self, words: tuple[str, ...], at: int, after_number: bool = False) -> bool:
-        return all(
-            at + offset < len(self.tokens) and self.tokens[at + offset].norm == word
-            for offset, word in enumerate(words)
-        )
+    def _said_number(self, kind: str, at: int) -> list[tuple[int, float]]:
+        """The numbers of this kind that are said here in words of their own: where each ends, and
+        its value."""
+        if at >= len(self.tokens):
+            return []
+        return [
+            (at + len(words), value)
+            for words, value in _number_phrases(self.language, kind).get(self.tokens[at].norm, ())
+            if tuple(token.norm for token in self.tokens[at : at + len(words)]) == words
+        ]
 
     def _count(self, at: int) -> list[Match]:
         """A whole number from 1 on."""
@@ -449,14 +440,14 @@ class Slots:
 
 
 @functools.cache
-def _compounds(language: Language) -> dict[str, list[tuple[tuple[str, ...], float]]]:
-    """The numbers of several words by their first one, the longest first."""
+def _number_phrases(
+    language: Language, kind: str
+) -> dict[str, list[tuple[tuple[str, ...], float]]]:
+    """The numbers of several words of this kind, by their first one."""
     found: dict[str, list[tuple[tuple[str, ...], float]]] = {}
-    for phrase, value in language.numbers.get("compounds", {}).items():
+    for phrase, value in language.numbers.get(kind, {}).items():
         words = language.tokens_of(phrase)
         found.setdefault(words[0], []).append((words, float(value)))
-    for each in found.values():
-        each.sort(key=lambda compound: -len(compound[0]))
     return found
 
 
