@@ -27,18 +27,29 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
+import msgspec
 import yaml
 
+from grammar.cache import kept
 from grammar.network import Network, Production, RuleError, compile_rules
-from grammar.templates import NOTHING, Choice, Sequence, Template, TemplateError, Word
-from grammar.templates import parse_template as _parse
+from grammar.templates import (
+    NOTHING,
+    Choice,
+    Sequence,
+    Template,
+    TemplateError,
+    Word,
+    parse_template,
+)
 from grammar.tokens import Spelling, words_of
 from grammar.verbs import forms, ordered
 
 _FOLDER: Final = Path(__file__).parent / "languages"
 _NOT_RULES: Final = frozenset({"explain"})
-
-parse_template = functools.cache(_parse)
+_COMPILED: Final = frozenset(
+    {"rules", "verbs", "conjugation", "orders", "lists", "fillers", "closed"}
+)
+"""Keys that only matter when a language is compiled."""
 
 
 class UnknownLanguage(ValueError):
@@ -109,15 +120,40 @@ def load_language(code: str) -> Language:
         raise UnknownLanguage(
             f"There is no language {code!r}. There are: {', '.join(languages())}."
         )
-    data: dict[str, Any] = {}
-    for path in files:
-        for key, value in _read(path).items():
-            _merge(data, key, value, path)
-    return _language(code, data)
+    sources = [path.read_bytes() for path in files]
+
+    def compile_language() -> Compiled:
+        data: dict[str, Any] = {}
+        for path, source in zip(files, sources, strict=True):
+            for key, value in _read(path, source).items():
+                _merge(data, key, value, path)
+        return _compiled(data)
+
+    compiled = kept(f"grammar-{code}", [*sources, *_own_code()], Compiled, compile_language)
+    return _language(code, compiled)
 
 
-def _read(path: Path) -> dict[str, Any]:
-    loaded = yaml.load(path.read_text(encoding="utf-8"), Loader=_Loader)
+def _own_code() -> Iterator[bytes]:
+    """What a compiled language depends on besides its data."""
+    for name in ("language", "network", "templates", "tokens", "verbs"):
+        yield (Path(__file__).parent / f"{name}.py").read_bytes()
+
+
+class Compiled(msgspec.Struct, frozen=True):
+    """A language as it is kept on disk once it is compiled."""
+
+    data: dict[str, Any]
+    """What all its files say together, without the rules."""
+    network: Network
+    lists: dict[str, dict[str, tuple[tuple[str, ...], ...]]]
+    fillers: tuple[tuple[str, ...], ...]
+    closed: frozenset[str]
+    words: frozenset[str]
+    spelled_words: frozenset[str]
+
+
+def _read(path: Path, source: bytes) -> dict[str, Any]:
+    loaded = yaml.load(source, Loader=_Loader)
     if not isinstance(loaded, dict):
         raise RuleError(f"{path.name} is not a mapping of rules, lists and the like")
     return loaded
@@ -153,35 +189,49 @@ def _entries(value: Any) -> list[Any]:
     return value if isinstance(value, list) else [value]
 
 
-def _language(code: str, data: Mapping[str, Any]) -> Language:
-    numbers = data.get("numbers", {})
-    spelling_data = data.get("spelling", {})
-    spelling = Spelling(
-        contractions=spelling_data.get("contractions", {}),
-        endings=spelling_data.get("endings", {}),
-        abbreviations=frozenset(spelling_data.get("abbreviations", ())),
-        numbers=_number_words(numbers, spelling_data.get("letters", {})),
-        symbols=spelling_data.get("symbols", {}),
-        letters=spelling_data.get("letters", {}),
-        accents_optional=spelling_data.get("accents") == "optional",
+def _language(code: str, compiled: Compiled) -> Language:
+    data = compiled.data
+    rules: dict[str, list[Production]] = {}
+    for production in compiled.network.productions:
+        rules.setdefault(production.rule, []).append(production)
+    return Language(
+        code=code,
+        rules={name: tuple(productions) for name, productions in rules.items()},
+        network=compiled.network,
+        lists=compiled.lists,
+        spelling=_spelling(data),
+        numbers=data.get("numbers", {}),
+        fillers=compiled.fillers,
+        closed=compiled.closed,
+        plurals=data.get("plurals", {}),
+        kinds=data.get("kinds", {}),
+        phrases=data.get("phrases", {}),
+        speech=data.get("speech", {}),
+        help={topic: tuple(examples) for topic, examples in data.get("help", {}).items()},
+        words=compiled.words,
+        spelled_words=compiled.spelled_words,
     )
+
+
+def _spelling(data: Mapping[str, Any]) -> Spelling:
+    spelling = data.get("spelling", {})
+    letters = spelling.get("letters", {})
+    return Spelling(
+        contractions=spelling.get("contractions", {}),
+        endings=spelling.get("endings", {}),
+        abbreviations=frozenset(spelling.get("abbreviations", ())),
+        numbers=_number_words(data.get("numbers", {}), letters),
+        symbols=spelling.get("symbols", {}),
+        letters=letters,
+        accents_optional=spelling.get("accents") == "optional",
+    )
+
+
+def _compiled(data: Mapping[str, Any]) -> Compiled:
+    spelling = _spelling(data)
     verbatim = frozenset(spelling.endings.values())  # "'s" stands alone in rules only
     normal = functools.cache(lambda text: (text,) if text in verbatim else words_of(text, spelling))
-    entries_of = dict(data.get("rules", {}))
-    if "verbs" in data:
-        entries_of |= forms(data["verbs"], data["conjugation"])
-    orders: list[Any] = data.get("orders", [])
-    rules = {
-        name: tuple(
-            _productions(
-                name,
-                _entries(entries),
-                functools.partial(_ordered, name, orders=orders, rules=entries_of),
-            )
-        )
-        for name, entries in entries_of.items()
-    }
-    network = compile_rules(rules, normal)
+    network = compile_rules(_rules(data), normal)
     lists = {
         name: {
             str(value): tuple(
@@ -201,29 +251,10 @@ def _language(code: str, data: Mapping[str, Any]) -> Language:
         for way in ways
         for word in way
     }
-    spelled = {
-        text
-        for productions in rules.values()
-        for production in productions
-        for template in production.templates
-        for text in _texts(template)
-    }
-    spelled |= {
-        text
-        for values in data.get("lists", {}).values()
-        for ways in values.values()
-        for way in _entries(ways)
-        for text in _texts(_template(way, "lists"))
-    }
-    spelled |= set(_number_words(numbers, {})) | set(numbers.get("scales", {}))
-    spelled |= {*data.get("fillers", ()), *data.get("closed", ())}
-    return Language(
-        code=code,
-        rules=rules,
+    return Compiled(
+        data={key: value for key, value in data.items() if key not in _COMPILED},
         network=network,
         lists=lists,
-        spelling=spelling,
-        numbers=numbers,
         fillers=tuple(normal(filler) for filler in data.get("fillers", ())),
         closed=frozenset(
             word
@@ -231,14 +262,41 @@ def _language(code: str, data: Mapping[str, Any]) -> Language:
             for text in entry.split()
             for word in normal(text)
         ),
-        plurals=data.get("plurals", {}),
-        kinds=data.get("kinds", {}),
-        phrases=data.get("phrases", {}),
-        speech=data.get("speech", {}),
-        help={topic: tuple(examples) for topic, examples in data.get("help", {}).items()},
         words=frozenset(words),
-        spelled_words=frozenset(spelled),
+        spelled_words=_spelled(data, network),
     )
+
+
+def _rules(data: Mapping[str, Any]) -> dict[str, tuple[Production, ...]]:
+    entries_of = dict(data.get("rules", {}))
+    if "verbs" in data:
+        entries_of |= forms(data["verbs"], data["conjugation"])
+    orders: list[Any] = data.get("orders", [])
+    rules: dict[str, tuple[Production, ...]] = {}
+    for name, entries in entries_of.items():
+        order = functools.partial(_ordered, name, orders=orders, rules=entries_of)
+        try:
+            rules[name] = tuple(_productions(name, _entries(entries), order))
+            for production in rules[name]:
+                _ = production.templates  # so that a mistake is told with its rule
+        except TemplateError as error:
+            raise RuleError(f"<{name}>: {error}") from error
+    return rules
+
+
+def _spelled(data: Mapping[str, Any], network: Network) -> frozenset[str]:
+    """All words as people write and speak them."""
+    numbers = data.get("numbers", {})
+    templates = [template for each in network.productions for template in each.templates]
+    templates += [
+        _template(way, "lists")
+        for values in data.get("lists", {}).values()
+        for ways in values.values()
+        for way in _entries(ways)
+    ]
+    spelled = {text for template in templates for text in _texts(template)}
+    spelled |= set(_number_words(numbers, {})) | set(numbers.get("scales", {}))
+    return frozenset(spelled | {*data.get("fillers", ()), *data.get("closed", ())})
 
 
 def _number_words(numbers: Mapping[str, Any], letters: Mapping[str, str]) -> dict[str, float]:
@@ -287,17 +345,10 @@ def _productions(
         if unknown:
             raise RuleError(f"the rule <{rule}> has an entry with {', '.join(sorted(unknown))}")
         for cost, says in by_cost.items():
-            yield Production(
-                rule,
-                entry.get("means"),
-                tuple(_template(say, rule) for say in says),
-                float(entry.get("cost", 0)) + cost,
-                entry.get("with", {}),
-                tuple(says),
-            )
+            cost += float(entry.get("cost", 0))
+            yield Production(rule, entry.get("means"), tuple(says), cost, entry.get("with", {}))
     if plain:
-        templates = tuple(_template(say, rule) for say in plain)
-        yield Production(rule, None, templates, 0.0, {}, tuple(plain))
+        yield Production(rule, None, tuple(plain))
 
 
 def _template(source: Any, rule: str) -> Template:

@@ -8,11 +8,12 @@ at the left edge (`compile_rules` says which rule breaks that).
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Final
 
-from grammar.templates import Choice, Part, Template, Word
+from grammar.templates import Choice, Part, Template, Word, parse_template
 from grammar.templates import Sequence as TemplateSequence
 
 INLINED: Final = 20
@@ -32,11 +33,15 @@ class Production:
     means: str | None
     """The meaning's name (`grammar.meanings`, or a robot method); None passes its parts on to
     the rule that refers to it."""
-    templates: tuple[Template, ...]
+    source: tuple[str, ...]
+    """The templates as they are written."""
     cost: float = 0.0
-    fixed: Mapping[str, Any] = None  # type: ignore[assignment]
+    fixed: Mapping[str, Any] = field(default_factory=dict)
     """Values that the meaning gets besides those of the slots."""
-    source: tuple[str, ...] = ()
+
+    @functools.cached_property
+    def templates(self) -> tuple[Template, ...]:
+        return tuple(map(parse_template, self.source))
 
 
 @dataclass(slots=True)

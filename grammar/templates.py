@@ -14,6 +14,7 @@ network of all of them.
 
 from __future__ import annotations
 
+import functools
 import itertools
 import re
 from dataclasses import dataclass
@@ -56,6 +57,7 @@ NOTHING = Sequence(())
 _LEXEME = re.compile(r"\s+|[()\[\]|]|<[^<>]+>|\{[^{}]+\}|[^\s()\[\]|<>{}]+")
 
 
+@functools.cache
 def parse_template(source: str) -> Template:
     """The template of such a text. Raises `TemplateError`."""
     lexemes = _LEXEME.findall(source)
