@@ -25,6 +25,8 @@ NO_PART: Final = frozenset(
     | {"remark", "remark_name", "remark_where"}  # kept word for word as background
 )
 """Meanings whose words need not be in the plan: taken back, or said for what follows."""
+LEFT_OUT: Final = "but"
+"""What an exception is bound to: it shows in what the plan does not do."""
 ALIKE: Final = 3
 """Letters that a word and its form in the plan share: "wants" and "want"."""
 
@@ -40,6 +42,7 @@ def left_out(
     """The words in these slots that the plan knows nothing of."""
     known = {_stem(word) for text in _texts(plan) for word in language.tokens_of(text)}
     silent = language.closed | {word for filler in language.fillers for word in filler}
+    silent |= set(language.speech.get("one_words", ()))
     base_forms = language.speech.get("base_forms", {})
     # Who is sent to a piece of furniture is sent to where it stands.
     homes = {each.name: each.inside for each in lexicon.furniture if each.inside}
@@ -73,7 +76,9 @@ def _name_of(value: object) -> str:
 
 
 def _leaves(tree: Node, slots: frozenset[str]) -> Iterator[Leaf]:
-    for part in tree.parts.values():
+    for name, part in tree.parts.items():
+        if name == LEFT_OUT:
+            continue  # "every office but Bob's"
         if isinstance(part, Leaf):
             if part.slot in slots:
                 yield part

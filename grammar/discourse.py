@@ -84,7 +84,20 @@ class Thing:
     coming: bool = False
     """Whether it is whoever comes: each of them, without end."""
     count: int | None = None
-    """How many of them, whoever they are: "three visitors"."""
+    """How many of them, whichever they are: "three visitors", "two cups"."""
+    preposition: str = ""
+    """How it stands to the furniture, where that is told: "next to"."""
+    noun: str = ""
+    """The noun alone: "cup" of "red cup"."""
+    but: Value | None = None
+    """Those of a group who are left out."""
+    every: bool = False
+    """Whether all of them are meant that are there: "all the visitors", "every cup"."""
+
+    @property
+    def several(self) -> bool:
+        """Whether it is to be done with one after the other."""
+        return self.count is not None or self.every
 
     @property
     def text(self) -> str:
@@ -99,6 +112,8 @@ class Where:
     furniture: str | None = None
     words: str = ""
     """What else tells the thing: "behind the cup"."""
+    preposition: str = ""
+    """How something stands to the furniture: "under"; as far as that is no matter of course."""
 
 
 @dataclass(frozen=True)
@@ -199,6 +214,16 @@ class Discourse:
     """The last step, if it has told the speaker all there is to tell."""
     report_step: Step | None = None
     """The step that tells it."""
+    bound: dict[int, Any] = field(default_factory=dict)
+    """What noun phrases that speak of several stand for within their loop, by their `id`."""
+    at_people: bool = False
+    """Whether the robot is where it is to meet people, so that things need not be there, too."""
+    loops: dict[str, Value] = field(default_factory=dict)
+    """The places that loops go round, by their variables."""
+    collected: Thing | None = None
+    """Several things that are to be collected, before it was said where to."""
+    delivered_in: Step | None = None
+    """The loop that brings several things to the speaker without their saying where to."""
     variables: set[str] = field(default_factory=set)
     background: list[str] = field(default_factory=list)
     """What was said besides, in its words, and asks for nothing."""
@@ -210,12 +235,17 @@ class Discourse:
     def build(self, part: Leaf | Node) -> Any:
         """What a part of the parse means."""
         from grammar.meanings import MEANINGS
+        from grammar.meanings.quantifiers import distributed
 
         if isinstance(part, Leaf):
             return self._leaf(part)
+        if id(part) in self.bound:
+            return self.bound[id(part)]
         if SETTING in part.parts:
             return MEANINGS[SETTING](self, part)
         meaning = MEANINGS.get(part.means)
+        if part.production.rule == "command" and (meaning or part.means in METHODS):
+            return distributed(self, part, lambda: self._command(part))
         if meaning is not None:
             return meaning(self, part)
         if part.means in METHODS:
@@ -224,6 +254,12 @@ class Discourse:
             inner = [each for each in part.parts.values() if isinstance(each, Node)]
             return self.build(inner[0]) if inner else self.words(part.start, part.end)
         raise LookupError(f"no meaning is called {part.means!r}")
+
+    def _command(self, node: Node) -> Steps:
+        from grammar.meanings import MEANINGS
+
+        meaning = MEANINGS.get(node.means)
+        return [self.call_of(node)] if meaning is None else meaning(self, node)
 
     def get(self, node: Node, name: str, default: Any = None) -> Any:
         """What the part of this name means, or the fixed value of this name, or the default."""
@@ -276,6 +312,11 @@ class Discourse:
 
     def norms(self, start: int, end: int) -> list[str]:
         return [token.norm for token in self.tokens[start:end]]
+
+    def is_plural(self, node: Node) -> bool:
+        """Whether a pronoun speaks of several: "them"."""
+        words = self.language.speech.get("plural_pronouns", ())
+        return any(word in words for word in self.norms(node.start, node.end))
 
     def noun_words(self, start: int, end: int) -> str:
         """Some tokens as the words of a noun phrase that things are looked for by: in lower case,

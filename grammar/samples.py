@@ -168,6 +168,7 @@ class _Sampler:
             "noun": ["banana", "green bottle"],
             "word": ["like"],
             "unknown": ["pharmacy"],
+            "stranger": ["Zorro"],
         }
         return self.chance.choice(names or plain.get(name) or ["robot"])
 

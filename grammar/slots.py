@@ -28,6 +28,7 @@ UNKNOWN_NAME: Final = 30.0
 """Cost of reading words as the name of something that is not known."""
 LONGEST_NOUN: Final = 5
 LONGEST_UNKNOWN: Final = 6
+LONGEST_STRANGER: Final = 2
 
 
 @dataclass(slots=True)
@@ -195,6 +196,7 @@ class Slots:
             "{zu_infinitive}": self._zu_infinitive,
             "{remark}": self._remark,
             "{unknown}": self._unknown,
+            "{stranger}": self._stranger,
         }
         return slots
 
@@ -436,6 +438,19 @@ class Slots:
             if token.kind == "mark" or token.norm in self.language.closed:
                 break
             matches.append((position + 1, UNKNOWN_NAME + FREE_WORD * (position + 1 - at), None))
+        return matches
+
+    def _stranger(self, at: int) -> list[Match]:
+        """The name of somebody nobody knows: words that no rule and no name has."""
+        matches: list[Match] = []
+        known = (self.language.words, self.names.words, self.language.closed)
+        for position in range(at, min(at + LONGEST_STRANGER, len(self.tokens))):
+            token = self.tokens[position]
+            if token.kind != "word" or any(token.norm in words for words in known):
+                break
+            # Written like a name, it is rather somebody than a place.
+            cost = UNKNOWN_NAME + FREE_WORD * (position + 1 - at - token.capital)
+            matches.append((position + 1, cost, None))
         return matches
 
 

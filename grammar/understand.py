@@ -183,6 +183,8 @@ class Reader:
             )
         try:
             steps = discourse.build(tree.parts["steps"])
+            if discourse.collected is not None:
+                raise NotUnderstood(self.language.phrase("one_thing"))
         except NotUnderstood as reason:
             return self._refused(reason)
         except Ambiguous as which:

@@ -24,13 +24,32 @@ def kind_words(kind: str, language: Language) -> tuple[list[str], list[str]]:
     return one, entry.get("many") or [plural(word, language) for word in one]
 
 
+def head_word(noun: str, language: Language) -> str:
+    """The noun itself in a noun phrase: "cup" of "red cup", "glass" of "glass of water"."""
+    words = noun.split() or [""]
+    before = next(
+        (
+            at
+            for at, word in enumerate(words)
+            if at and word in language.speech.get("noun_joins", ())
+        ),
+        None,
+    )
+    if language.plurals.get("until"):
+        return words[0]
+    return words[-1 if before is None else before - 1]
+
+
 def _changed(noun: str, language: Language, change: Callable[[str, Language], str]) -> str:
     """A noun phrase with the words changed that have a number: the last one, or, where the
     language says what ends them ("bouteilles d'eau"), all before that."""
     words = noun.split() or [""]
     ends = language.plurals.get("until")
-    if ends is None:
-        return " ".join((*words[:-1], change(words[-1], language)))
+    if ends is None:  # "boxes of gloves" is several boxes
+        joins = language.speech.get("noun_joins", ())
+        head = next((at - 1 for at, word in enumerate(words) if at and word in joins), -1)
+        words[head] = change(words[head], language)
+        return " ".join(words)
     last = next(
         (at for at, word in enumerate(words) if f"{word} ".startswith(tuple(ends))), len(words)
     )

@@ -12,7 +12,7 @@ import math
 import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from sim.errors import NotFound
 from sim.people import Human
@@ -51,6 +51,10 @@ class Phrase:
     """A superlative: "leftmost", "biggest" ..."""
     place: str | None
     """What it is on, in or near: the words after a relation."""
+    side: str | None
+    """Where it is of that, for who looks: "left", "behind"; None for "on", "near" and the like."""
+    rank: int
+    """Which one by the superlative, from 1 on: "second biggest"."""
     whole: str
     """All of it as one name."""
 
@@ -59,16 +63,21 @@ class Phrase:
 def parse(text: str) -> Phrase:
     """Take a noun phrase apart."""
     whole = key(text)
-    head, place = whole, None
+    head, place, side = whole, None, None
     for relation in words().relations:
         before, found, after = whole.partition(f" {relation} ")
         if found and len(before) < len(head):
-            head, place = before, after
+            head, place, side = before, after, words().sides.get(relation)
     superlatives = words().superlatives
     tokens = _tokens(head)
     measure = next((superlatives[token] for token in tokens if token in superlatives), None)
-    kept = [token for token in tokens if token not in superlatives and token not in words().fillers]
-    return Phrase(text, tuple(kept), measure, place, whole)
+    rank = 1
+    silent = words().fillers | superlatives.keys()
+    if measure is not None:
+        rank = next((words().ordinals[token] for token in tokens if token in words().ordinals), 1)
+        silent |= words().ordinals.keys()
+    kept = [token for token in tokens if token not in silent]
+    return Phrase(text, tuple(kept), measure, place, side, rank, whole)
 
 
 def visible(hospital: Hospital, thing: str) -> list[Seen]:
@@ -112,6 +121,8 @@ def describe(hospital: Hospital, thing: str) -> str:
     sights = in_view(hospital, thing)
     if not sights:
         raise NotFound(f'The robot does not see "{thing}" here. Look for it in another place.')
+    if set(parse(thing).words) & words().several:
+        return f"I see {_listed([_shown(hospital, sight) for sight in sights])}."
     sight = sights[0]
     if isinstance(sight, Furniture):
         return f"The {sight.name} is a {sight.kind}."
@@ -152,8 +163,11 @@ def fits(hospital: Hospital, sight: Sight, phrase: Phrase) -> bool:
     known = _vocabulary(sight)
     if phrase.place is None:
         return _explains(known, phrase.words)
-    if _explains(known, phrase.words) and _is_at(hospital, sight, phrase.place):
-        return True
+    if _explains(known, phrase.words):
+        if phrase.side is not None:
+            return _is_beside(hospital, sight, phrase.side, phrase.place)
+        if _is_at(hospital, sight, phrase.place) or _is_by_thing(hospital, sight, phrase.place):
+            return True
     # "the man in the blue coat": no relation after all.
     after = [token for token in _tokens(phrase.place) if token not in words().fillers]
     return _explains(known, [*phrase.words, *after])
@@ -252,6 +266,56 @@ def _is_at(hospital: Hospital, sight: Sight, where: str) -> bool:
     )
 
 
+_NEAR: Final = 1.0
+"""Metres between things that are next to each other."""
+_IN_SIGHT: Final = 3.0
+"""Metres to a thing that another one is told by."""
+
+
+def _landmarks(hospital: Hospital, sight: Sight, noun: str) -> list[tuple[float, float]]:
+    """Where the other things and people of this name are, in the reach of the eye from it."""
+    tokens = [token for token in _tokens(noun) if token not in words().fillers]
+    others: list[Sight] = [*hospital.people, *hospital.items]
+    others += [piece for piece in hospital.world.furniture if piece.pose]
+    spots = [
+        spot_of(other)
+        for other in others
+        if other is not sight
+        and not (isinstance(other, Item) and (other.holder or not other.present))
+        and tokens
+        and _explains(_vocabulary(other), tokens)
+    ]
+    return [spot for spot in spots if math.dist(spot, spot_of(sight)) < _IN_SIGHT]
+
+
+def _is_by_thing(hospital: Hospital, sight: Sight, noun: str) -> bool:
+    """Whether it is next to another thing or person."""
+    return any(
+        math.dist(spot, spot_of(sight)) < _NEAR for spot in _landmarks(hospital, sight, noun)
+    )
+
+
+def _is_beside(hospital: Hospital, sight: Sight, side: str, noun: str) -> bool:
+    """Whether it is on this side of something, as the robot sees them."""
+    robot, here = hospital.robot.position, spot_of(sight)
+    if side == "between":
+        join = next((each for each in words().joins if f" {each} " in noun), None)
+        first, _, second = noun.partition(f" {join} ")
+        return any(
+            math.dist(one, here) + math.dist(here, other) < 1.3 * math.dist(one, other) + 0.1
+            for one in _landmarks(hospital, sight, first)
+            for other in _landmarks(hospital, sight, second)
+        )
+    for spot in _landmarks(hospital, sight, noun):
+        turned = wrap(bearing(robot, here) - bearing(robot, spot))
+        further = math.dist(robot, here) - math.dist(robot, spot)
+        if {"left": turned > 0, "right": turned < 0, "behind": further > 0, "before": further < 0}[
+            side
+        ]:
+            return True
+    return False
+
+
 # --- the superlatives ----------------------------------------------------------------------------
 
 
@@ -264,7 +328,10 @@ def pick(hospital: Hospital, thing: str, sights: Sequence[Sight]) -> list[Sight]
         return near
     score = _measures(hospital, near)[measure]
     known = [(value, -i) for i, sight in enumerate(near) if (value := score(sight)) is not None]
-    return [near[-max(known)[1]] if known else _by_words(near, measure)]
+    rank = parse(thing).rank
+    if len(known) >= rank:
+        return [near[-sorted(known, reverse=True)[rank - 1][1]]]
+    return [_by_words(near, measure)] if rank == 1 else []
 
 
 def _by_words(sights: Sequence[Sight], measure: str) -> Sight:
@@ -343,6 +410,12 @@ def _seen(hospital: Hospital, sight: Sight) -> Seen:
     if isinstance(sight, Item):
         return Seen(sight.thing.name, sight.thing.kind, sight.thing.is_, x, y, False)
     return Seen(sight.name, sight.kind, (), x, y, False)
+
+
+def _shown(hospital: Hospital, sight: Sight) -> str:
+    """One of several, in few words: "a red cup", "Emma"."""
+    seen = _seen(hospital, sight)
+    return seen.name if seen.is_person else _a(" ".join([*seen.attributes, seen.name]))
 
 
 def _a(noun: str) -> str:

@@ -86,7 +86,7 @@ def _travel_looking(
 ) -> Behaviour[None]:
     """Drive to a place; done at once when one is in view on the way."""
     way = travel(hospital, (pose[0], pose[1]), pose[2])
-    sought = fitting(hospital, thing)
+    sought = [sight for sight in fitting(hospital, thing) if _is_free(sight)]
     steps = 0
     with contextlib.closing(way):
         for _ in way:
@@ -99,7 +99,7 @@ def _travel_looking(
 
 def _look_around(hospital: Hospital, thing: str) -> Behaviour[bool]:
     """Whether one is here; goes and stands by it."""
-    sights = in_view(hospital, thing)
+    sights = [sight for sight in in_view(hospital, thing) if _is_free(sight)]
     for sight in sights:
         reached = yield from approach(hospital, sight)
         if reached:
@@ -110,6 +110,11 @@ def _look_around(hospital: Hospital, thing: str) -> Behaviour[bool]:
     if sights:
         yield from face(hospital, bearing(hospital.robot.position, spot_of(sights[0])))
     return bool(sights)
+
+
+def _is_free(sight: Sight) -> bool:
+    """Whether it is no thing that somebody holds: what was handed over is not looked for again."""
+    return not isinstance(sight, Item) or sight.holder is None
 
 
 def approach(hospital: Hospital, sight: Sight, reach: float = _NEXT_TO) -> Behaviour[bool]:

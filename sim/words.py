@@ -27,8 +27,16 @@ class Words(msgspec.Struct, frozen=True):
     """By word, which measure it means: {"closest": "nearest"}."""
     plurals: Mapping[str, str]
     plural_endings: tuple[tuple[str, str], ...]
+    ordinals: Mapping[str, int]
+    """What may stand before a superlative: {"second": 2}."""
+    several: frozenset[str]
+    """Words for all things or people that are there."""
     relations: tuple[str, ...]
     """Those of several words first."""
+    sides: Mapping[str, str]
+    """The relations that are about where one looks from: {"à gauche de": "left"}."""
+    joins: frozenset[str]
+    """What stands between two things that something is between."""
     yes: Mapping[str, str]
     """By language."""
     furniture_for: Mapping[str, frozenset[str]]
@@ -68,8 +76,21 @@ def words() -> Words:
     return Words(
         **{
             field: together(field)
-            for field in ("fillers", "person", "male", "female", "thing", "slow", "big", "small")
+            for field in (
+                "fillers",
+                "person",
+                "male",
+                "female",
+                "thing",
+                "slow",
+                "big",
+                "small",
+                "several",
+            )
         },
+        ordinals={k: v for language in languages for k, v in language["ordinals"].items()},
+        sides={k: v for language in languages for k, v in language["sides"].items()},
+        joins=frozenset(language["and"] for language in languages),
         postures=by_key("postures"),
         superlatives={
             word: measure for measure, group in by_key("superlatives").items() for word in group

@@ -14,6 +14,7 @@ from grammar.tidy import mentions
 
 NEEDS_IT: Final = frozenset({"grab", "put", "give", "guide", "follow", "describe"})
 """Methods that say themselves when what was looked for is not there."""
+LED: Final = frozenset({"guide", "follow"})
 
 
 @meaning("steps")
@@ -52,7 +53,10 @@ def guard_finds(d: Discourse, done: Steps) -> Steps:
             result.append(step)
             continue
         following = done[number + 1] if number + 1 < len(done) else None
-        if isinstance(following, Call) and following.method in NEEDS_IT:
+        # One of several who is not found must not keep the others from it.
+        one_of_them = isinstance(step.arguments["thing"], Recall)
+        needs_it = NEEDS_IT - LED if one_of_them else NEEDS_IT
+        if isinstance(following, Call) and following.method in needs_it:
             result.append(step)
             continue
         found = Holds(Ask("find", step.arguments))
@@ -60,7 +64,7 @@ def guard_finds(d: Discourse, done: Steps) -> Steps:
         body: Steps = []
         for later in done[number + 1 :]:
             if isinstance(later, Call) and (
-                later.method in ("goto", "find", "dock") or later.method in NEEDS_IT
+                later.method in ("goto", "find", "dock") or later.method in needs_it
             ):
                 break
             if not isinstance(later, Call | Remember):

@@ -9,7 +9,21 @@ from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.meanings.nouns import is_me, sought
 from grammar.naming import the
-from grammar.plan import Ask, Call, ForEach, Forever, Holds, If, Items, Not, Recall, Text, Value
+from grammar.plan import (
+    Ask,
+    Call,
+    ForEach,
+    Forever,
+    Holds,
+    If,
+    Items,
+    Not,
+    Number,
+    Recall,
+    Repeat,
+    Text,
+    Value,
+)
 
 ANYBODY: Final = (ANYONE, "visitor", "patient", "customer")
 """Whoever is there."""
@@ -28,12 +42,20 @@ def noun_of(d: Discourse, node: Node) -> Thing:
     """The thing or person of a command."""
     thing: Thing | None = d.get(node, "thing")
     if thing is None:
-        person: Thing = d.get(node, "person_ref")
+        person: Thing | list[Thing] = d.get(node, "person_ref")
+        if isinstance(person, list):  # "Alice or Bob", of whom a condition is true
+            person = together(person)
         thing = Thing(Text(ANYONE), person=True, here=True) if is_me(person) else person
     spot: Where | None = d.get(node, "from")
     if spot is not None:
         return replace(thing, place=spot.place, furniture=spot.furniture)
     return thing
+
+
+def together(people: list[Thing]) -> Thing:
+    """Several people as one group."""
+    names = Items(tuple(person.value for person in people))
+    return Thing(Text(ANYONE), person=True, plural=True, known=True, group=names)
 
 
 def found(d: Discourse, thing: Thing) -> Call:
@@ -73,6 +95,10 @@ def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
     """Say something to a person: here, or where they are found."""
     if person is not None and person.coming:
         return [Forever((Call("wait_for", {"thing": person.value}), *steps))]
+    if person is not None and person.count is not None:
+        going = go(d, person.place) if person.place is not None else []
+        meeting = Call("wait_for", {"thing": person.value})
+        return [*going, Repeat(Number(person.count), (meeting, *steps))]
     if person is not None and isinstance(person.group, Items):
         return each_of(d, person.group, steps)
     if person is None:

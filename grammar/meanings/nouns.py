@@ -9,8 +9,8 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Thing, Where, as_value
 from grammar.lexicon import Name
 from grammar.meanings.registry import meaning
-from grammar.plan import Ask, Items, Number, Text, Value
-from grammar.wordforms import singular
+from grammar.plan import Ask, Call, Items, Number, Recall, Remember, Text, Value
+from grammar.wordforms import head_word, singular
 
 LIKE_ENOUGH: Final = 55
 """Percent that two names have to be alike for one to be offered in the place of the other."""
@@ -41,6 +41,37 @@ def place_of_kind(d: Discourse, node: Node) -> Value:
     return d.place
 
 
+@meaning("each_place")
+def each_place(d: Discourse, node: Node) -> Value:
+    """ "every office": the places, for a loop (`grammar.meanings.quantifiers`)."""
+    if "place" in node.parts:
+        return Items((d.get(node, "place"), *d.get(node, "place_list")))
+    return kind_places(d, d.get(node, "places"))
+
+
+@meaning("all_places")
+def all_places(d: Discourse, node: Node) -> Value:
+    """ "every office but Bob's", "the other labs", "the first two wards"."""
+    kind: str | None = d.get(node, "kind") or d.get(node, "kinds")
+    fixed = node.production.fixed
+    but: list[Value | None] = [d.get(node, "but"), *(d.get(node, "place_list") or [])]
+    number = d.get(node, "number")
+    if but == [None] and number is None and not fixed.get("other"):
+        return kind_places(d, kind)
+    if fixed.get("other"):
+        but = [d.place, *(d.get(node, "place_list") or [])]
+    known = d.lexicon.place_kinds[kind] if kind else d.lexicon.places
+    names = [Text(each.name) for each in known if Text(each.name) not in but]
+    lost = [each for each in but if each is not None and not isinstance(each, Text)]
+    if lost or (fixed.get("other") and (d.place is None or len(names) == len(known))):
+        raise NotUnderstood(d.language.phrase("which_places"))
+    if number is not None and int(number) != len(names):
+        if not fixed.get("from_first") or int(number) > len(names):
+            raise NotUnderstood(d.language.phrase("which_places"))
+        names = names[: int(number)] if fixed["from_first"] > 0 else names[-int(number) :]
+    return Items(tuple(names))
+
+
 @meaning("place_own")
 def place_own(d: Discourse, node: Node) -> Value:
     """ "his office", after Bob: Bob's office; of nobody by name, the only office there is."""
@@ -48,6 +79,8 @@ def place_own(d: Discourse, node: Node) -> Value:
     mark = d.language.speech["possessive"]
     said: Thing | None = d.get(node, "owner")
     who = d.person if said is None else said
+    if who is not None and isinstance(who.group, Items):  # for each of them anew
+        who = replace(who, value=who.group.items[-1])
     owner = who.text.lower() if who is not None and who.known else None
     places = d.lexicon.place_kinds[kind]
     own = [each for each in places if owner and each.name.lower().startswith(owner + mark)]
@@ -84,12 +117,65 @@ def place_start(d: Discourse, node: Node) -> Value:
 
 @meaning("place_unknown")
 def place_unknown(d: Discourse, node: Node) -> Value:
-    words = d.words(node.parts["unknown"].start, node.parts["unknown"].end)
-    raise NotUnderstood(
+    raise unknown_place(d, d.words(node.parts["unknown"].start, node.parts["unknown"].end), node)
+
+
+def unknown_place(d: Discourse, words: str, node: Node) -> NotUnderstood:
+    return NotUnderstood(
         d.language.phrase("unknown_place", name=words),
         nearest(words, d.lexicon.places),
         (node.start, node.end),
     )
+
+
+@meaning("place_found")
+def place_found(d: Discourse, node: Node) -> Value:
+    """ "where you found it"."""
+    place = d.thing.place or source_of(d, d.thing) if d.thing is not None else None
+    if place is None:
+        raise NotUnderstood(d.language.phrase("where_is_there"))
+    d.place = place
+    return place
+
+
+@meaning("place_of_owner")
+def place_of_owner(d: Discourse, node: Node) -> Value:
+    """ "Alice's": the one place that is called after her."""
+    leaf = node.parts["person"]
+    assert isinstance(leaf, Leaf)
+    mark = d.language.speech["possessive"]
+    owner = d.one_of(leaf).name
+    own = [
+        each.name for each in d.lexicon.places if each.name.lower().startswith(owner.lower() + mark)
+    ]
+    if not own:
+        raise unknown_place(d, d.words(node.start, node.end), node)
+    if len(own) > 1:
+        raise d.which(node.start, node.end, tuple(own))
+    d.place = Text(own[0])
+    return d.place
+
+
+@meaning("place_any")
+def place_any(d: Discourse, node: Node) -> Value:
+    """ "any office": whichever; the only one if there is no other."""
+    places = d.lexicon.place_kinds[d.get(node, "kind")]
+    if len(places) == 1:
+        return Text(places[0].name)
+    return kind_places(d, d.get(node, "kind"))
+
+
+@meaning("place_where")
+def place_where(d: Discourse, node: Node) -> Thing:
+    """ "where Bob is", "a room with a printer": wherever that is found."""
+    found: Thing = d.get(node, "thing") or d.get(node, "person_ref")
+    return found
+
+
+@meaning("where_owned")
+def where_owned(d: Discourse, node: Node) -> Where:
+    """ "Bob's desk": the desk in Bob's office."""
+    return Where(place_of_owner(d, node), d.get(node, "furniture"))
 
 
 def nearest(words: str, names: tuple[Name, ...]) -> tuple[str, ...]:
@@ -126,7 +212,8 @@ def where_it(d: Discourse, node: Node) -> Where:
 def where_is(d: Discourse, node: Node) -> Where:
     """A preposition and a spot: "on the table"."""
     spot: Where = d.get(node, "spot")
-    return spot
+    words = " ".join(d.norms(node.start, node.parts["spot"].start))
+    return replace(spot, preposition=d.language.speech.get("stands", {}).get(words, ""))
 
 
 def home_of(d: Discourse, furniture: str) -> Value | None:
@@ -178,6 +265,33 @@ def descriptor_fixed(d: Discourse, node: Node) -> str:
     return f"{SUPERLATIVE}{node.production.fixed['what']}"
 
 
+@meaning("worn")
+def worn(d: Discourse, node: Node) -> str:
+    """ "in a red shirt", "in white": what somebody wears. Anything else is no place we know."""
+    part = node.parts["what"]
+    words = d.noun_words(part.start, part.end)
+    last = words.split()[-1]
+    lists = d.language.lists
+    clothes = {
+        " ".join(way)
+        for name in ("garment", "colour")
+        for ways in lists[name].values()
+        for way in ways
+    }
+    if last not in clothes and singular(last, d.language) not in clothes:
+        raise unknown_place(d, words, node)
+    return f"{d.language.speech['wearing']} {words}"
+
+
+@meaning("between")
+def between(d: Discourse, node: Node) -> str:
+    """ "between the cup and the box"."""
+    remembered, last = d.thing, d.thing_last
+    first, second = d.get(node, "first"), d.get(node, "second")
+    d.thing, d.thing_last = remembered, last
+    return d.language.phrase("between", first=first.text, second=second.text)
+
+
 @meaning("superlative_after")
 def superlative_after(d: Discourse, node: Node) -> str:
     return f"{SUPERLATIVE}{d.get(node, 'superlative')}"
@@ -209,8 +323,8 @@ def described(d: Discourse, noun: str, node: Node, *, lies_about: bool = False) 
     it lies or stands somewhere."""
     before: list[str] = []
     number = node.parts.get("number")
-    if number is not None:
-        before.append(str(d.build(number)))
+    if number is not None and node.production.rule != "thing":
+        before.append(str(d.build(number)))  # "the three biggest" as one name
     superlative = d.get(node, "superlative")
     if superlative:
         before.append(superlative)
@@ -220,10 +334,12 @@ def described(d: Discourse, noun: str, node: Node, *, lies_about: bool = False) 
     after: list[str] = []
     place: Value | None = None
     furniture: str | None = None
+    preposition = ""
     for mod in (d.get(node, "mods") or []) + (d.get(node, "mods_after") or []):
         if isinstance(mod, Where):
             place = mod.place or place
-            furniture = mod.furniture or furniture
+            if mod.furniture:
+                furniture, preposition = mod.furniture, mod.preposition
             if mod.words:
                 after.append(mod.words)
         elif mod.startswith(SUPERLATIVE):
@@ -238,11 +354,18 @@ def described(d: Discourse, noun: str, node: Node, *, lies_about: bool = False) 
                 noun = SEXES[sex]
     if place is None and furniture is None:
         place, furniture = d.at_place, d.at_furniture
-    return Thing(Text(" ".join(word for word in (*before, noun, *after) if word)), place, furniture)
+    text = " ".join(word for word in (*before, noun, *after) if word)
+    return Thing(Text(text), place, furniture, preposition=preposition)
 
 
 def sought(d: Discourse, thing: Thing) -> Value:
     """The thing as the robot is to look for it: "cup on the table"."""
+    if thing.count is not None and not thing.person and isinstance(thing.value, Text):
+        thing = replace(thing, value=Text(f"{thing.count} {thing.text}"), count=None)
+    named = thing.person and thing.known  # somebody by name is told by nothing else
+    if thing.furniture and thing.preposition and isinstance(thing.value, Text) and not named:
+        near = d.language.phrase("the", noun=thing.furniture)
+        return Text(f"{thing.value.value} {thing.preposition} {near}")
     if thing.furniture and isinstance(thing.value, Text) and not thing.person:
         on = d.language.phrase("on_furniture", furniture=thing.furniture)
         return Text(f"{thing.value.value} {on}")
@@ -268,21 +391,139 @@ def thing(d: Discourse, node: Node) -> Thing:
         known = head.slot == "object"
         one = name if known else one
         many = words not in (one, name) or one != name
+        one = instead_of_one(d, node, one)
+        if not known and node.end == head.end and is_strange_name(d, node.start, node.end):
+            raise unknown_person(d, d.words(node.start, node.end), node)
     else:
         one, known, many = str(node.production.fixed.get("what", "object")), False, False
+        if "superlative" in node.parts and d.thing is not None:
+            one = d.thing.noun or one  # "the biggest one"
+    count = d.get(node, "number") if node.production.rule == "thing" else None
     found = replace(
         described(d, one, node, lies_about=True),
         known=known,
         plural=many,
         here=bool(node.production.fixed.get("here")),
+        count=int(count) if count is not None and count > 1 else None,
+        every=bool(node.production.fixed.get("every")),
+        noun=head_word(one, d.language),
     )
     d.thing, d.thing_last = found, True
+    return found
+
+
+def is_strange_name(d: Discourse, start: int, end: int) -> bool:
+    """Whether words are written as a name is: "Zorro", not at the beginning of the sentence."""
+    if start == 0 or d.language.speech.get("capital_nouns"):
+        return False
+    tokens = d.tokens[start:end]
+    after_stop = d.tokens[start - 1].kind == "mark"
+    return not after_stop and all(
+        token.kind == "word" and token.capital and token.norm not in d.language.words
+        for token in tokens
+    )
+
+
+def instead_of_one(d: Discourse, node: Node, noun: str) -> str:
+    """ "blue one", after a cup was spoken of: "blue cup"."""
+    *before, last = noun.split()
+    if last not in d.language.speech.get("one_words", ()):
+        return noun
+    return " ".join((*before, spoken_of(d, node).noun))
+
+
+def spoken_of(d: Discourse, node: Node) -> Thing:
+    """The thing spoken of last. Raises `NotUnderstood` if there is none."""
+    if d.thing is None or not d.thing.noun:
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("which_other", words=words))
+    return d.thing
+
+
+@meaning("thing_other")
+def thing_other(d: Discourse, node: Node) -> Thing:
+    """ "the other cup", after one of them: to be found where that was; "another cup"."""
+    head = node.parts.get("head")
+    noun = singular(d.noun_words(head.start, head.end), d.language) if head is not None else ""
+    before = d.thing
+    new = node.production.fixed.get("new")
+    if before is None or not before.noun or (noun and head_word(noun, d.language) != before.noun):
+        if new and noun:
+            return replace(described(d, noun, node), noun=head_word(noun, d.language))
+        before = spoken_of(d, node) if not noun else None
+    if before is None:
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("which_other", words=words))
+    other = replace(described(d, noun or before.noun, node), noun=before.noun, known=before.known)
+    if other.place is None and other.furniture is None:
+        place = before.place or source_of(d, before)
+        if place is None and not new:
+            words = d.words(node.start, node.end)
+            raise NotUnderstood(d.language.phrase("which_other", words=words))
+        other = replace(
+            other, place=place, furniture=before.furniture, preposition=before.preposition
+        )
+    d.thing, d.thing_last = other, True
+    return other
+
+
+def source_of(d: Discourse, thing: Thing) -> Value | None:
+    """The place where a thing was taken, remembered from there on."""
+    for at in range(len(d.done) - 1, -1, -1):
+        step = d.done[at]
+        if (
+            isinstance(step, Call)
+            and step.method == "grab"
+            and step.arguments["thing"]
+            in (
+                thing.value,
+                sought(d, thing),
+            )
+        ):
+            source = d.variable("source")
+            d.done.insert(at + 1, Remember(source, Ask("location", field="place")))
+            return Recall(source)
+    return None
+
+
+@meaning("thing_same")
+def thing_same(d: Discourse, node: Node) -> Thing:
+    """ "the same cup": the one spoken of."""
+    return replace(spoken_of(d, node), pronoun=True)
+
+
+@meaning("things")
+def things(d: Discourse, node: Node) -> list[Thing]:
+    """ "the cup and the book"."""
+    return listed(d, node)
+
+
+@meaning("thing_either")
+def thing_either(d: Discourse, node: Node) -> list[Thing]:
+    """ "the red cup, or if there is none the blue one"."""
+    first: Thing = d.get(node, "first")
+    rest = node.parts["rest"]
+    assert isinstance(rest, Node)
+    return [first, *(d.build(rest) if rest.means == "thing_either" else [d.build(rest)])]
+
+
+def listed(d: Discourse, node: Node) -> list[Thing]:
+    """The noun phrases of a list: `first`, then `rest`."""
+    found: list[Thing] = []
+    each: Any = node
+    while isinstance(each, Node) and "first" in each.parts:
+        found.append(d.build(each.parts["first"]))
+        each = each.parts.get("rest")
+    if isinstance(each, Node):
+        found.append(d.build(each))
     return found
 
 
 @meaning("thing_it")
 def thing_it(d: Discourse, node: Node) -> Thing:
     if d.thing is not None:
+        if d.thing.several and not d.is_plural(node):  # "bring one of them"
+            return replace(d.thing, count=None, every=False, pronoun=True)
         return replace(d.thing, pronoun=True)
     if d.holding is not None:
         return Thing(d.holding, pronoun=True)
@@ -305,21 +546,46 @@ def person_name(d: Discourse, node: Node) -> Thing:
     return found
 
 
+@meaning("person_unknown")
+def person_unknown(d: Discourse, node: Node) -> Thing:
+    part = node.parts["stranger"]
+    raise unknown_person(d, d.words(part.start, part.end), node)
+
+
+def unknown_person(d: Discourse, words: str, node: Node) -> NotUnderstood:
+    known = nearest(words, d.lexicon.people)
+    span = (node.start, node.end) if known else (0, 0)
+    return NotUnderstood(d.language.phrase("unknown_person", name=words), known, span)
+
+
 @meaning("person_kind")
 def person_kind(d: Discourse, node: Node) -> Thing:
     """ "the visitor waving in the lobby", "a nurse", "this gentleman"."""
     kind = str(d.get(node, "kind_of_person", ANYONE))
     found = replace(
-        described(d, kind, node),
+        by_furniture(d, described(d, kind, node)),
         person=True,
         here=bool(node.production.fixed.get("here")),
         plural=bool(node.production.fixed.get("plural")),
+        every=bool(node.production.fixed.get("plural")),
     )
     for each in d.lexicon.people:  # "the person named Alice" is Alice
         if found.text == f"{kind} named {each.name}":
             found = replace(found, value=Text(each.name), known=True)
     d.person, d.thing_last = found, False
     return found
+
+
+def by_furniture(d: Discourse, person: Thing) -> Thing:
+    """A person told by the furniture they are at: "woman next to the door"."""
+    if person.furniture is None or person.furniture == d.at_furniture:
+        return person
+    if person.preposition:
+        return replace(person, value=sought(d, person), furniture=None)
+    if person.place is not None:
+        return person
+    at = d.language.phrase("at_furniture", furniture=person.furniture)
+    return replace(person, value=Text(f"{person.text} {at}"), furniture=None)
 
 
 @meaning("person_pronoun")
@@ -348,27 +614,38 @@ def owner_of(d: Discourse) -> Text | None:
 @meaning("person_group")
 def person_group(d: Discourse, node: Node) -> Thing:
     """ "Alice, Bob and Carol"."""
-    people: list[Thing] = []
-    each: Any = node
-    while isinstance(each, Node):
-        people.append(d.build(each.parts["first"]))
-        each = each.parts.get("rest")
-    d.group = Items(tuple(person.value for person in people))
-    return Thing(Text(ANYONE), person=True, plural=True, known=True, group=d.group)
+    from grammar.meanings.finding import together
+
+    d.person = together(listed(d, node))
+    d.group = d.person.group
+    return d.person
+
+
+@meaning("person_either")
+def person_either(d: Discourse, node: Node) -> list[Thing]:
+    """ "Alice or Bob"."""
+    return listed(d, node)
 
 
 @meaning("person_group_kind")
 def person_group_kind(d: Discourse, node: Node) -> Thing:
     """ "all nurses": those whom the world knows by name; of others, whoever is there."""
     kind = str(d.get(node, "kind_of_person", ANYONE))
-    found = replace(described(d, kind, node), person=True, plural=True)
+    found = replace(by_furniture(d, described(d, kind, node)), person=True, plural=True)
+    but: Thing | None = d.get(node, "but")
     named = tuple(Text(each.name) for each in d.lexicon.people if each.kind == kind)
-    if named and found.place is None and d.at is None and kind not in ("visitor", "patient"):
-        d.group = Items(named)
+    here = found.place is not None or d.at is not None
+    if named and found.text == kind and not here and kind not in ("visitor", "patient"):
+        left_out = but.group.items if but and isinstance(but.group, Items) else (but and but.value,)
+        d.group = Items(tuple(name for name in named if name not in left_out))
         return replace(found, known=True, group=d.group)
+    if but is not None:
+        if found.text != ANYONE:
+            raise NotUnderstood(d.language.phrase("one_person"))
+        found = replace(found, but=but.group or Items((but.value,)))
     d.group = Ask("people")
     d.person, d.thing_last = found, False
-    return replace(found, value=Text(ANYONE) if found.text == kind else found.value, group=d.group)
+    return replace(found, group=d.group, every=True)
 
 
 @meaning("person_count")
@@ -395,7 +672,7 @@ def person_group_them(d: Discourse, node: Node) -> Thing:
     """ "both of them", "each of them"."""
     if d.group is None:
         found = d.person or Thing(Text(ANYONE), person=True)
-        return replace(found, here=True, plural=True)
+        return replace(found, here=True, plural=True, every=True)
     return Thing(Text(ANYONE), person=True, plural=True, known=True, group=d.group)
 
 
@@ -454,9 +731,11 @@ def clock_time(d: Discourse, node: Node) -> str:
     return f"{hours:02}:{minutes:02}"
 
 
-def kind_places(d: Discourse, kind: str | None) -> Ask:
-    """All places of a kind, asked of the robot."""
-    return Ask("places", {"kind": Text(kind)} if kind else {})
+def kind_places(d: Discourse, kind: str | Value | None) -> Value:
+    """All places of a kind, asked of the robot; those that a noun phrase speaks of as they are."""
+    if kind is None or isinstance(kind, str):
+        return Ask("places", {"kind": Text(kind)} if kind else {})
+    return kind
 
 
 def number_value(value: Any) -> Number:

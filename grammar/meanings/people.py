@@ -11,7 +11,7 @@ from grammar.meanings.nouns import is_me, kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.things import deliver
 from grammar.naming import place_called
-from grammar.plan import Call, ForEach, Forever, Recall, Text, Value
+from grammar.plan import Call, Forever, Items, Recall, Text, Value
 
 
 @meaning("guide")
@@ -103,27 +103,15 @@ def carry_it(d: Discourse, node: Node) -> Steps:
 @meaning("guide_list")
 def guide_list(d: Discourse, node: Node) -> Steps:
     """ "guide the visitors through all labs"."""
-    person: Thing | None = d.get(node, "person_ref")
-    who = Text(ANYONE) if person is None or is_me(person) else person.value
-    variable = d.variable("place")
-    d.at = None
+    from grammar.meanings.quantifiers import over_places
+
+    person = led(d, node)
     return [
-        ForEach(
-            variable,
-            kind_places(d, d.get(node, "kinds")),
-            (Call("guide", {"person": who, "place": Recall(variable)}),),
-        )
+        *meet(d, person),
+        *over_places(
+            d, node, kind_places(d, d.get(node, "kinds")), lambda place: [lead(d, person, place)]
+        ),
     ]
-
-
-@meaning("call_person")
-def call_person(d: Discourse, node: Node) -> Steps:
-    """ "call her": whoever was spoken of, if the robot has her among its contacts."""
-    person: Thing = d.get(node, "person_ref")
-    if person.text in d.lexicon.contacts:
-        return [Call("call", {"contact": person.value})]
-    words = d.words(node.parts["person_ref"].start, node.parts["person_ref"].end)
-    raise NotUnderstood(d.language.phrase("unknown_contact", name=words))
 
 
 @meaning("follow")
@@ -144,13 +132,29 @@ def follow(d: Discourse, node: Node) -> Steps:
 @meaning("greet")
 def greet(d: Discourse, node: Node) -> Steps:
     person: Thing | None = d.get(node, "person_ref")
-    name: Value | str = person.text if person is not None and person.known else ""
+    name: Value | str = person.value if person is not None and person.known else ""
     if not name and node.production.fixed.get("by_name"):
         if d.answer is None:
             raise NotUnderstood(d.language.phrase("whose_name"))
         name = Recall(d.answer)
     words = d.say("hello_name", name=name) if name else d.say("hello")
     return speak_to(d, person, [words])
+
+
+@meaning("call_person")
+def call_person(d: Discourse, node: Node) -> Steps:
+    """ "call her", "call all the nurses": those whom the robot has among its contacts."""
+    person: Thing = d.get(node, "person_ref")
+    everybody = (person.value,) if isinstance(person.value, Text) else group_of(d)
+    if all(isinstance(each, Text) and each.value in d.lexicon.contacts for each in everybody):
+        return [Call("call", {"contact": person.value})]
+    words = d.words(node.parts["person_ref"].start, node.parts["person_ref"].end)
+    raise NotUnderstood(d.language.phrase("unknown_contact", name=words))
+
+
+def group_of(d: Discourse) -> tuple[Value, ...]:
+    """The people spoken of together."""
+    return d.group.items if isinstance(d.group, Items) else ()
 
 
 @meaning("greet_all")

@@ -36,6 +36,7 @@ from grammar.plan import (
     Number,
     Recall,
     Remember,
+    Step,
     Text,
     Value,
 )
@@ -57,6 +58,8 @@ class Report:
     """The phrase for a value that is false; then `phrase` is for one that is true."""
     name: str = "result"
     """What the value is called when it is remembered."""
+    before: tuple[Step, ...] = ()
+    """Steps that find it out, where one value is not enough."""
     about_here: bool = True
     """Whether it is about where the robot is, and so has to be found out there."""
 
@@ -85,6 +88,7 @@ def told_of(d: Discourse, node: Node, part: str, person: Thing | None) -> Steps:
         steps.append(Call("goto", {"place": found.place}))
         d.went(found.place)
         back = back or asked_by_me
+    steps += found.before
     if (
         back
         and asked_by_me
@@ -94,11 +98,15 @@ def told_of(d: Discourse, node: Node, part: str, person: Thing | None) -> Steps:
         and found.value is not None
     ):
         start = d.start()
-        name = d.variable(found.name)
-        steps += [Remember(name, found.value), Call("goto", {"place": start})]
+        if not isinstance(found.value, Recall):
+            name = d.variable(found.name)
+            steps.append(Remember(name, found.value))
+            found = replace(found, value=Recall(name))
+        steps.append(Call("goto", {"place": start}))
         d.went(start)
-        return [*steps, *told(d, replace(found, value=Recall(name)), None)]
-    if person is not None and not is_here(d, person) and found.about_here and found.value:
+        return [*steps, *told(d, found, None)]
+    far = person is not None and not is_here(d, person) and found.about_here
+    if far and found.value is not None and not isinstance(found.value, Recall):
         name = d.variable(found.name)  # found out here, told there
         steps.append(Remember(name, found.value))
         found = replace(found, value=Recall(name))
@@ -181,16 +189,24 @@ def names_here(d: Discourse, node: Node) -> Report:
 def seen_here(d: Discourse, node: Node) -> Report:
     place = described(d, "", node)
     if place.furniture:
-        return Report(
-            "only",
-            Ask(
-                "describe",
-                {"thing": sought(d, replace(place, value=Text(d.language.phrase("objects"))))},
-            ),
-            place.place,
-            name="description",
-        )
+        return things_on(d, place)
     return Report("objects_seen", Ask("objects"), place.place, name="things")
+
+
+def things_on(d: Discourse, place: Thing) -> Report:
+    """ "what is on the bed?": all that is on it, or that there is nothing."""
+    thing = replace(place, value=Text(d.language.phrase("objects")))
+    all_of_it = replace(place, value=Text(d.language.phrase("all_objects")))
+    one, everything = sought(d, thing), sought(d, all_of_it)
+    assert isinstance(one, Text)
+    where = d.called(one.value.removeprefix(thing.text).strip())
+    words = d.variable("description")
+    look = Remember(words, Ask("describe", {"thing": everything}))
+    before = (
+        Remember(words, d.sentence("nothing_there", where=where)),
+        If(Holds(Ask("sees", {"thing": one})), (look,)),
+    )
+    return Report("only", Recall(words), place.place, before=before)
 
 
 @meaning("looks_of")
@@ -246,7 +262,10 @@ def counted_info(d: Discourse, node: Node) -> Report:
     spot = _spot_words(d, thing)
     noun, _, rest = phrase_words.partition(" ") if thing.person else (phrase_words, "", "")
     things = f"{plural(noun, d.language)} {rest}".strip()
-    count = Ask("count", {"thing": sought(d, thing)})
+    looked_for = sought(d, thing)
+    count = Ask("count", {"thing": looked_for})
+    if thing.furniture and isinstance(looked_for, Text):  # "cups on the table"
+        things, spot = things + d.called(looked_for.value.removeprefix(thing.text)), ""
     phrase = "counted_at" if spot and "counted_at" in d.language.phrases else "counted"
     words = (
         (("things", things), ("place", spot)) if phrase == "counted_at" else (("things", things),)

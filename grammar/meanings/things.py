@@ -49,7 +49,8 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
     looked = isinstance(last, Call) and last == found(d, thing)
     if isinstance(last, Call) and last.method == "find" and thing.pronoun:
         looked = True  # "find the cup and bring it to me"
-    is_here = thing.here or (d.at is not None and thing.place in (None, d.at))
+    nearby = d.at is not None and not d.at_people and thing.place is None
+    is_here = thing.here or nearby or (d.at is not None and thing.place == d.at)
     steps: Steps = [] if looked or is_here else look_for(d, thing)
     d.holding = thing.value
     d.thing, d.thing_last = thing, True
@@ -91,9 +92,6 @@ def bring(d: Discourse, node: Node) -> Steps:
     if source is not None:
         thing = replace(thing, place=source.place, furniture=source.furniture)
     person: Thing | None = d.get(node, "person_ref")
-    if person is not None and isinstance(person.group, Items):
-        names = [Thing(name, known=True, person=True) for name in person.group.items]
-        return [step for name in names for step in deliver(d, thing, name, None)]
     if person is not None and (
         person.coming or person.group is not None or person.count is not None
     ):
@@ -112,13 +110,13 @@ def bring_too(d: Discourse, node: Node) -> Steps:
 
 @meaning("bring_each")
 def bring_each(d: Discourse, node: Node) -> Steps:
-    """ "bring a blanket to every ward": one after the other."""
-    thing: Thing = d.get(node, "thing")
-    place = Recall(d.variable("place"))
-    d.at = None
-    steps = deliver(d, thing, None, Where(place))
-    d.at = None
-    return [ForEach(place.name, kind_places(d, d.get(node, "kinds")), tuple(steps))]
+    """ "bring every ward a blanket": one after the other."""
+    from grammar.meanings.quantifiers import over_places
+
+    def one(place: Value) -> Steps:
+        return deliver(d, d.get(node, "thing"), None, Where(place))
+
+    return over_places(d, node, kind_places(d, d.get(node, "kinds")), one)
 
 
 def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None) -> Steps:
@@ -145,7 +143,7 @@ def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None
         d.went(start)
         d.delivered = thing.value
         return [*steps, Call("give", give)]
-    left = any(isinstance(step, Call) and step.method == "find" for step in steps)
+    left = any(isinstance(step, Call) and step.method in ("find", "goto") for step in steps)
     if left and person.here and not person.known:  # back to where they are
         place = before or d.start()
         d.went(place)

@@ -266,7 +266,8 @@ def spoken(language: str, method: str, told: str) -> bool:
     patterns = [*words.do, *words.negative, *words.value, *words.holds, *words.fails]
     patterns += [*words.fields.values()]
     one = speech(language).nouns.one
-    patterns += [one(pattern, gap) for pattern in patterns for gap in gaps(pattern)]
+    for _ in range(2):  # one metre per second for one second
+        patterns += [one(pattern, gap) for pattern in patterns for gap in gaps(pattern)]
     little = re.compile(r"\b\w{1,3} $" if speech(language).joined else "$")
     return any(
         re.search(
