@@ -35,6 +35,10 @@ class Naming:
         if text in self.relations:
             return self.relations[text]
         words = text.split()
+        for length in range(len(words) - 1, 0, -1):
+            relation = self.relations.get(" ".join(words[:length]))
+            if relation is not None:
+                return f"{relation} {self.called(' '.join(words[length:]))}"
         for known in (self.names, self.looks):
             for length in range(len(words), 0, -1):
                 for start in range(len(words) - length + 1):

@@ -249,8 +249,8 @@ def mods(d: Discourse, node: Node) -> list[Where | str]:
 def descriptor(d: Discourse, node: Node) -> str:
     """What stands after a noun and tells it from others: "waving", "with a red shirt"."""
     form: str = node.production.fixed.get("form", "{what}")
-    part = node.parts.get("what")
-    return form.format(what="" if part is None else d.described_by(part))
+    words = {name: d.described_by(part) for name, part in node.parts.items()}
+    return form.format_map({"what": "", **words})
 
 
 @meaning("attributes")

@@ -285,6 +285,8 @@ def ask_to(d: Discourse, node: Node) -> Steps:
     """ "ask them to wait" -> "Please wait."."""
     part = node.parts.get("text")
     text = turn_to_you(d, part.start, part.end) if part is not None else ""
+    if "wished" in node.parts:  # "qu'elle vienne ici"
+        text = f"{d.get(node, 'wished')} {text}".strip()
     verb = node.parts.get("verb")
     if verb is not None:  # "hier zu warten": the verb stands last
         last = verb.value if isinstance(verb, Leaf) and verb.value else None

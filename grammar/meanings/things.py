@@ -10,6 +10,8 @@ from grammar.meanings.finding import found, go, if_missing, look_for, meet, noun
 from grammar.meanings.nouns import described, is_me, kind_places, sought, thing_it
 from grammar.meanings.registry import meaning
 from grammar.meanings.remarks import known_to_be
+from grammar.meanings.reports import Report
+from grammar.meanings.speaking import sentence_form
 from grammar.plan import Call, ForEach, Items, Recall, Text, Value
 
 
@@ -180,4 +182,6 @@ def statement(d: Discourse, node: Node) -> Steps:
         d.with_person = None
     else:
         d.thing, d.thing_last = thing, True
+    said = sentence_form(d.words(node.start, node.end))
+    d.report, d.report_step = Report("only", Text(said), about_here=False), None
     return []
