@@ -87,7 +87,17 @@ def claim_of(d: Discourse, node: Node, condition: Condition, met: Meeting | None
         return None
     if node.production.fixed.get("turned") or node.production.fixed.get("unless"):
         return found_claim(d, condition, met)
-    return Call("say", {"text": Text(sentence_form(direct_clause(d, part.start, part.end)))})
+    end = part.end
+    while d.tokens[end - 1].kind == "mark":
+        end -= 1
+    clause = as_fact(d, direct_clause(d, part.start, end))
+    return Call("say", {"text": Text(sentence_form(clause))})
+
+
+def as_fact(d: Discourse, clause: str) -> str:
+    """What was waited for, in the words for what is so: "soit sorti" -> "est sorti"."""
+    facts: dict[str, str] = d.language.speech.get("indicative", {})
+    return " ".join(facts.get(word, word) for word in clause.split(" "))
 
 
 def what_it_means(part: Leaf | Node) -> str:

@@ -13,6 +13,7 @@ from typing import Any, Final
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.meanings.finding import speak_to
+from grammar.meanings.nouns import person_me
 from grammar.meanings.questions import base_form, turn_to_you
 from grammar.meanings.registry import meaning
 from grammar.meanings.speaking import sentence_form
@@ -24,12 +25,22 @@ from grammar.wordorder import direct_clause
 CHANGED: Final = "\0"
 """Marks a word of a message that stands in the place of another, until the words are joined."""
 
+NOBODY_ELSE: Final[dict[str, Any]] = {
+    "objects": {},
+    "possessives": {},
+    "reflexives": {},
+    "impersonal": (),
+}
+"""What is only asked of words that may speak of a third person."""
+
 
 @meaning("say_that")
 def say_that(d: Discourse, node: Node) -> Steps:
     """ "tell her that lunch is ready" -> "Lunch is ready."; to somebody, "they" becomes "you"."""
     part = node.parts["text"]
     person: Thing | None = d.get(node, "person_ref")
+    if node.production.fixed.get("to_me"):
+        person = person_me(d, node)
     if isinstance(part, Leaf) and part.slot == "quote":
         text = str(part.value)
     elif node.production.fixed.get("to_you"):
@@ -48,8 +59,10 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
     data = d.language.speech.get("addressing")
     if not data:
         return d.words(start, end)
-    if person is None or person.me:
+    if person is None or (person.me and "speaker" not in data):
         return _joined(d.words(start, end), data)
+    if person.me:  # "remind me that I have an appointment": "I" is who will hear it
+        data = {**data, **NOBODY_ELSE, **data["speaker"]}
     pieces: list[str] = []
     subject = False
     for at, original, space in _written(d, start, end):
@@ -58,7 +71,8 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
         for number, word in enumerate(tokens):
             if subject and word not in data["between"]:
                 spelled = d.tokens[at + number].spelled or word
-                changed[number] = word if word in data["unchanged"] else base_form(d, spelled)
+                turned = data.get("verbs", {}).get(word) or base_form(d, spelled)
+                changed[number] = word if word in data["unchanged"] else turned
                 subject = False
             clitic = at > start and d.tokens[at - 1].norm in data.get("subjects_before", ())
             reflexive = data.get("reflexives", {}).get(word) if subject else None
@@ -70,7 +84,8 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
             noun = not clitic and _noun_follows(d, at + 1, end, data)
             possessed = word in data["possessives"] and noun
             impersonal = _begins(d, at, end, data.get("impersonal", ()))
-            if you and not impersonal and not _of_another(d, start, at, possessed, data):
+            another = not person.me and _of_another(d, start, at, possessed, data)
+            if you and not impersonal and not another:
                 changed[number] = data["possessives"][word] if possessed else you
                 subject = subject or word in data["subjects"]
         pieces.append(space + (original if changed == tokens else CHANGED + " ".join(changed)))

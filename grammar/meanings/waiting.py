@@ -5,11 +5,15 @@ from __future__ import annotations
 from typing import Final
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, Steps
+from grammar.discourse import Discourse, Steps, Thing
 from grammar.inference import takes_time
-from grammar.meanings.branches import meet_there
+from grammar.meanings.branches import claim_of, meet_there
 from grammar.meanings.conditions import condition_of, negated
+from grammar.meanings.finding import speak_to
+from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
+from grammar.meanings.reports import known_words
+from grammar.meanings.surveys import moved
 from grammar.plan import Ask, Call, Compare, Condition, Forever, Holds, Number, Text, While
 
 LOOK_EVERY: Final = 10
@@ -31,6 +35,20 @@ def waiting(d: Discourse, node: Node) -> Steps:
     before, condition = condition_of(d, node)
     meet_there(d, d.met)
     return [*before, *wait_until(condition)]
+
+
+@meaning("tell_when")
+def tell_when(d: Discourse, node: Node) -> Steps:
+    """ "as soon as Bob is here, tell me": wait for it, then say that it is so."""
+    before_it, condition = condition_of(d, node)
+    claim = claim_of(d, node, condition, d.met)
+    meet_there(d, d.met)
+    person: Thing = d.get(node, "person_ref")
+    waiting = [*before_it, *wait_until(condition)]
+    told = speak_to(d, person, known_words(d) if claim is None else [claim])
+    if is_me(person) and moved(waiting):
+        return [*waiting, Call("goto", {"place": d.start()}), *told]
+    return [*waiting, *told]
 
 
 def wait_until(condition: Condition) -> Steps:
