@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from grammar.chart import Leaf, Node
+from grammar.freetext import weighty_words
 from grammar.language import Language
 from grammar.lexicon import Lexicon, Name, Question
 from grammar.plan import Plan
@@ -20,6 +21,7 @@ from grammar.tokens import Token
 
 NAMES: Final = frozenset({"noun", "object", "person", "place", "furniture"})
 TEXTS: Final = frozenset({"text", "word", "verb", "quote"})
+FREE: Final = frozenset({"text"})
 NO_PART: Final = frozenset(
     {"corrected", "place_corrected", "statement", "refused"}
     | {"remark", "remark_name", "remark_where"}  # kept word for word as background
@@ -61,6 +63,45 @@ def left_out(
             if token.kind == "word" and token.norm not in silent and not forms & known:
                 missing.append(token.norm)
     return missing
+
+
+def unspoken(tree: Node, tokens: tuple[Token, ...], plan: Plan, language: Language) -> list[str]:
+    """The words of free text that the plan leaves out: "no" of "choose between no tea and coffee".
+    Verbs may change their form on the way; what turns the sense of a text may not be lost."""
+    known = {word for text in _texts(plan) for word in language.tokens_of(text)}
+    stems = {_stem(word) for word in known}
+    parts = [word for word in known if len(word) > ALIKE]
+    weighty = weighty_words(language)
+    silent = language.closed | {word for filler in language.fillers for word in filler}
+    return [
+        token.norm
+        for leaf in _leaves(tree, FREE)
+        for token in tokens[leaf.start : leaf.end]
+        if token.kind == "word"
+        and token.norm not in known
+        and (
+            token.norm in weighty
+            or not (
+                token.norm in silent
+                or _stem(token.norm) in stems
+                or any(part in token.norm for part in parts)  # "ankommt": "kommt ... an"
+            )
+        )
+    ]
+
+
+def unheeded(tree: Node, tokens: tuple[Token, ...], language: Language) -> list[str]:
+    """Words for how something is to be done that change nothing ("quickly"), as they were said:
+    no name and no text has them."""
+    taken = {at for leaf in _leaves(tree, NAMES | TEXTS) for at in range(leaf.start, leaf.end)}
+    words = [token.norm for token in tokens]
+    found: dict[int, int] = {}
+    for way in map(language.tokens_of, language.speech.get("unheeded", ())):
+        for at in range(len(words) - len(way) + 1):
+            if tuple(words[at : at + len(way)]) == way and at not in taken:
+                found[at] = max(len(way), found.get(at, 0))
+    spelled = [token.spelled or token.norm for token in tokens]
+    return [" ".join(spelled[at : at + length]) for at, length in sorted(found.items())]
 
 
 def _stem(word: str) -> str:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 from grammar.chart import CORRECTION, Corrected, Match, Slot
+from grammar.freetext import Judge
 from grammar.language import Language
 from grammar.lexicon import Lexicon, Name
 from grammar.tokens import COLON, COMMA, STOP, Token
@@ -170,7 +171,11 @@ class Slots:
         self.tokens = tokens
         self.corrections = corrections
         self._command_words = _command_words(self.language)
+        self._joins = frozenset(self.language.speech.get("joins", ()))
+        self._judge = Judge(tokens, self.language)
+        self._adverb = re.compile(self.language.speech.get("adverbs", r"(?!)")).search
         self._noun_joins = frozenset(self.language.speech.get("noun_joins", ()))
+        self._spoken_fillers = frozenset(self.language.speech.get("spoken_fillers", ()))
         self._fillers = {word for filler in self.language.fillers for word in filler}
         clause = self.language.speech.get("clause", {})
         no_verbs = ("pronouns", "determiners", "prepositions", "and", "subordinating", "reflexive")
@@ -314,7 +319,10 @@ class Slots:
         return []
 
     def _word(self, at: int) -> list[Match]:
+        """One word that is no article and no pronoun: a verb."""
         if at < len(self.tokens) and self.tokens[at].kind == "word":
+            if self.tokens[at].norm in self._judge.words.objects:
+                return []
             return [(at + 1, FREE_WORD, self.tokens[at].norm)]
         return []
 
@@ -355,7 +363,8 @@ class Slots:
             if position > at and (self._begins_command(position) or self._condition(position)):
                 cost += SWALLOWED_COMMAND
             if token.norm in self._fillers:  # part of the text only if more text follows
-                matches.append((position + 1, cost + 0.3, None))
+                ends = 0.0 if token.norm in self._spoken_fillers else 0.3
+                matches.append((position + 1, cost + ends, None))
                 continue
             cost += 0.0 if token.kind == "quote" else FREE_WORD
             matches.append((position + 1, cost, None))
@@ -395,10 +404,12 @@ class Slots:
         return self.tokens[at].norm in begins and (before.norm in joins or before.kind == "mark")
 
     def _begins_command(self, at: int) -> bool:
-        if self.tokens[at].norm not in self._command_words:
-            return False
         before = self.tokens[at - 1].norm
-        return before in (COMMA, STOP, COLON) or before in self.language.speech.get("joins", ())
+        if before not in (COMMA, STOP, COLON) and before not in self._joins:
+            return False
+        if self.tokens[at].norm in self._command_words:
+            return not self._judge.wished(at)
+        return self._judge.order(at, len(self.tokens))
 
     def _noun(self, at: int) -> list[Match]:
         """Any noun with its adjectives: words that are no function words."""
@@ -411,7 +422,7 @@ class Slots:
                 break
             if token.value is not None and position == at:
                 break  # a number is no noun
-            if self._noun_over(at, position):
+            if self._noun_over(at, position) or self._adverb(token.norm):
                 break
             length = position + 1 - at
             matches.append((position + 1, FREE_WORD * length, None))

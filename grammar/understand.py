@@ -13,14 +13,16 @@ import functools
 from dataclasses import dataclass, field, replace
 from typing import Final, Literal
 
-from grammar.accounts import left_out
+from grammar.accounts import left_out, unheeded, unspoken
 from grammar.chart import Chart, Node, Slot, TooMuch
 from grammar.discourse import Ambiguous, Discourse, NotUnderstood, Thing
+from grammar.freetext import Doubt, doubtful, words_for
 from grammar.language import Language, load_language
 from grammar.lexicon import Lexicon
 from grammar.naming import joined_up, place_called
 from grammar.plan import Plan, Text, Value
 from grammar.readings import Read, read
+from grammar.refusals import forbidden, no_thing, signs, why_not
 from grammar.requests import Request
 from grammar.slots import Names, Slots, names_of
 from grammar.tidy import Unbound, scoped, without_unused
@@ -151,6 +153,9 @@ class Reader:
     def understand(self) -> Understanding:
         if not self.tokens:
             return rejected(self.text, self.language.phrase("empty"), self.context)
+        no = forbidden(self.tokens, self.language)
+        if no is not None:
+            return rejected(self.text, self.language.phrase(no), self.context)
         chart = self.chart()
         try:
             tree = chart.best("utterance")
@@ -196,16 +201,25 @@ class Reader:
                 Plan(
                     (*discourse.prologue(), *steps),
                     self.language.code,
-                    tuple(discourse.background),
+                    (*discourse.background, *unheeded(tree, self.tokens, self.language)),
                 )
             )
         except Unbound:
             return rejected(self.text, self.language.phrase("too_complicated"), self.context)
         lost = left_out(tree, self.tokens, plan, self.language, self.lexicon)
+        lost += unspoken(tree, self.tokens, plan, self.language)
         if lost:
             words = " ".join(lost)
             message = self.language.phrase("not_understood", part=words)
             return replace(rejected(self.text, message, self.context), unclear=words)
+        doubt = doubtful(tree, self.tokens, self.language)
+        if doubt is not None:
+            return self._doubted(doubt)
+        impossible = no_thing(plan, self.lexicon, self.language)
+        if impossible is not None:
+            phrase, thing = impossible
+            message = self.language.phrase(phrase, thing=thing)
+            return replace(rejected(self.text, message, self.context), unclear=thing)
         plan = without_unused(plan)
         return Understanding(
             self.text,
@@ -315,6 +329,7 @@ class Reader:
         """What unknown words may be misspellings of."""
         corrections: dict[int, tuple[str, ...]] = {}
         known = self.language.words | self.names.words | self.language.closed
+        known |= signs(self.language)
         for at, token in enumerate(self.tokens):
             if token.kind != "word" or token.norm in known or len(token.norm) < SHORTEST_CORRECTED:
                 continue
@@ -360,6 +375,27 @@ class Reader:
             f"{before} " if before else "",
             reason.message,
             asked=False,
+        )
+
+    def _doubted(self, doubt: Doubt) -> Understanding:
+        """Words that may be meant to be said, or may not: quotation marks would tell."""
+        part = self.words(doubt.start, doubt.end)
+        suggestions: list[str] = []
+        first, last = doubt.text
+        if doubt.quoted and '"' not in self.text:
+            if first > 0 and self.tokens[first - 1].norm in words_for(self.language).that:
+                first -= 1
+            said = self.words(*doubt.text)
+            quoted = self.with_words(first, last, f'"{said}"')
+            if understand(quoted, self.lexicon, self.language.code).status == "ok":
+                suggestions.append(quoted)
+        return Understanding(
+            self.text,
+            "rejected",
+            message=self.language.phrase(doubt.phrase, part=part),
+            suggestions=suggestions,
+            unclear=part,
+            context=self.context,
         )
 
     def _listed(self, names: list[str]) -> str:
@@ -416,11 +452,7 @@ class Reader:
         """Which part was not understood; of a sentence that is none of its business, why."""
         if part:
             return self.language.phrase("not_understood", part=part)
-        words = {token.norm for token in self.tokens}
-        for phrase, signs in self.language.speech.get("refusals", {}).items():
-            if any(words.issuperset(self.language.tokens_of(sign)) for sign in signs):
-                return self.language.phrase(phrase)
-        return self.language.phrase("not_understood_at_all")
+        return self.language.phrase(why_not(self.tokens, self.language))
 
     def _begun(self, chart: Chart) -> Node | None:
         """The longest beginning that is a sentence in itself."""

@@ -1,0 +1,365 @@
+"""What free text may be: words to speak or to ask, and nothing that the robot was told to do.
+
+A slot for free text takes any words, so that "say good morning and peel an orange" could be read as
+six words to speak. A text that goes on over what sounds like an order ("and peel an orange"), asks
+for something the robot would have to find out ("who said yes", "the total"), speaks of the robot's
+way back ("when you are back") or of how something is done ("in ten minutes", "without shouting") is
+doubted: the sentence is then refused with these words. A quotation is never doubted.
+
+The words this goes by are the language's own: `free_text` in its data.
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+from grammar.chart import Leaf, Node
+from grammar.language import Language
+from grammar.tokens import Token
+
+SPOKEN: Final = frozenset({"say", "say_that"})
+REQUESTED: Final = frozenset({"ask_to"})
+ANSWERS: Final = frozenset({"option_words"})
+QUIET: Final = frozenset({"remark", "remark_where", "remark_name", "refused"})
+"""Meanings whose text asks for nothing."""
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """Some tokens of a text that may not be meant as text."""
+
+    start: int
+    end: int
+    phrase: str
+    """What the person is told (`Language.phrases`)."""
+    quoted: bool
+    """Whether quotation marks around the whole text would settle it."""
+    text: tuple[int, int]
+    """The tokens of the whole text."""
+
+
+Doubting = Callable[[int, str], Doubt]
+"""Doubts a text from a token on, with a phrase."""
+
+
+@dataclass(frozen=True)
+class Words:
+    """The `free_text` of a language."""
+
+    verbs: frozenset[str]
+    """Forms that an order begins with: "peel", "bezahl"."""
+    verb_forms: frozenset[str]
+    """Forms that make a clause: "peels", "peeled"."""
+    nouns_too: frozenset[str]
+    """Of the verbs: those that are nouns as well ("coffee and water")."""
+    finite: frozenset[str]
+    finite_pattern: re.Pattern[str]
+    """What words that make a clause look like, where they are too many to list."""
+    subjects: frozenset[str]
+    """Pronouns that are followed by a verb that looks like an order: "I love him and miss him"."""
+    modals: frozenset[str]
+    to: frozenset[str]
+    """Words before an infinitive."""
+    conditions: frozenset[str]
+    """Words that a condition begins with: "and if so, ..."""
+    settled: frozenset[str]
+    """Answers that are complete in themselves: "yes", "no"."""
+    objects: frozenset[str]
+    """Articles and pronouns: what follows "and peel"."""
+    addressed: frozenset[str]
+    """Pronouns that cannot be the one who is asked to do it: "to leave and mop up behind them"."""
+    no_order: re.Pattern[str]
+    """Words that are no order even before an article: "and wants a ..."""
+    between: frozenset[str]
+    """What may stand between "and" and an order: "also", "then"."""
+    asking: frozenset[str]
+    """Words that an indirect question begins with: "who", "how many"."""
+    exclaimed: tuple[tuple[str, ...], ...]
+    """What begins so and asks nothing: "what a lovely day"."""
+    addressing: frozenset[str]
+    """Words that turn a question to the listener: "you"."""
+    definite: frozenset[str]
+    """Words that speak of something known: "the total", "his mind"."""
+    that: frozenset[str]
+    messages: tuple[tuple[str, ...], ...]
+    """How a message begins that is no whole sentence: "happy birthday"."""
+    wishes: tuple[tuple[str, ...], ...]
+    """What sounds like an order and is none: "sleep well", "welcome to"."""
+    greetings: tuple[tuple[str, ...], ...]
+    """What is complete in itself, so that "to ...", "in ..." behind it are not spoken."""
+    not_greeting: frozenset[str]
+    """What goes with a greeting as little as with an order: "to", "in", "at"."""
+    manners: frozenset[str]
+    """Words that tell how, when or whether something is done: "without", "unless"."""
+    back: tuple[tuple[str, ...], ...]
+    """Speaking of the robot's return: "when you are back"."""
+    clauses: bool
+    """Whether a message that does not begin with "that" has to be a clause."""
+
+
+@functools.cache
+def words_for(language: Language) -> Words:
+    """The words that the texts of a language are judged by."""
+    data: Mapping[str, Any] = language.speech.get("free_text", {})
+
+    def single(name: str) -> frozenset[str]:
+        return frozenset(word for entry in data.get(name, ()) for word in _tokens(entry, language))
+
+    def phrases(name: str) -> tuple[tuple[str, ...], ...]:
+        return tuple(language.tokens_of(entry) for entry in data.get(name, ()))
+
+    def changed(words: frozenset[str], name: str) -> frozenset[str]:
+        return frozenset(
+            re.sub(pattern, ending, word)
+            for word in words
+            for pattern, *endings in data.get(name, ())
+            for ending in endings
+            if re.search(pattern, word)
+        )
+
+    verbs = single("verbs")
+    forms = changed(verbs, "verb_forms")
+    if "order_forms" in data:
+        verbs = changed(verbs, "order_forms") | single("orders")
+    return Words(
+        verbs=verbs,
+        verb_forms=verbs | forms | single("past"),
+        nouns_too=single("nouns_too"),
+        finite=single("finite"),
+        finite_pattern=re.compile(data.get("finite_pattern", r"(?!)")),
+        subjects=single("subjects"),
+        modals=single("modals"),
+        to=single("to"),
+        conditions=single("conditions"),
+        settled=single("settled"),
+        objects=single("objects"),
+        addressed=single("addressed"),
+        no_order=re.compile(data.get("no_order", r"(?!)")),
+        between=single("between"),
+        asking=single("asking"),
+        exclaimed=phrases("exclaimed"),
+        addressing=single("addressing"),
+        definite=single("definite"),
+        that=single("that"),
+        messages=phrases("messages"),
+        wishes=phrases("wishes"),
+        greetings=phrases("greetings"),
+        not_greeting=single("not_greeting"),
+        manners=single("manners"),
+        back=phrases("back"),
+        clauses=bool(data.get("clauses", False)),
+    )
+
+
+def weighty_words(language: Language) -> frozenset[str]:
+    """Words that turn the sense of a text: "no", "only", "without"."""
+    negations = language.speech.get("free_text", {}).get("negations", ())
+    return words_for(language).manners | frozenset(map(str, negations))
+
+
+def _tokens(entry: str, language: Language) -> Iterator[str]:
+    for word in str(entry).split():
+        yield from language.tokens_of(word)
+
+
+def doubtful(tree: Node, tokens: tuple[Token, ...], language: Language) -> Doubt | None:
+    """The first text of a reading that may not be meant as text."""
+    judge = Judge(tokens, language)
+    for node, leaf in _texts(tree):
+        doubt = judge.doubt(node, leaf)
+        if doubt is not None:
+            return doubt
+    return None
+
+
+def _texts(node: Node) -> Iterator[tuple[Node, Leaf]]:
+    for part in node.parts.values():
+        if isinstance(part, Node):
+            if part.means not in QUIET:
+                yield from _texts(part)
+        elif part.slot == "text" and node.means not in QUIET:
+            yield node, part
+
+
+class Judge:
+    """Judges the texts of one sentence."""
+
+    def __init__(self, tokens: Sequence[Token], language: Language) -> None:
+        self.tokens = tokens
+        self.language = language
+        self.words = words_for(language)
+        self.joins = {*language.speech.get("joins", ())}
+
+    def norms(self, start: int, end: int) -> list[str]:
+        return [token.norm for token in self.tokens[start:end]]
+
+    def doubt(self, node: Node, leaf: Leaf) -> Doubt | None:
+        start, end = leaf.start, leaf.end
+        spoken = node.means in SPOKEN
+        clause = start > 0 and self.tokens[start - 1].norm in self.words.that
+
+        def doubt(first: int, phrase: str) -> Doubt:
+            return Doubt(first, end, phrase if spoken else "not_understood", spoken, (start, end))
+
+        if self.tokens[start].kind == "quote":
+            return doubt(start + 1, "said_or_done") if end > start + 1 else None
+        greeting = self.greeting(start) if spoken else 0
+        for at in range(start + 1, end):
+            if not self.joined(at, start):
+                continue
+            if not spoken and self.tokens[at].norm in self.words.conditions:
+                return doubt(at - 1, "not_understood")
+            if self.order(at, end, strict=greeting > 0):
+                if node.means in REQUESTED:
+                    if self.about_addressed(at, end):
+                        return doubt(at - 1, "said_or_done")
+                elif not self.licensed(node, start, at):
+                    return doubt(at - 1, "said_or_done")
+        for at in range(start, end):
+            if any(tuple(self.norms(at, at + len(way))) == way for way in self.words.back):
+                return doubt(at, "said_or_done")
+        if node.means in ANSWERS:
+            return self.answer(start, end, doubt)
+        if not spoken or clause or self.is_clause(start, end):
+            return None
+        if self.asks(start, end):
+            return doubt(start, "cannot_say")
+        return self.fragment(node, start, end, doubt)
+
+    def fragment(self, node: Node, start: int, end: int, doubt: Doubting) -> Doubt | None:
+        """What is to be said and is no sentence: "good morning", "the total", "hello backwards"."""
+        words = self.words
+        if self.begins(words.exclaimed, start):
+            return None
+        first = self.tokens[start].norm
+        if first in words.definite:
+            return doubt(start, "cannot_say")
+        greeting = self.greeting(start)
+        behind = start + greeting
+        if greeting and behind < end and self.tokens[behind].norm in words.not_greeting:
+            return doubt(behind, "said_or_done")
+        for at in range(max(behind, start + 1), end):
+            if self.tokens[at].norm in words.manners:
+                return doubt(at, "said_or_done")
+        whole = greeting or first in words.verbs or self.begins(words.messages, start)
+        if words.clauses and node.means == "say_that" and not whole:
+            return doubt(start, "cannot_say")
+        return None
+
+    def answer(self, start: int, end: int, doubt: Doubting) -> Doubt | None:
+        """An answer that somebody gave: "yes", "coffee"; not "yes and what share that is"."""
+        words = self.words
+        others = self.joins | words.asking | words.manners
+        if self.tokens[start].norm in words.settled and end > start + 1:
+            return doubt(start + 1, "not_understood")
+        for at in range(start, end):
+            if self.tokens[at].norm in others:
+                return doubt(at, "not_understood")
+        return None
+
+    def greeting(self, start: int) -> int:
+        """How many tokens of a greeting begin here."""
+        return max(
+            (len(each) for each in self.words.greetings if self.is_at(each, start)), default=0
+        )
+
+    # --- orders
+
+    def joined(self, at: int, start: int) -> bool:
+        """Whether "and", a comma or the like stands before a token."""
+        before = self.tokens[at - 1]
+        return at > start and (before.kind == "mark" or before.norm in self.joins)
+
+    def order(self, at: int, end: int, *, strict: bool = False) -> bool:
+        """Whether what begins here sounds like an order to the robot; `strict` where no noun is
+        to be expected: "goodbye and wave"."""
+        words = self.words
+        while at < end and self.tokens[at].norm in words.between:
+            at += 1
+        if at >= end or self.tokens[at].kind != "word" or self.wished(at):
+            return False
+        verb = self.tokens[at]
+        after = self.tokens[at + 1].norm if at + 1 < end else None
+        if verb.norm in words.verbs:
+            if after in words.finite:
+                return False  # "help is on the way"
+            noun = verb.norm in words.nouns_too and not strict
+            return after in words.objects | words.asking or not noun
+        if after not in words.objects or verb.norm in self.language.closed | words.finite:
+            return False
+        noun = verb.capital and bool(self.language.speech.get("capital_nouns"))
+        return not noun and not words.no_order.search(verb.norm)
+
+    def wished(self, at: int) -> bool:
+        """Whether a wish begins here, which is spoken and not obeyed."""
+        return self.begins(self.words.wishes, at)
+
+    def about_addressed(self, at: int, end: int) -> bool:
+        """Whether those who are asked to do something are spoken of as others: "behind them"."""
+        return any(token.norm in self.words.addressed for token in self.tokens[at:end])
+
+    def licensed(self, node: Node, start: int, at: int) -> bool:
+        """Whether the verb before is of the same form, so that "and wait" goes on with it: "you can
+        sit down and wait", "we love you and miss you"."""
+        words = self.words
+        little = self.language.closed | self.joins
+        said = [norm for norm in self.norms(start, at) if norm not in words.between]
+        if "aux" in node.parts:
+            aux = node.parts["aux"]
+            said = [*self.norms(aux.start, aux.end), *said]
+        if said and said[0] in words.verbs - words.nouns_too:
+            return True
+        for number, word in enumerate(said[:-1]):
+            following = said[number + 1 :]
+            if word in words.modals and not words.modals & set(following):
+                main = next(
+                    (each for each in following if each.isalpha() and each not in little), None
+                )
+                if main and main not in words.finite and "be" not in said:
+                    return True
+            if word in words.to and following[0] in words.verbs:
+                return True
+        return False
+
+    # --- sentences, questions
+
+    def is_clause(self, start: int, end: int) -> bool:
+        """Whether the text has a subject and a verb: "the doctor comes at nine"."""
+        words = self.words
+        if self.tokens[start].norm in words.asking | words.manners | words.not_greeting:
+            return False
+        for at in range(start + 1, end):
+            norm = self.tokens[at].norm
+            if norm == "'s":
+                after = self.tokens[at + 1].norm if at + 1 < end else ""
+                if after in self.language.closed or re.search(r"ing$|ed$|^ready$", after):
+                    return True
+                continue
+            if norm in words.finite or words.finite_pattern.search(norm):
+                return True
+            before = self.tokens[at - 1]
+            after_noun = before.kind == "word" and before.norm not in words.objects | self.joins
+            if before.norm in words.subjects and norm in words.verb_forms:
+                return True
+            if after_noun and norm in words.verb_forms - words.nouns_too:
+                return True
+        return False
+
+    def asks(self, start: int, end: int) -> bool:
+        """Whether it begins an indirect question, whose answer the robot would have to find."""
+        words = self.words
+        if self.tokens[start].norm not in words.asking or self.begins(words.exclaimed, start):
+            return False
+        mark = self.tokens[end].kind == "mark" if end < len(self.tokens) else False
+        direct = start + 1 < end and self.tokens[start + 1].norm in words.finite
+        return not (direct and (mark or words.addressing & set(self.norms(start, end))))
+
+    def begins(self, phrases: Sequence[tuple[str, ...]], at: int) -> bool:
+        return any(self.is_at(each, at) for each in phrases)
+
+    def is_at(self, phrase: tuple[str, ...], at: int) -> bool:
+        return tuple(self.norms(at, at + len(phrase))) == phrase

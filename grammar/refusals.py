@@ -1,0 +1,80 @@
+"""What the robot must not or cannot do, by the words that give it away: `refusals`, `forbidden`
+and `no_things` in a language's data."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+from grammar.language import Language
+from grammar.lexicon import Lexicon
+from grammar.plan import Ask, Call, Plan, Text
+from grammar.tidy import nodes
+from grammar.tokens import Token
+
+ENDING: Final = 2
+"""Letters by which a plural is longer."""
+IN_HAND: Final = frozenset({"grab", "give", "put"})
+SEEN: Final = frozenset({"find", "sees", "count", "wait_for", "describe"})
+
+
+def forbidden(tokens: Sequence[Token], language: Language) -> str | None:
+    """The phrase for a sentence that is refused however well it was understood: words that stand
+    for harm or for the computer wherever they are said, other than in quotation marks."""
+    words = [token.norm for token in tokens]
+    for phrase, signs in language.speech.get("forbidden", {}).items():
+        for sign in map(language.tokens_of, signs):
+            if any(tuple(words[at : at + len(sign)]) == sign for at in range(len(words))):
+                return str(phrase)
+    return None
+
+
+def no_thing(plan: Plan, lexicon: Lexicon, language: Language) -> tuple[str, str] | None:
+    """The phrase for a plan that takes in the hand what is no thing ("take her temperature"), or
+    looks for what is in no house ("wait for the full moon"), and the name of it. What the world
+    lists is a thing, whatever it is called."""
+    known = {each.name for each in lexicon.objects}
+    for step in nodes(plan.steps):
+        if not isinstance(step, Call | Ask):
+            continue
+        thing = step.arguments.get("thing")
+        if not isinstance(thing, Text) or thing.value in known:
+            continue
+        listed = language.speech.get("no_things", {}) if step.method in IN_HAND else {}
+        if step.method in SEEN:
+            listed = {"out_of_sight": language.speech.get("out_of_sight", ())}
+        words = language.tokens_of(thing.value)
+        for phrase, names in listed.items():
+            if any(_headed(words, language.tokens_of(name), language) for name in names):
+                return str(phrase), thing.value
+    return None
+
+
+def _headed(words: tuple[str, ...], name: tuple[str, ...], language: Language) -> bool:
+    """Whether a noun phrase speaks of this: "blood pressure of Bob" of blood pressure."""
+    ends = language.closed | set(language.speech.get("beside", ()))
+    head = next((at for at, word in enumerate(words) if at and word in ends), len(words))
+    first = 0 if language.speech.get("head_first") else max(0, head - len(name))
+    return len(words) >= first + len(name) and all(
+        word.startswith(each) and len(word) - len(each) <= ENDING
+        for word, each in zip(words[first:], name, strict=False)
+    )
+
+
+def why_not(tokens: Sequence[Token], language: Language) -> str:
+    """The phrase for a sentence of which nothing was understood: why it is none of its business."""
+    words = {token.norm for token in tokens}
+    for phrase, signs in language.speech.get("refusals", {}).items():
+        if any(words.issuperset(language.tokens_of(sign)) for sign in signs):
+            return str(phrase)
+    return "not_understood_at_all"
+
+
+def signs(language: Language) -> frozenset[str]:
+    """All words that give a refusal away; they are never misspellings of other words."""
+    return frozenset(
+        word
+        for each in language.speech.get("refusals", {}).values()
+        for sign in each
+        for word in language.tokens_of(sign)
+    )
