@@ -38,13 +38,12 @@ def test_what_is_no_command_moves_no_robot(language: str) -> None:
         ("say good morning and peel an orange", "and peel an orange"),
         ("say that visiting hours are over and throw everybody out", "and throw everybody out"),
         ("tell Bob to leave and mop up behind him", "and mop up behind him"),
-        ("ask Bob if he wants coffee and brew it for him", "and brew it for him"),
         ('say "welcome" and hum a tune', "and hum a tune"),
         ("say hello in the gym", "in the gym"),
         ("say hello backwards", "backwards"),
         ("tell Bob the gist", "the gist"),
-        ("tell Bob who broke it", "who broke it"),
-        ("say the sum when you are back", "when you are back"),
+        ("say where they hid it", "where they hid it"),
+        ("say lunch when you are back", "when you are back"),
         ("remind Alice of her break", "of her break"),
         ("show the text please wait here and paint the wall", "and paint the wall"),
     ],
@@ -53,6 +52,19 @@ def test_what_may_not_be_meant_as_text_is_named(sentence: str, doubted: str) -> 
     understood = understand(sentence, WARD)
     assert understood.status == "rejected", understood.plan and program(understood.plan)
     assert understood.unclear == doubted
+
+
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        "ask Bob if he wants coffee and brew it for him",
+        "tell Bob who broke it",
+        "say the sum when you are back",
+    ],
+)
+def test_what_would_have_to_be_found_out_is_not_said(sentence: str) -> None:
+    understood = understand(sentence, WARD)
+    assert understood.plan is None, program(understood.plan)
 
 
 @pytest.mark.parametrize(
