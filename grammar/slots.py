@@ -424,6 +424,8 @@ class Slots:
                 break  # a number is no noun
             if self._noun_over(at, position) or self._adverb(token.norm):
                 break
+            if position > at and self._named("person", position):
+                break
             length = position + 1 - at
             matches.append((position + 1, FREE_WORD * length, None))
         named = {end for slot in ("person", "place") for end in self._named(slot, at)}

@@ -60,7 +60,9 @@ TOGETHER: Final = frozenset(
     }
 )  # fmt: skip
 """Commands that know themselves what to do with several people."""
-ALWAYS: Final = frozenset({"each_place", "person_either", "place_any", "place_where"})
+ALWAYS: Final = frozenset(
+    {"each_place", "person_either", "place_any", "place_where", "thing_either", "things"}
+)
 """Noun phrases that no command knows itself what to do with."""
 CLAUSES: Final = frozenset({"command", "closing", "clause", "steps", "body", "whole"})
 """Rules in which commands of their own stand."""
