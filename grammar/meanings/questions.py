@@ -10,14 +10,14 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where, capital
 from grammar.meanings.finding import go, if_found, meet, speak_to, where_sent
 from grammar.meanings.nouns import is_me
+from grammar.meanings.options import MOST_OPTIONS, numbers_offered, options_of, without_little_words
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import Survey
 from grammar.plan import Ask, Call, ForEach, Forever, Items, Number, Recall, Repeat, Text, Value
 from grammar.tidy import nodes
-from grammar.tokens import COLON, COMMA
+from grammar.wordforms import singular
 from grammar.wordorder import parted
 
-MOST_OPTIONS: Final = 20
 LONGEST_OFFERED: Final = 3
 """Words of a thing that somebody is asked about."""
 
@@ -36,6 +36,7 @@ def ask(d: Discourse, node: Node) -> Steps:
 def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
     """Ask those who are there, or somebody who has to be found first."""
     steps: Steps = []
+    person = several_of_a_kind(d, node, person)
     person = where_sent(d, person) if person is not None else None
     several = person is not None and (person.group is not None or person.count is not None)
     everybody = person is not None and person.plural and person.text == ANYONE and not several
@@ -52,6 +53,10 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
     assert isinstance(question, Node)
     text: str = d.build(question)
     options = options_of(d, question)
+    scale = node.parts.get("scale")
+    if scale is not None:  # "ask from one to ten how bad it is"
+        options = numbers_offered(d, scale.start, scale.end)
+        text = f"{text[:-1]}, {d.words(scale.start, scale.end)}{text[-1:]}"
     arguments: dict[str, Value] = {"question": Text(text)}
     name = remember_answer(d, options, "answer")
     if options:
@@ -82,6 +87,20 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
     return [*steps, asked(d, Call("ask", arguments, save_as=name), options, known or who_else)]
 
 
+def several_of_a_kind(d: Discourse, node: Node, person: Thing | None) -> Thing | None:
+    """ "the visitors in the lobby": each of them."""
+    part = node.parts.get("person_ref")
+    if person is None or not isinstance(part, Node) or person.group is not None:
+        return person
+    kind = part.parts.get("kind_of_person")
+    if person.plural or not isinstance(kind, Leaf) or person.value != Text(str(kind.value[0])):
+        return person
+    said = " ".join(d.norms(kind.start, kind.end))
+    if singular(said, d.language) == said:
+        return person
+    return replace(person, value=Text(ANYONE), plural=True)
+
+
 def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -> None:
     """What was asked about is "it" afterwards: a wheelchair that somebody may need, or whichever
     of tea and coffee they chose."""
@@ -90,7 +109,7 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
         return
     if len(options) > 1 and not question.production.fixed.get("where"):
         yes_no = options == (d.language.phrase("yes"), d.language.phrase("no"))
-        start, end = _without_little_words(d, rest.start, rest.end)
+        start, end = without_little_words(d, rest.start, rest.end)
         if not yes_no and d.place != Recall(name):
             d.thing, d.thing_last = Thing(Recall(name)), False
         elif yes_no and 0 < end - start <= LONGEST_OFFERED:
@@ -127,7 +146,7 @@ def question(d: Discourse, node: Node) -> str:
     you = "to_you_who" if "asked" in node.parts else "to_you"
     for name, part in node.parts.items():
         values[name] = turn_to_you(d, part.start, part.end, you)
-    values.setdefault("rest", "")
+    values = {"rest": "", "adverb": "", **values}
     if "tail" in values:
         values["rest"] = f"{values['rest']} {values['tail']}"
     if "verb" in values:
@@ -135,14 +154,17 @@ def question(d: Discourse, node: Node) -> str:
         base = past_base(d, verb) if past else None
         if base is not None:
             form, verb = str(past), base
+        elif base_form(d, verb) != verb:
+            form = str(node.production.fixed.get("third", form))
         as_it_is = node.production.fixed.get("as_it_is", False)
         values["verb"] = verb if as_it_is else base_form(d, verb)
         values["rest"] = f"{values['rest']} {particle}"
+    form = form if values["rest"].strip() else form.replace(" {rest},", ",")
     text = " ".join(form.format_map(values).split())
     for pattern, instead in d.language.speech.get("question_joined", ()):
         text = re.sub(pattern, instead, text)  # "Est-ce que Alice" -> "Est-ce qu'Alice"
     mark = d.language.speech.get("question_mark", "?")
-    return capital(text.replace(" ?", mark).replace(" ,", ","))
+    return capital(text.replace(" ?", mark).replace(" ,", ",").replace(" .", "."))
 
 
 def turn_to_you(d: Discourse, start: int, end: int, words: str = "to_you") -> str:
@@ -157,6 +179,8 @@ def turn_to_you(d: Discourse, start: int, end: int, words: str = "to_you") -> st
         while last < end and d.tokens[last].start < first.end:
             last += 1  # parts of one contraction
         original = d.text[first.start : d.tokens[last - 1].end]
+        if original[:1] in ("'", "’"):  # "he'd": he would
+            original = first.norm
         opened = " ".join(token.norm for token in d.tokens[position:last])
         turned = you.get(first.norm)
         if turned is not None:
@@ -169,7 +193,7 @@ def turn_to_you(d: Discourse, start: int, end: int, words: str = "to_you") -> st
         else:
             pieces.append(original)
         position = last
-    return " ".join(pieces).replace(" \b", "").strip(" ,.?!")
+    return " ".join(pieces).replace(" \b", "").strip(" ,.?!:()")
 
 
 def past_base(d: Discourse, verb: str) -> str | None:
@@ -194,90 +218,6 @@ def base_form(d: Discourse, verb: str) -> str:
         if low.endswith(ending):
             return verb[: len(verb) - len(ending)] + str(base)
     return verb
-
-
-def options_of(d: Discourse, node: Node) -> tuple[str, ...]:
-    """The answers that a question offers: its choices, or yes and no."""
-    fixed = node.production.fixed
-    listed = node.parts.get("options")
-    if listed is not None:
-        return split_options(d, listed.start, listed.end)
-    joins = set(d.language.speech.get("or", ()))
-    rest, tail = node.parts.get("rest"), node.parts.get("tail")
-    if rest is not None and tail is not None and d.tokens[tail.start].norm in joins:
-        later = split_options(d, tail.start, tail.end)
-        words = max(len(each.split()) for each in later) if later else 1
-        start = max(rest.start, rest.end - words)
-        return (*split_options(d, start, rest.end), *later)
-    if rest is not None and joins & set(d.norms(rest.start, rest.end)):
-        start = rest.start
-        if "wh" in node.parts and d.tokens[start - 1].norm != COMMA:
-            start = _end_of_question(d, start, rest.end)
-        return split_options(d, start, rest.end)
-    if fixed.get("yes_no"):
-        return (d.language.phrase("yes"), d.language.phrase("no"))
-    return ()
-
-
-def _end_of_question(d: Discourse, start: int, end: int) -> int:
-    """Where the choices begin in "to drink, coffee, tea or water"."""
-    marks = [at for at in range(start, end) if d.tokens[at].norm in (COMMA, COLON)]
-    if not marks:
-        return start
-    asked = [token for token in d.tokens[start : marks[0]] if token.norm not in d.language.closed]
-    return start if len(asked) > 1 else marks[0] + 1
-
-
-def split_options(d: Discourse, start: int, end: int) -> tuple[str, ...]:
-    """ "to go to radiology or to the pharmacy" -> radiology, pharmacy.
-
-    What stands between the joining words is an option, without the little words before it; of the
-    first, only as many words at its end as the others have. Places go by their names."""
-    joins = (
-        set(d.language.speech.get("or", ())) | set(d.language.speech.get("joins", ())) | {",", ":"}
-    )
-    groups: list[tuple[int, int]] = []
-    first = start
-    for position in range(start, end + 1):
-        if position == end or d.tokens[position].norm in joins:
-            if position > first:
-                groups.append((first, position))
-            first = position + 1
-    stripped = [_without_little_words(d, *group) for group in groups]
-    if not stripped:
-        return ()
-    longest = max(last - begin for begin, last in stripped[1:]) if stripped[1:] else 1
-    options: list[str] = []
-    for number, (begin, last) in enumerate(stripped):
-        place = _place_at_end(d, begin, last)
-        if place:
-            options.append(d.called(place))
-            continue
-        if number == 0 and len(stripped) > 1:
-            begin = max(begin, last - longest)
-            begin, last = _without_little_words(d, begin, last)
-        options.append(d.words(begin, last))
-    return tuple(dict.fromkeys(option for option in options if option))
-
-
-def _without_little_words(d: Discourse, start: int, end: int) -> tuple[int, int]:
-    while start < end - 1 and d.tokens[start].norm in d.language.closed:
-        start += 1
-    return start, end
-
-
-def _place_at_end(d: Discourse, start: int, end: int) -> str | None:
-    """The place whose name the last words are."""
-    from grammar.slots import names_of
-
-    trie = names_of(d.language, d.lexicon).tries.get("place")
-    for begin in range(start, end):
-        node = trie
-        for token in d.tokens[begin:end]:
-            node = node.branches.get(token.norm) if node else None
-        if node and node.values:
-            return str(node.values[0].name)
-    return None
 
 
 @meaning("ask_to")
@@ -312,6 +252,14 @@ def ask_again(d: Discourse, node: Node) -> Steps:
     name = remember_answer(d, last.options, "answer")
     call = Call("ask", arguments, save_as=name)
     return [*steps, asked(d, call, last.options, person.value if person.known else None)]
+
+
+@meaning("ask_in")
+def ask_in(d: Discourse, node: Node) -> Steps:
+    """ "take a poll in the cafeteria": everybody there is asked."""
+    going = go(d, d.get(node, "place"))
+    everybody = Thing(Text(ANYONE), person=True, plural=True, here=True)
+    return [*going, *ask_one(d, node, everybody)]
 
 
 @meaning("answer")

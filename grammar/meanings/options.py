@@ -1,0 +1,120 @@
+"""The answers that a question offers: its choices, the numbers of a scale, yes and no."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from grammar.chart import Node
+from grammar.discourse import Discourse
+from grammar.tokens import COLON, COMMA
+
+MOST_OPTIONS: Final = 20
+
+
+def options_of(d: Discourse, node: Node) -> tuple[str, ...]:
+    """The answers that a question offers: its choices, or yes and no."""
+    fixed = node.production.fixed
+    listed = node.parts.get("options")
+    if listed is not None:
+        return split_options(d, listed.start, listed.end)
+    numbers = numbers_offered(d, node.start, node.end)
+    if numbers:
+        return numbers
+    joins = set(d.language.speech.get("or", ()))
+    rest, tail = node.parts.get("rest"), node.parts.get("tail")
+    if rest is not None and tail is not None and d.tokens[tail.start].norm in joins:
+        later = split_options(d, tail.start, tail.end)
+        words = max(len(each.split()) for each in later) if later else 1
+        start = max(rest.start, rest.end - words)
+        return (*split_options(d, start, rest.end), *later)
+    if rest is not None and joins & set(d.norms(rest.start, rest.end)):
+        start = rest.start
+        if "wh" in node.parts and d.tokens[start - 1].norm != COMMA:
+            start = _end_of_question(d, start, rest.end)
+        return split_options(d, start, rest.end)
+    if fixed.get("yes_no"):
+        return (d.language.phrase("yes"), d.language.phrase("no"))
+    return ()
+
+
+def numbers_offered(d: Discourse, start: int, end: int) -> tuple[str, ...]:
+    """ "from one to five": the numbers, if these words are among some."""
+    for first, between in d.language.speech.get("scales", ()):
+        for at in range(start, end - 3):
+            low, high = d.tokens[at + 1].value, d.tokens[at + 3].value
+            if (d.tokens[at].norm, d.tokens[at + 2].norm) != (first, between):
+                continue
+            if low is not None and high is not None and 0 < high - low < MOST_OPTIONS:
+                return tuple(str(number) for number in range(int(low), int(high) + 1))
+    return ()
+
+
+def _end_of_question(d: Discourse, start: int, end: int) -> int:
+    """Where the choices begin in "to drink, coffee, tea or water"."""
+    marks = [at for at in range(start, end) if d.tokens[at].norm in (COMMA, COLON)]
+    return marks[0] + 1 if marks else start
+
+
+def split_options(d: Discourse, start: int, end: int) -> tuple[str, ...]:
+    """ "to go to radiology or to the pharmacy" -> radiology, pharmacy.
+
+    What stands between the joining words is an option, without the little words before it; of the
+    first, only as many words at its end as the others have. Places go by their names."""
+    joins = (
+        set(d.language.speech.get("or", ())) | set(d.language.speech.get("joins", ())) | {",", ":"}
+    )
+    groups: list[tuple[int, int]] = []
+    first = start
+    for position in range(start, end + 1):
+        if position == end or d.tokens[position].norm in joins:
+            if position > first:
+                groups.append((first, position))
+            first = position + 1
+    stripped = [without_little_words(d, *group) for group in groups]
+    if not stripped:
+        return ()
+    stripped[-1] = _without_what_follows(d, stripped)
+    longest = max(last - begin for begin, last in stripped[1:]) if stripped[1:] else 1
+    options: list[str] = []
+    for number, (begin, last) in enumerate(stripped):
+        place = _place_at_end(d, begin, last)
+        if place:
+            options.append(d.called(place))
+            continue
+        if number == 0 and len(stripped) > 1:
+            begin = max(begin, last - longest)
+            begin, last = without_little_words(d, begin, last)
+        options.append(d.words(begin, last).strip(" ()"))
+    return tuple(dict.fromkeys(option for option in options if option))
+
+
+def without_little_words(d: Discourse, start: int, end: int) -> tuple[int, int]:
+    while start < end - 1 and d.tokens[start].norm in d.language.closed:
+        start += 1
+    return start, end
+
+
+def _without_what_follows(d: Discourse, groups: list[tuple[int, int]]) -> tuple[int, int]:
+    """The last choice without what is said of all of them: "pasta or salad for lunch"."""
+    ends = set(d.language.speech.get("after_options", ()))
+    start, end = groups[-1]
+    if len(groups) < 2 or any(ends & set(d.norms(begin + 1, last)) for begin, last in groups[1:-1]):
+        return start, end
+    for at in range(start + 1, end):
+        if d.tokens[at].norm in ends and not _place_at_end(d, start, end):
+            return start, at
+    return start, end
+
+
+def _place_at_end(d: Discourse, start: int, end: int) -> str | None:
+    """The place whose name the last words are."""
+    from grammar.slots import names_of
+
+    trie = names_of(d.language, d.lexicon).tries.get("place")
+    for begin in range(start, end):
+        node = trie
+        for token in d.tokens[begin:end]:
+            node = node.branches.get(token.norm) if node else None
+        if node and node.values:
+            return str(node.values[0].name)
+    return None
