@@ -208,6 +208,10 @@ class Discourse:
     """The answer that was last told of (`grammar.meanings.answers.Wanted`): "... that is"."""
     news: Any = None
     """What was told last of a poll or a round (`grammar.meanings.news.News`)."""
+    checked: str | None = None
+    """The variable with what was checked last."""
+    report_open: bool = False
+    """Whether nobody was named whom to tell the last report."""
     counted: Any = None
     """The step that counts in the last round, the place it is at, and what is counted."""
     told: Step | None = None

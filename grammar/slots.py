@@ -360,6 +360,8 @@ class Slots:
                         break
                     cost += 4.0
                 continue
+            if position > at and self._begins_news(position):
+                break
             if position > at and (self._begins_command(position) or self._condition(position)):
                 cost += SWALLOWED_COMMAND
             if token.norm in self._fillers:  # part of the text only if more text follows
@@ -390,6 +392,19 @@ class Slots:
             for end in range(at + 1, len(self.tokens) + 1)
             if self.tokens[end - 1].kind != "mark" and self.tokens[at].kind != "mark"
         ]
+
+    def _begins_news(self, at: int) -> bool:
+        """Whether something is said that is never part of a text: "... and tell me"."""
+        before = self.tokens[at - 1].norm
+        if before not in (COMMA, STOP, COLON, *self.language.speech.get("joins", ())):
+            return False
+        return any(
+            all(
+                at + more < len(self.tokens) and word in ("*", self.tokens[at + more].norm)
+                for more, word in enumerate(words.split())
+            )
+            for words in self.language.speech.get("news_begins", ())
+        )
 
     def _goes_on(self, at: int) -> bool:
         """Whether after a comma or full stop something else is said to be done: ", then"."""

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Final
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, NotUnderstood, as_value
+from grammar.discourse import Discourse, NotUnderstood
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import Survey
-from grammar.plan import Compare, Condition, Either, Not, Recall, Text
+from grammar.plan import Condition, Either, Not, Text
 
 ALIKE: Final = 4
 """Letters that two forms of a word share: "recommended" and "recommend"."""
@@ -83,17 +83,6 @@ def wanted(d: Discourse, survey: Survey, said: Said) -> Wanted:
         raise NotUnderstood(d.language.phrase("not_understood", part=d.words(said.start, said.end)))
     telling = [norm for norm in norms if norm not in _silent(d)] or norms
     return Wanted((" ".join(telling),), negative)
-
-
-def answer_is(d: Discourse, survey: Survey, said: Said) -> Condition:
-    """Whether the last answer is the one spoken of."""
-    return wanted(d, survey, said).given(survey)
-
-
-def number_is(survey: Survey, operator: str, number: float) -> Condition:
-    """Whether the answer, a number, compares so."""
-    assert survey.call.save_as is not None
-    return Compare(Recall(survey.call.save_as), operator, as_value(number))
 
 
 def _names(d: Discourse, norms: Sequence[str], option: str) -> bool:

@@ -16,9 +16,12 @@ from grammar.discourse import (
     Where,
     as_value,
 )
+from grammar.meanings.answers import wanted as wanted_answer
 from grammar.meanings.finding import noun_of
+from grammar.meanings.news import counted as counted_answers
 from grammar.meanings.nouns import sought
 from grammar.meanings.registry import meaning
+from grammar.meanings.surveys import Survey, asked_before, in_loop
 from grammar.plan import (
     Ask,
     Both,
@@ -26,14 +29,17 @@ from grammar.plan import (
     Compare,
     Condition,
     Either,
+    ForEach,
     Holds,
     Items,
     Not,
     Number,
     Recall,
+    Share,
     Text,
     Value,
 )
+from grammar.tidy import nodes
 
 
 @meaning("and")
@@ -242,9 +248,9 @@ def robot_is_at(d: Discourse, node: Node) -> Condition:
 @meaning("answered")
 def answered(d: Discourse, node: Node) -> Condition:
     """ "if they say yes", "if the answer is radiology"."""
+    fixed = node.production.fixed
     if d.answer is None:
         raise NotUnderstood(d.language.phrase("no_question"))
-    fixed = node.production.fixed
     if "answer" in fixed:
         wanted = d.language.phrase(str(fixed["answer"]))
     else:
@@ -272,6 +278,11 @@ def said_so(d: Discourse, no: bool) -> Condition:
         found = Holds(looked)
         return Not(found) if no else found
     if d.answer is None:
+        from grammar.meanings.reports import checked
+
+        known = checked(d)
+        if known is not None:
+            return Not(Holds(known)) if no else Holds(known)
         raise NotUnderstood(d.language.phrase("no_question"))
     wanted = d.language.phrase("no" if no else "yes")
     for option in d.answer_options:
@@ -283,6 +294,46 @@ def said_so(d: Discourse, no: bool) -> Condition:
 @meaning("so")
 def so(d: Discourse, node: Node) -> Condition:
     return said_so(d, no=bool(node.production.fixed.get("no")))
+
+
+@meaning("answer_counts")
+def answer_counts(d: Discourse, node: Node) -> Condition:
+    """ "if it is more than seven": the answer, a number."""
+    if d.answer is None:
+        raise NotUnderstood(d.language.phrase("no_question"))
+    number = as_value(d.get(node, "number"))
+    return Compare(Recall(d.answer), d.get(node, "operator", "=="), number)
+
+
+@meaning("answers_many")
+def answers_many(d: Discourse, node: Node) -> Condition:
+    """ "if both say yes", "if more than half of them agree", "if nobody wants any"."""
+    surveys = asked_before(d)
+    answer = wanted_answer(d, surveys[-1], d.get(node, "said"))
+    if not in_loop(d, surveys[-1].call):
+        return answer.given(surveys[-1])
+    said = counted_answers(d, surveys, answer)
+    how = node.production.fixed.get("how")
+    if how == "all":
+        return Compare(said, "==", people_asked(d, surveys))
+    if how == "most":
+        share = Share(said, counted_answers(d, surveys, None))
+        return Compare(share, ">", Number(50))
+    if how == "none":
+        return Compare(said, "==", Number(0))
+    least = int(d.get(node, "count", 1))
+    return Compare(said, d.get(node, "operator", ">="), Number(least))
+
+
+def people_asked(d: Discourse, surveys: list[Survey]) -> Value:
+    """How many were to be asked: those named, else those who were there."""
+    call = surveys[-1].call
+    for loop in d.done:
+        if not isinstance(loop, ForEach) or not isinstance(loop.items, Items):
+            continue
+        if any(each is call for each in nodes(loop)):
+            return Number(len(loop.items.items))
+    return counted_answers(d, surveys, None)
 
 
 @meaning("code_is")

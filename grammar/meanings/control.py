@@ -9,6 +9,7 @@ from grammar.discourse import Discourse, Steps, Thing
 from grammar.meanings.branches import exclusive
 from grammar.meanings.finding import not_found
 from grammar.meanings.registry import meaning
+from grammar.meanings.rounds import in_round
 from grammar.plan import Ask, Call, Holds, If, Not, Recall, Remember, Text
 from grammar.tidy import mentions
 
@@ -30,7 +31,7 @@ def steps(d: Discourse, node: Node) -> Steps:
             before = len(d.done)
             first = each.parts["first"]
             assert isinstance(first, Node)
-            d.done.extend(d.build(first))
+            d.done.extend(in_round(d, first))
             clauses.append((joint, len(d.done) - before))
             joint = str(each.production.fixed.get("joint", "and"))
             rest, beyond = each.parts.get("rest"), each.parts.get("further")

@@ -14,7 +14,7 @@ from grammar.meanings.conditions import condition_of
 from grammar.meanings.control import guard_finds
 from grammar.meanings.nouns import kind_places
 from grammar.meanings.registry import meaning
-from grammar.meanings.surveys import counting
+from grammar.meanings.surveys import until_answered
 from grammar.meanings.waiting import wait_until
 from grammar.plan import (
     Ask,
@@ -45,8 +45,7 @@ def until(d: Discourse, node: Node) -> Steps:
         looking, condition = condition_of(d, node)
     if all(isinstance(step, Call) and step.method in ("wait",) for step in body):
         return [*looking, *wait_until(condition)]
-    before, body = counting(d, body)
-    return [*before, RepeatUntil(condition, (*body, *looking))]
+    return until_answered(d, condition, [*body, *looking])
 
 
 @meaning("while")

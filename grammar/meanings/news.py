@@ -63,6 +63,8 @@ class News:
     words: Steps
     to_all: bool
     """Whether nobody was named whom to tell, so that whoever is named next is who was meant."""
+    waiting: bool = False
+    """Whether it is not told yet."""
 
 
 # --- telling
@@ -125,15 +127,25 @@ def told_again(d: Discourse, person: Thing | None) -> Steps | None:
     if found is None:
         return None
     if person is None or is_me(person):
-        back = go_back(d, [])
-        return [*back, *found.words] if back else []
+        if not found.waiting and d.done[len(d.done) - len(found.words) :] == found.words:
+            return []  # it is told already
+        d.news = replace(found, waiting=False)
+        return [*go_back(d, []), *found.words]
+    take_back(d, found)
+    return speak_to(d, person, found.words)
+
+
+def take_back(d: Discourse, found: News) -> None:
+    """What was to be told to the speaker, because nobody else was named, is told elsewhere; the way
+    back then comes to nothing."""
     if found.to_all and d.done[len(d.done) - len(found.words) :] == found.words:
         del d.done[len(d.done) - len(found.words) :]
         if d.done and d.done[-1] == BACK:
             d.done.pop()
             d.at = None
-    d.news = replace(found, to_all=False)
-    return speak_to(d, person, found.words)
+        d.news = replace(found, to_all=False, waiting=True)
+    else:
+        d.news = replace(found, to_all=False)
 
 
 @meaning("told_list")

@@ -541,6 +541,7 @@ def person_name(d: Discourse, node: Node) -> Thing:
     leaf = node.parts["person"]
     assert isinstance(leaf, Leaf)
     name = d.one_of(leaf).name
+    d.person = Thing(Text(name), known=True, person=True)  # "Alice in her office"
     found = replace(described(d, name, node), value=Text(name), known=True, person=True)
     d.person, d.thing_last = found, False
     return found

@@ -133,7 +133,7 @@ def remember_answer(d: Discourse, options: tuple[str, ...], name: str) -> str:
         variable = d.variable(name)
     d.answer = variable
     d.answer_options = options
-    d.report = d.news = None
+    d.report = d.news = d.checked = None
     return variable
 
 
@@ -244,6 +244,11 @@ def ask_again(d: Discourse, node: Node) -> Steps:
         raise NotUnderstood(d.language.phrase("ask_what"))
     person: Thing = d.get(node, "person_ref")
     last: Survey = d.surveys[-1]
+    if (
+        d.norms(node.parts["person_ref"].start, node.parts["person_ref"].end)[0]
+        in d.language.closed
+    ):
+        person = Thing(last.who, known=True, person=True) if isinstance(last.who, Text) else person
     arguments = {key: value for key, value in last.call.arguments.items() if key != "person"}
     if person.known:
         arguments["person"] = person.value

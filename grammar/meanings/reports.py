@@ -38,6 +38,7 @@ from grammar.plan import (
     Remember,
     Step,
     Text,
+    Truth,
     Value,
 )
 from grammar.wordforms import plural
@@ -69,18 +70,11 @@ def report(d: Discourse, node: Node) -> Steps:
     if node.production.fixed.get("joke"):
         return told(d, joke(d), None)
     person: Thing | None = d.get(node, "person_ref")
-    steps = told_of(d, node, "info", person)
-    if "second" in node.parts:
-        steps += told_of(d, node, "second", person)
-    return steps
-
-
-def told_of(d: Discourse, node: Node, part: str, person: Thing | None) -> Steps:
-    """Find out one thing and tell it."""
-    found: Report | Steps = d.get(node, part)
+    found: Report | Steps = d.get(node, "info")
     if isinstance(found, list):
         return speak_to(d, person, found)
     asked_by_me = person is None or is_me(person)
+    d.report_open = person is None and not node.production.fixed.get("to_me")
     back = bool(node.production.fixed.get("to_me")) or is_me(person)
     steps: Steps = []
     if found.place is not None and found.place != d.at:
@@ -117,7 +111,7 @@ def told(d: Discourse, found: Report, person: Thing | None) -> Steps:
     """Say it."""
     saying = _saying(d, found)
     d.report, d.report_step = found, saying
-    d.answer = d.news = d.counted = None
+    d.answer = d.news = d.counted = d.checked = None
     return speak_to(d, person, [saying])
 
 
@@ -400,15 +394,53 @@ def report_told(d: Discourse, node: Node) -> news.Told:
     return news.Told([_saying(d, found)], first)
 
 
+@meaning("whether_told")
+def whether_told(d: Discourse, node: Node) -> news.Told:
+    """ "whether there are five chairs in the lobby", "whether the kitchen is empty": of any
+    condition, found out there and told elsewhere."""
+    part = node.parts["condition"]
+    condition = d.get(node, "condition")
+    before, d.pending = d.pending, []
+    d.checked = d.variable("so")
+    no, yes = Remember(d.checked, Truth(False)), Remember(d.checked, Truth(True))
+    clause = d.words(part.start, part.end)
+    told_yes, told_no = d.say("so_it_is", clause=clause), d.say("not_so", clause=clause)
+    told = If(Holds(Recall(d.checked)), (told_yes,), (told_no,))
+    d.report = None
+    return news.Told([told], [*before, no, If(condition, (yes,))])
+
+
+def checked(d: Discourse) -> Value | None:
+    """What was checked last, for "if so" and "if not"; that nobody was named to tell it to is then
+    no reason to tell the speaker."""
+    if d.checked is not None and d.news is not None:
+        news.take_back(d, d.news)
+        return Recall(d.checked)
+    found: Report | None = d.report
+    if found is None or found.otherwise is None or found.value is None:
+        return None
+    if not d.report_open:
+        return found.value if isinstance(found.value, Recall) else None
+    name = found.value.name if isinstance(found.value, Recall) else None
+    at = next((at for at, step in enumerate(d.done) if step is d.report_step), None)
+    if at is None:
+        return None
+    if name is None:
+        name = d.variable(found.name)
+        d.done[at] = Remember(name, found.value)
+    else:
+        d.done.pop(at)
+        _not_back_yet(d)
+    d.report = replace(found, value=Recall(name))
+    return Recall(name)
+
+
 @meaning("found_told")
 def found_told(d: Discourse, node: Node | None = None) -> news.Told:
     """ "the result", "it", "what you found out": whatever was found out last."""
     told: news.News | None = d.news
     if told is not None:
-        count = len(told.words)
-        if told.to_all and d.done[len(d.done) - count :] == told.words:
-            del d.done[len(d.done) - count :]
-            _not_back_yet(d)
+        news.take_back(d, told)
         return news.Told(told.words, [])
     if d.report is not None:
         return _report_again(d)

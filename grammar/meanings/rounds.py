@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Final
 
 from msgspec.structs import replace
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing
+from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
 from grammar.meanings.finding import speak_to
 from grammar.meanings.news import News, Told, go_back
-from grammar.meanings.nouns import is_me, kind_places, sought
+from grammar.meanings.nouns import is_me, kind_places, sought, thing_it
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import note, replacing
+from grammar.meanings.things import deliver
 from grammar.naming import joined_up
 from grammar.plan import (
     Ask,
@@ -204,6 +207,8 @@ class Trait:
 def trait_seen(d: Discourse, node: Node) -> Trait:
     """ "is empty", "has a stapler", "there is somebody in"."""
     thing: Thing | None = d.get(node, "thing") or d.get(node, "person_ref")
+    if node.production.fixed.get("it"):  # "has none": of what was spoken of
+        thing = thing_it(d, node)
     looked_for = Text(ANYONE) if thing is None else sought(d, thing)
     seen: Condition = Holds(Ask("sees", {"thing": looked_for}))
     return Trait(Not(seen) if node.production.fixed.get("no") else seen, [])
@@ -230,6 +235,105 @@ def trait_asked(d: Discourse, node: Node) -> Trait:
     asking = Call("ask", {"question": question, "options": options}, save_as=answer)
     agreed: Condition = Compare(Recall(answer), "==", Text(agree))
     return Trait(Not(agreed) if node.production.fixed.get("no") else agreed, [asking])
+
+
+@meaning("trait_holds")
+def trait_holds(d: Discourse, node: Node) -> Condition:
+    """ "if the kitchen is empty", "if it has no stapler": found out there."""
+    place: Value | None = d.get(node, "trait_place")
+    if place is not None and place != d.at:
+        d.went(place)
+        d.pending.append(Call("goto", {"place": place}))
+    trait: Trait = d.get(node, "place_trait")
+    d.pending += trait.first
+    return trait.condition
+
+
+@meaning("for_each_place_such")
+def for_each_place_such(d: Discourse, node: Node) -> Steps:
+    """ "bring a stapler to every office that has none": done where it is seen to be so."""
+    place = Recall(d.variable("place"))
+    thing: Thing | None = d.get(node, "thing")
+    d.at = d.place = place
+    trait: Trait = d.get(node, "place_trait")
+    outer, d.in_loop = d.in_loop, True
+    if thing is not None:
+        d.at = None
+        body = deliver(d, thing, None, Where(place))
+    else:
+        body = d.build(node.parts["steps"])
+    d.in_loop = outer
+    d.at = d.with_person = None
+    found_out = (*trait.first, If(trait.condition, tuple(body)))
+    return [round_of(d, kind_places(d, d.get(node, "kinds")), [*found_out], place.name)]
+
+
+# --- a round that goes on in the next sentence
+
+STAYS_OUTSIDE: Final = frozenset(
+    {
+        *("news", "survey_report", "round_report", "round_count", "round_look", "compared"),
+        *("come_back", "go", "go_places", "go_person", "go_find", "dock", "stop", "bring_too"),
+        *("for_each_place", "for_each_place_such", "for_each_of_them", "check_each_place"),
+        *("do_that_times", "do_that_again", "do_that_until", "do_that_while", "do_that_forever"),
+        *("same_for", "tell_that", "tell_me_that", "say_it", "reversed", "delayed", "bring_each"),
+        *("when", "repeat", "until", "while", "forever", "at_intervals", "corrected", "guide_list"),
+    }
+)
+"""Clauses that do not belong to a round in the sentence before."""
+OF_THE_ROUND: Final = frozenset({"is_seen", "answered", "trait_holds", "counted"})
+"""Conditions on what is found at each place."""
+
+
+def in_round(d: Discourse, clause: Node) -> Steps:
+    """The steps of a clause. "Go to every office. If somebody is there, ...": they belong to the
+    round in the sentence before, which may consist of nothing but going there."""
+    loop = d.done[-1] if d.done else None
+    if not isinstance(loop, ForEach) or not goes_on(d, loop, clause):
+        steps: Steps = d.build(clause)
+        return steps
+    d.done.pop()
+    here = Recall(loop.variable)
+    outer, d.done = d.done, list(loop.steps)
+    d.at = d.place = here
+    in_loop, d.in_loop = d.in_loop, True
+    try:
+        inner = [*d.done, *d.build(clause)]
+    finally:
+        d.done, d.in_loop = outer, in_loop
+    d.at = d.with_person = None
+    return [replace(loop, steps=tuple(inner))]
+
+
+def goes_on(d: Discourse, loop: ForEach, clause: Node) -> bool:
+    """Whether a clause belongs to the round before it."""
+    if not (loop.steps and goes_to(loop.steps[0], loop.variable)):
+        return False
+    first = clause
+    while first.production.means in (None, "steps") and first.parts:
+        first = next((each for each in first.parts.values() if isinstance(each, Node)), first)
+        if not any(isinstance(each, Node) for each in first.parts.values()):
+            break
+    if first.production.means == "if":
+        about = {each.production.means for each in inside(first.parts["condition"])}
+        return bool(about & OF_THE_ROUND) and not any(
+            isinstance(each.parts.get("place"), Leaf) for each in inside(first.parts["condition"])
+        )
+    if len(loop.steps) > 1 or first.production.means in STAYS_OUTSIDE:
+        return False
+    return not any(
+        each.production.means == "person_name"
+        for each in first.parts.values()
+        if isinstance(each, Node)
+    )
+
+
+def inside(part: Leaf | Node) -> Iterator[Node]:
+    """A node of the parse and all in it."""
+    if isinstance(part, Node):
+        yield part
+        for each in part.parts.values():
+            yield from inside(each)
 
 
 @meaning("round_look")

@@ -20,10 +20,12 @@ from grammar.plan import (
     Call,
     Compare,
     Condition,
+    End,
     ForEach,
     Forever,
     If,
     Increase,
+    Items,
     Number,
     Recall,
     Remember,
@@ -130,19 +132,33 @@ def answers_reached(d: Discourse, node: Node) -> Condition:
     return Compare(Recall(name), ">=", Number(int(d.get(node, "count"))))
 
 
-def counting(d: Discourse, body: Steps) -> tuple[Steps, Steps]:
-    """What stands before a loop that goes on until so many have answered, and its steps: each round
-    with the next person."""
+def until_answered(d: Discourse, condition: Condition, body: Steps) -> Steps:
+    """A loop that goes on until a condition holds; if that is how many have answered, each round is
+    with the next person, and those who are known by name are asked once."""
     if d.counting is None:
-        return [], body
+        return [RepeatUntil(condition, tuple(body))]
     survey, answer, name = d.counting
     d.counting = None
     count: Step = Increase(name)
     if answer is not None:
         count = If(survey.said(answer), (count,))
+    zero = Remember(name, Number(0))
+    loop = next(
+        (each for each in body if isinstance(each, ForEach) and _is_in(each, survey.call)), None
+    )
+    if loop is not None and isinstance(loop.items, Items):
+        return [zero, *noting(body, survey.call, [count, If(condition, (End(),))])]
+    if loop is not None and loop.steps == (survey.call,):  # of those who come, one after the other
+        body = [other for each in body for other in ((survey.call,) if each is loop else (each,))]
     steps = list(noting(body, survey.call, [count]))
-    if any(step is survey.call for step in steps) and survey.who is None:
+    if any(step is survey.call for step in steps) and (survey.who is None or loop is not None):
         who = d.person.value if d.person is not None else Text("person")
         at = next(at for at, step in enumerate(steps) if step is survey.call)
-        steps.insert(at, Call("wait_for", {"thing": who}))
-    return [Remember(name, Number(0))], steps
+        arguments = {key: each for key, each in survey.call.arguments.items() if key != "person"}
+        asking = msgspec.structs.replace(survey.call, arguments=arguments)
+        steps[at : at + 1] = [Call("wait_for", {"thing": who}), asking]
+    return [zero, RepeatUntil(condition, tuple(steps))]
+
+
+def _is_in(step: Step, inner: Step) -> bool:
+    return any(each is inner for each in nodes(step))
