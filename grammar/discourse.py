@@ -163,6 +163,8 @@ class Discourse:
     needs_start: bool = False
     thing: Thing | None = None
     person: Thing | None = None
+    last_named: Thing | None = None
+    """Who was named last, in whichever branch: "him" is one person."""
     thing_last: bool = False
     """Whether a thing was spoken of after the last person."""
     place: Value | None = None

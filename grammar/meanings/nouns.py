@@ -533,6 +533,15 @@ def thing_it(d: Discourse, node: Node) -> Thing:
     raise NotUnderstood(d.language.phrase("what_is_it", word=word), gap=(node.start, node.end))
 
 
+@meaning("thing_from")
+def thing_from(d: Discourse, node: Node) -> Thing:
+    """ "one from the supply room", of what was spoken of."""
+    spot: Where = d.get(node, "from")
+    found = replace(thing_it(d, node), place=spot.place, furniture=spot.furniture, pronoun=False)
+    d.thing, d.thing_last = found, True
+    return found
+
+
 # --- people
 
 
@@ -541,7 +550,7 @@ def person_name(d: Discourse, node: Node) -> Thing:
     leaf = node.parts["person"]
     assert isinstance(leaf, Leaf)
     name = d.one_of(leaf).name
-    d.person = Thing(Text(name), known=True, person=True)  # "Alice in her office"
+    d.person = d.last_named = Thing(Text(name), known=True, person=True)  # "Alice in her office"
     found = replace(described(d, name, node), value=Text(name), known=True, person=True)
     d.person, d.thing_last = found, False
     return found
@@ -592,6 +601,10 @@ def by_furniture(d: Discourse, person: Thing) -> Thing:
 @meaning("person_pronoun")
 def person_pronoun(d: Discourse, node: Node) -> Thing:
     """ "him", "her", "them": the person spoken of last, else whoever is here."""
+    if d.person is not None and d.person.group is not None and d.last_named is not None:
+        several = d.language.speech.get("things_too", ())
+        if not set(d.norms(node.start, node.end)) & set(several):
+            return d.last_named  # "him", after "Alice and Bob ... tell Dr Weber"
     if d.person is not None:
         met = d.person.here or d.with_person == d.person.value
         elsewhere = d.person.place is not None and not met
