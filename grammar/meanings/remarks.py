@@ -79,7 +79,7 @@ def remark_where(d: Discourse, node: Node) -> Steps:
         known_to_be(d, who.value, place)
     else:
         what = thing or d.thing
-        if what is not None:
+        if isinstance(what, Thing):  # of several, each is where it is
             d.thing, d.thing_last = replace(what, place=place, furniture=spot.furniture), True
             known_to_be(d, what.value, place)
     return aside(d, node)
