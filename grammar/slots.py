@@ -27,6 +27,11 @@ SWALLOWED_COMMAND: Final = 40.0
 """Cost of a text that goes on over what begins like another command."""
 UNKNOWN_NAME: Final = 30.0
 """Cost of reading words as the name of something that is not known."""
+SPACED: Final = 0.5
+"""Cost of a name that is written with a space too many or too few."""
+SHORTEST_JOINED_NAME: Final = 6
+MISSPELT_NOUN: Final = 3.5
+"""Cost of taking for a noun what is nearly a known word: "bigest"."""
 LONGEST_NOUN: Final = 5
 LONGEST_UNKNOWN: Final = 6
 LONGEST_STRANGER: Final = 2
@@ -170,7 +175,7 @@ class Slots:
         self.language = names.language
         self.tokens = tokens
         self.corrections = corrections
-        self._command_words = _command_words(self.language)
+        self._command_words = command_words(self.language)
         self._joins = frozenset(self.language.speech.get("joins", ()))
         self._judge = Judge(tokens, self.language)
         self._adverb = re.compile(self.language.speech.get("adverbs", r"(?!)")).search
@@ -228,10 +233,26 @@ class Slots:
         branch = trie.branches.get(self.tokens[at].norm)
         if branch:
             self._walk(branch, at + 1, cost, corrected, matches)
+        for end, joined in self._spaced(trie, at):
+            self._walk(joined, end, cost + SPACED, corrected, matches)
         for other in self.corrections.get(at, ()):
             branch = trie.branches.get(other)
             if branch:
                 self._walk(branch, at + 1, cost + CORRECTION, (*corrected, (at, other)), matches)
+
+    def _spaced(self, trie: Trie, at: int) -> Iterable[tuple[int, Trie]]:
+        """ "livingroom" for "living room" and "bed room" for "bedroom", with where each ends."""
+        word = self.tokens[at].norm
+        if at + 1 < len(self.tokens) and self.tokens[at + 1].kind == "word":
+            joined = trie.branches.get(word + self.tokens[at + 1].norm)
+            if joined is not None and word.isalpha():
+                yield at + 2, joined
+        if len(word) >= SHORTEST_JOINED_NAME and word not in self.language.words:
+            for cut in range(2, len(word) - 1):
+                first = trie.branches.get(word[:cut])
+                second = first.branches.get(word[cut:]) if first is not None else None
+                if second is not None:
+                    yield at + 1, second
 
     # --- numbers
 
@@ -429,6 +450,7 @@ class Slots:
     def _noun(self, at: int) -> list[Match]:
         """Any noun with its adjectives: words that are no function words."""
         matches: list[Match] = []
+        doubt = 0.0
         for position in range(at, min(at + LONGEST_NOUN, len(self.tokens))):
             token = self.tokens[position]
             if token.norm in self._noun_joins and matches:
@@ -441,8 +463,9 @@ class Slots:
                 break
             if position > at and self._named("person", position):
                 break
+            doubt += MISSPELT_NOUN if position in self.corrections else 0.0
             length = position + 1 - at
-            matches.append((position + 1, FREE_WORD * length, None))
+            matches.append((position + 1, FREE_WORD * length + doubt, None))
         named = {end for slot in ("person", "place") for end in self._named(slot, at)}
         return [match for match in matches if match[0] not in named]  # a name is no thing
 
@@ -495,7 +518,7 @@ def _number_phrases(
 
 
 @functools.cache
-def _command_words(language: Language) -> frozenset[str]:
+def command_words(language: Language) -> frozenset[str]:
     """The words that a command can begin with."""
     network = language.network
     words: set[str] = set()

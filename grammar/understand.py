@@ -24,7 +24,8 @@ from grammar.plan import Plan, Text, Value
 from grammar.readings import Read, read
 from grammar.refusals import forbidden, no_thing, signs, why_not
 from grammar.requests import Request
-from grammar.slots import Names, Slots, names_of
+from grammar.slips import mended
+from grammar.slots import Names, Slots, command_words, names_of
 from grammar.tidy import Unbound, scoped, without_unused
 from grammar.tokens import COMMA, Token, tokenise
 
@@ -146,7 +147,10 @@ class Reader:
         self.language = language
         self.context = context
         self.names: Names = names_of(language, lexicon)
-        self.tokens = tokenise(text, language.spelling)
+        known = language.words | self.names.words | language.closed
+        self.tokens = mended(
+            tokenise(text, language.spelling), language, known, command_words(language)
+        )
         self.skips = self._skips()
         self.corrections = self._corrections()
 
