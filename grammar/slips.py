@@ -1,7 +1,7 @@
 """Slips of the keyboard, and forms of politeness, put right before a sentence is parsed.
 
-"gothe" and "tothe" are two words, and after "would you mind" a command stands in its -ing form. What
-tokens mean changes, never where they stand: free text is still taken from the original.
+"gothe" and "tothe" are two words, and after "would you mind" a command stands in its -ing form.
+What tokens mean changes, never where they stand: free text is still taken from the original.
 """
 
 from __future__ import annotations
