@@ -71,7 +71,9 @@ def remark_where(d: Discourse, node: Node) -> Steps:
     spot: Where = d.get(node, "where")
     place = spot.place
     thing: Thing | None = d.get(node, "thing")
-    person: Thing | None = d.get(node, "person_ref")
+    person: Thing | list[Thing] | None = d.get(node, "person_ref")
+    if isinstance(person, list):  # "Alice or Bob is in the lobby": nobody knows which
+        return aside(d, node)
     who = person or (d.person if thing is None and not node.production.fixed.get("it") else None)
     if thing is None and who is not None:
         d.person, d.thing_last = replace(who, place=place, furniture=spot.furniture), False
