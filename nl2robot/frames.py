@@ -44,6 +44,8 @@ RELATIONS: Final = {
     "in front of": "front",
 }
 """How plans say where a thing is from another one."""
+SOMEWHERE: Final = re.compile(r" (on|in|at|near|by|under|next to|behind|in front of) the (.*)")
+"""How plans say on which furniture a thing is."""
 GENDERS: Final = {"male": "man boy male gentleman", "female": "woman girl female lady"}
 POSES: Final = ("lying", "sitting", "standing")
 GESTURES: Final = ("waving", "raising", "pointing")
@@ -184,7 +186,8 @@ def _frame(head: str, *features: Iterable[str]) -> Frame:
 def frames_of_plan(plan: Plan, lexicon: Lexicon) -> list[Frame]:
     """What a plan does where everything goes well, step by step. Ways that only lead to the next
     step, and looking for what is then used, are a part of that step."""
-    walk = _Walk({each.name for each in lexicon.people})
+    names = {each.name for each in lexicon.people}
+    walk = _Walk(names, {each.name for each in lexicon.furniture})
     walk.steps(plan.steps)
     return [step.frame for step in walk.done if not step.used]
 
@@ -201,6 +204,7 @@ class _Walk:
     """Goes through a plan and remembers where the robot is, with whom and what it holds."""
 
     names: set[str]
+    furniture: set[str]
     done: list[_Step] = field(default_factory=list)
     at: str = ""
     """Empty where the command was given, else "at" or "back"."""
@@ -275,7 +279,7 @@ class _Walk:
         text = _text(arguments["thing"])
         features = self._use(text) | ({"at"} if self.at == "at" and not self.looked else set())
         self._arrive()
-        name = text.split(" on the ")[0]
+        name = SOMEWHERE.split(text)[0]
         self.held[name] = features
         self.taken[name] = self._do(_frame("take", (f"thing.{each}" for each in features)))
 
@@ -387,6 +391,10 @@ class _Walk:
         if text in self.names:
             return {"name"}
         features: set[str] = set()
+        where = SOMEWHERE.search(text)
+        if where is not None and where[2] in self.furniture:
+            features.add("at")
+            text = text[: where.start()]
         for phrase, relation in RELATIONS.items():
             if f" {phrase} " in text:
                 text = text.split(f" {phrase} ")[0]
