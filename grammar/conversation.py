@@ -16,16 +16,18 @@ from grammar.accounts import TEXTS
 from grammar.answers import Answer, answer_to
 from grammar.chart import Leaf, Node, TooMuch
 from grammar.discourse import Discourse
-from grammar.edits import Edit, Sentence, same_word
+from grammar.edits import Edit, Sentence, is_pieces, same_word
 from grammar.language import Language
 from grammar.lexicon import Lexicon
-from grammar.plan import calls
+from grammar.plan import Call, Plan, Text, calls
 from grammar.requests import Request
 from grammar.understand import Context, Reader, Understanding, rejected
 
 MANNER: Final = frozenset({"set_volume", "set_language"})
 """What is set before something is said rather than after it."""
 SPEAKING: Final = frozenset({"say", "ask", "answer", "listen"})
+OPEN: Final = TEXTS | {"noun", "unknown", "remark"}
+"""Slots for words that nobody knows."""
 MOST_TRIED: Final = 12
 """Sentences that are tried for one change."""
 
@@ -168,9 +170,7 @@ class _Turn:
             case _ if not self.context.text:
                 return None
             case "drop step" if self.context.carried_out:
-                return Understanding(
-                    self.text, "ok", confidence=1.0, request=Request("undo"), context=self.context
-                )
+                return self._undone()
             case "drop step":
                 return self._without_step(edit.which)
             case "drop":
@@ -189,6 +189,8 @@ class _Turn:
                 return self._again(edit.new)
             case "same":
                 return self._first_read(self._same(edit.new))
+            case "manner":
+                return self._first_read(self._in_manner(edit.new))
             case _:
                 return None
 
@@ -202,7 +204,8 @@ class _Turn:
             yield said
         yield from before.corrected(new, everywhere=True)
         if self._goes_on(new):
-            yield self._joined(said)
+            yield self._going_on(self._joined(said))
+            yield self._there(new)
 
     def _instead(self, edit: Edit) -> Iterator[str | None]:
         """ "tea instead of coffee"."""
@@ -259,9 +262,18 @@ class _Turn:
         done = self.context.carried_out
         for variant in before.corrected(new):
             yield variant if done else self._separate(variant)
-        yield self._separate(self.text)
+        yield self._going_on(self._separate(self.text))
         if self._goes_on(new):
-            yield self._joined(said) if done else self._separate(self._joined(said))
+            for more in (self._going_on(self._joined(said)), self._there(new)):
+                if more is not None:
+                    yield more if done else self._separate(more)
+
+    def _in_manner(self, said: str) -> Iterator[str | None]:
+        """ "say it louder", "say that in German"."""
+        alone = self._reader(said, self.context).understand()
+        if alone.plan is not None and {call.method for call in calls(alone.plan)} <= MANNER:
+            yield f"{said.rstrip(' .!?')}. {self.context.text}"
+        yield self._going_on(self._joined(said))
 
     def _without(self, said: str) -> Iterator[str | None]:
         """ "without the greeting", "not the kitchen"."""
@@ -291,6 +303,18 @@ class _Turn:
         called = self.language.speech.get("part_words", {})
         return all(any(word in called.get(method, ()) for method in methods) for word in words)
 
+    def _undone(self) -> Understanding:
+        """Of what was done, only a drive can be taken back."""
+        origin = self.context.origin
+        if origin is None:
+            undo = Request("undo")
+            return Understanding(
+                self.text, "ok", confidence=1.0, request=undo, context=self.context
+            )
+        plan = Plan((Call("goto", {"place": Text(origin)}),), self.language.code)
+        context = replace(self.context.referents(), plan=plan, text=self.text)
+        return Understanding(self.text, "ok", plan, 1.0, context=context)
+
     def _without_step(self, which: int) -> Understanding | None:
         """ "undo the last step": the innermost clause that is a sentence less."""
         before = self._before()
@@ -309,11 +333,11 @@ class _Turn:
         before, new = self._before(), self._reader(self.text, Context())
         joined = self._joined(self.text)
         if not self.context.carried_out and self._goes_on(new):
-            for text in (joined, self._separate(self.text)):
-                if not self._swallowed(text):
-                    result = self._read(text, self.base)
-                    if result is not None:
-                        return result
+            texts = [self._going_on(text) for text in (joined, self._separate(self.text))]
+            variants = [*before.corrected(new)]
+            result = self._first_read(texts if variants else (*texts, self._there(new)))
+            if result is not None:
+                return result
         variants = [*before.corrected(new)]
         if not self._goes_on(new) or not variants:
             return None
@@ -352,18 +376,41 @@ class _Turn:
         result = self._reader(said, self.context).understand()
         return result.plan is not None or result.status == "clarify"
 
+    def _there(self, new: Reader) -> str | None:
+        """ "in ward b": the command before, there."""
+        words = new.words(0, new.last_word)
+        return f"{words}, {self.context.text}" if is_pieces(new) else None
+
     def _swallowed(self, whole: str) -> bool:
         """Whether what goes on with the command before was only read as more of its free text."""
-        reader = self._reader(whole, self.base)
         boundary = len(self.context.text.rstrip(" .!?"))
+        return any(first < boundary < last for first, last in self._open_words(whole))
+
+    def _going_on(self, whole: str) -> str | None:
+        """A sentence that goes on with the command before, if rules know its new words: what would
+        only be more of a free text, or an unheard-of noun, is too little to go by; but an "or" may
+        add to a question."""
+        boundary = len(self.context.text.rstrip(" .!?"))
+        more = self._reader(whole[boundary:], Context())
+        if more.tokens and more.tokens[0].norm in self.language.speech["or"]:
+            return whole
+        open_ = self._open_words(whole)
+        return None if any(last > boundary for _, last in open_) else whole
+
+    def _open_words(self, text: str) -> list[tuple[int, int]]:
+        """The characters that only slots for any words at all could make something of."""
+        reader = self._reader(text, self.base)
         try:
             tree = reader.chart().best("utterance")
         except (TooMuch, RecursionError):
-            return True
-        return tree is None or any(
-            reader.tokens[leaf.start].start < boundary < reader.tokens[leaf.end - 1].end
-            for leaf in _texts_in(tree)
-        )
+            tree = None
+        if tree is None:
+            return [(0, len(text))]
+        return [
+            (reader.tokens[leaf.start].start, reader.tokens[leaf.end - 1].end)
+            for leaf in _leaves_in(tree)
+            if leaf.slot in OPEN and leaf.start < leaf.end
+        ]
 
     def _unclear(self, edit: Edit) -> Understanding:
         """Nothing of the command before fits what is said of it."""
@@ -373,11 +420,11 @@ class _Turn:
         return replace(rejected(self.text, message, self.context), unclear=part)
 
 
-def _texts_in(node: Node) -> Iterator[Leaf]:
+def _leaves_in(node: Node) -> Iterator[Leaf]:
     for part in node.parts.values():
         if isinstance(part, Node):
-            yield from _texts_in(part)
-        elif part.slot in TEXTS:
+            yield from _leaves_in(part)
+        else:
             yield part
 
 

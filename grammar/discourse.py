@@ -172,6 +172,8 @@ class Discourse:
     """Where the robot is by now; None where the command was given."""
     with_person: Value | None = None
     holding: Value | None = None
+    origin: str | None = None
+    """Where it was before the command before this was carried out."""
     delivered: Value | None = None
     """A thing that was brought to the speaker without their saying where to."""
     at_pick_up: Value | None = None

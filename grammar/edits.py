@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from grammar.understand import Context, Reader
 
 EditKind = Literal[
-    "cancel", "drop step", "drop", "instead", "correct", "first", "add", "again", "same"
+    "cancel", "drop step", "drop", "instead", "correct", "first", "add", "again", "same", "manner"
 ]
 
 CORRECTABLE: Final = (
@@ -359,6 +359,11 @@ def same_word(one: str, other: str) -> bool:
         shared >= SAME_LETTERS
         and one[: max(SAME_LETTERS, shared - 2)] == (other[: max(SAME_LETTERS, shared - 2)])
     )
+
+
+def is_pieces(reader: Reader) -> bool:
+    """Whether words are nothing but parts that could be put into a sentence: "in ward b"."""
+    return next(_pieces_of(reader), None) is not None
 
 
 def _pieces_of(reader: Reader) -> Iterator[list[Piece]]:

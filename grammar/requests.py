@@ -8,12 +8,36 @@ as freely; what becomes of it is the application's business.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Final, Literal
 
 from grammar.language import load_language
 from grammar.tokens import tokenise
 
-Kind = Literal["help", "learn", "list", "explain", "change", "forget", "schedule", "cancel", "undo"]
+Kind = Literal[
+    "help",
+    "learn",
+    "list",
+    "explain",
+    "change",
+    "rename",
+    "forget",
+    "schedule",
+    "cancel",
+    "undo",
+    "planned",
+    "doing",
+    "done",
+    "happened",
+    "said",
+    "who said",
+    "how many said",
+    "counted",
+    "found",
+]
+ABOUT_RUNS: Final = frozenset(
+    {"doing", "done", "happened", "said", "who said", "how many said", "counted", "found"}
+)
+"""Questions about what the robot is doing or has done."""
 
 
 @dataclass(frozen=True)
@@ -21,14 +45,19 @@ class Request:
     """Something asked of the application."""
 
     kind: Kind
-    """What to do: all but "help" are about routines; "schedule" is to do something at set times."""
+    """What to do. "schedule" is to do something at set times; "cancel", "undo" and "planned" are
+    about the command before, those `ABOUT_RUNS` about what was done, "help" about what can be said;
+    the others are about routines."""
     name: str = ""
-    """The routine's name, as it was said."""
+    """The name of a routine or a person, as it was said."""
+    new: str = ""
+    """Of "rename", the new name."""
     sentence: str = ""
     """What the routine does, or what is to be done at those times, as it was said; to learn
     without a sentence is to keep the command before."""
     part: str = ""
-    """The words that say at what times; of "help", what the help shall be about."""
+    """The words that say at what times; of "help", what the help shall be about; of "who said" and
+    "how many said", the answer."""
 
 
 def agreed(text: str, language: str = "en") -> bool | None:

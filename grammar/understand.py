@@ -59,6 +59,8 @@ class Context:
     """What was known when the last sentence was said, for it to be understood anew."""
     carried_out: bool = False
     """Whether the last plan has been carried out, so that what comes is not a part of it."""
+    origin: str | None = None
+    """The place where the robot was before that."""
 
     def referents(self) -> Context:
         """Only what was spoken of last."""
@@ -180,6 +182,7 @@ class Reader:
             thing=self.context.thing,
             person=self.context.person,
             place=self.context.place,
+            origin=self.context.origin,
         )
         if "request" in tree.parts:
             asked: Request = discourse.build(tree.parts["request"])

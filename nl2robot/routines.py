@@ -75,6 +75,14 @@ class Routines:
             self._write((*self._others(name, language), new))
         return new
 
+    def rename(self, name: str, new: str, language: str) -> None:
+        """Call a routine otherwise; nothing if there is none of this name."""
+        known = self.get(name, language)
+        if known is not None:
+            with self._lock:
+                renamed = msgspec.structs.replace(known, name=new)
+                self._write((*self._others(name, language), renamed))
+
     def remove(self, name: str, language: str) -> None:
         with self._lock:
             self._write(self._others(name, language))

@@ -22,6 +22,7 @@ from typing import Any, Literal
 
 import msgspec
 
+from nl2robot.history import Record, done_calls
 from nl2robot.knowledge import Knowledge
 from nl2robot.review import Review, digest, review
 from nl2robot.runlog import LogError, RunLog
@@ -212,6 +213,20 @@ class Runner:
     def state(self) -> Status | None:
         """How the present or last run stands; None if there was none since the server started."""
         return self._activity.status() if self._activity else None
+
+    def last(self) -> Record | None:
+        """The present run or the last one of the log, with what became of its calls."""
+        activity = self._activity
+        if activity is None:
+            newest = self.log.runs(1)
+            run = newest[0] if newest else None
+        else:
+            run = self.log.run(activity.run)
+        if run is None:
+            return None
+        running = activity is not None and not activity.over.is_set()
+        line = activity.line if activity is not None else None
+        return Record(run, running, line, done_calls(self.log.calls(run.id)))
 
     def pause(self) -> Status:
         return self._control("paused", Execution.pause)

@@ -60,6 +60,7 @@ def services(runner: Runner) -> dict[str, Service]:
             p.get("language", "en"),
             p.get("planner", "auto"),
             talk_of(p.get("talk")),
+            runner,
         )
 
     def approved(p: Mapping[str, Any]) -> Any:

@@ -33,10 +33,12 @@ ALIKE = 70
 class Pending:
     """A change that waits for a yes."""
 
-    kind: Literal["learn", "forget"]
+    kind: Literal["learn", "rename", "forget"]
     name: str
     language: str
     sentence: str = ""
+    new: str = ""
+    """The new name."""
 
 
 @dataclass(frozen=True)
@@ -54,8 +56,6 @@ def reply(request: Request, knowledge: Knowledge, language: str, before: str = "
     pack = load_language(language)
     if request.kind == "help":
         return _help(request.part, knowledge.lexicon(language), pack)
-    if request.kind in ("cancel", "undo"):
-        return Reply("ok", pack.phrase("dropped"))
     if request.kind == "schedule":
         said = understand(request.sentence, knowledge.lexicon(language), language)
         message = pack.phrase("routine_scheduled", part=request.part)
@@ -72,6 +72,8 @@ def reply(request: Request, knowledge: Knowledge, language: str, before: str = "
             return teacher.list()
         case "explain":
             return teacher.explain(request.name)
+        case "rename":
+            return teacher.rename(request.name, request.new)
         case _:
             return teacher.forget(request.name)
 
@@ -85,8 +87,17 @@ def settle(pending: Pending, agreed: bool, knowledge: Knowledge) -> Reply:
     if pending.kind == "learn":
         knowledge.routines.put(pending.name, pending.sentence, language)
         return Reply("ok", pack.phrase("routine_learned", name=pending.name), (pending.name,))
+    if pending.kind == "rename":
+        knowledge.routines.rename(pending.name, pending.new, language)
+        message = pack.phrase("routine_renamed", name=pending.name, new=pending.new)
+        return Reply("ok", message, (pending.new,))
     knowledge.routines.remove(pending.name, language)
     return Reply("ok", pack.phrase("routine_forgotten", name=pending.name))
+
+
+def tidied(name: str) -> str:
+    """A name without the punctuation around it."""
+    return " ".join(name.strip(" .,:;!?\"'“”„«»").split())
 
 
 def told(plan: Plan, lexicon: Lexicon, language: str) -> str:
@@ -135,7 +146,7 @@ class Teacher:
             raise UserError(str(error)) from error
 
     def learn(self, said: str, sentence: str) -> Reply:
-        name = " ".join(said.strip(" .,:;!?\"'“”„«»").split())
+        name = tidied(said)
         known = self.routines.get(name, self.language)
         if known is not None:
             return self.change(known.name, sentence)
@@ -156,6 +167,7 @@ class Teacher:
             return self.unknown(name)
         if not sentence:
             return Reply("rejected", self.pack.phrase("routine_nothing", name=known.name))
+        sentence = self.changed(known, sentence)
         if spelled(sentence, self.language) == spelled(known.sentence, self.language):
             return Reply("ok", self.pack.phrase("routine_same", name=known.name))
         body = self.body(known.name, sentence)
@@ -189,6 +201,22 @@ class Teacher:
             explanation=self.does(known)[1],
         )
         return Reply("ok", message, (known.name,))
+
+    def rename(self, name: str, said: str) -> Reply:
+        known = self.routines.get(name, self.language)
+        if known is None:
+            return self.unknown(name)
+        new = tidied(said)
+        if self.routines.get(new, self.language) is not None:
+            return Reply("rejected", self.pack.phrase("routine_name_used", name=new))
+        wrong = self.wrong_name(new)
+        if wrong:
+            return Reply("rejected", wrong)
+        message = self.pack.phrase("routine_rename", name=known.name, new=new)
+        users = self.users(known)
+        if users:
+            message = f"{message} {self.pack.phrase('routine_used_by', names=users)}"
+        return self.asked(message, Pending("rename", known.name, self.language, new=new))
 
     def forget(self, name: str) -> Reply:
         known = self.routines.get(name, self.language)
@@ -227,6 +255,13 @@ class Teacher:
     def body(self, name: str, sentence: str) -> Understanding:
         """The sentence as it is understood in a routine of this name: without that routine."""
         return understand(sentence, self.without(name), self.language)
+
+    def changed(self, known: Routine, said: str) -> str:
+        """The routine's sentence after what is said of it: "also wave", "without the greeting"; a
+        command of its own stands for all of it."""
+        context = self.body(known.name, known.sentence).context
+        result = understand(said, self.without(known.name), self.language, context)
+        return result.context.text if result.plan is not None else said
 
     def without(self, name: str) -> Lexicon:
         said = spelled(name, self.language)

@@ -7,18 +7,21 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import msgspec
 
+from grammar.language import load_language
 from grammar.plan import Plan, to_data
-from grammar.requests import Request, agreed
+from grammar.requests import ABOUT_RUNS, Request, agreed
 from grammar.understand import Context, understand
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.plain import visible
 
 if TYPE_CHECKING:
+    from nl2robot.history import History, Record
     from nl2robot.teaching import Pending, Reply
 
 Planner = Literal["auto", "grammar", "model"]
@@ -65,6 +68,26 @@ class Talk:
     context: Context | None = None
     pending: Pending | None = None
     """What waits for a yes."""
+    last: Translation | None = None
+    """The last one with a program."""
+    last_at: float = 0.0
+    """When that was: seconds since the epoch."""
+
+    def note(self, translation: Translation) -> None:
+        """Remember a program, so that it is known when it was carried out."""
+        self.last, self.last_at = translation, time.time()
+
+    def carried_out(self, record: Record | None) -> bool:
+        """Whether the last program has been run since."""
+        return (
+            record is not None
+            and self.last is not None
+            and record.run.started >= self.last_at
+            and (
+                record.run.program == self.last.program
+                or record.run.utterance == self.last.utterance
+            )
+        )
 
 
 def translate(
@@ -73,9 +96,11 @@ def translate(
     language: str = "en",
     planner: Planner = "auto",
     talk: Talk | None = None,
+    history: History | None = None,
 ) -> Translation:
     """Understand an utterance and write it as a program. Never moves anything, never raises for
-    words that are not understood: the status says so. A `talk` remembers it.
+    words that are not understood: the status says so. A `talk` remembers it; `history` knows what
+    was run, for questions about it.
     Raises `UserError` for a language or a planner that there is not."""
     from grammar.language import UnknownLanguage
     from grammar.program import write_program
@@ -93,21 +118,24 @@ def translate(
         return _answer(utterance, answered, None, started)
     try:
         lexicon = knowledge.lexicon(language)
+        record = history.last() if history is not None else None
+        if talk.context is not None and talk.carried_out(record):
+            assert record is not None
+            origin = record.origin(knowledge.world.places)
+            talk.context = replace(talk.context, carried_out=True, origin=origin)
         understood = understand(utterance, lexicon, language, talk.context)
     except UnknownLanguage as error:
         raise UserError(str(error)) from error
     before = talk.context.text if talk.context else ""
     talk.context = understood.context
     if understood.request is not None:
-        from nl2robot.teaching import reply
-
-        answer = reply(understood.request, knowledge, language, before)
+        answer = _replied(understood.request, knowledge, language, before, talk, record)
         talk.pending = answer.pending
         return _answer(utterance, answer, understood.request, started)
     plan: Plan | None = understood.plan
     program = write_program(plan) if plan else None
     explanation = told(plan, lexicon, language) if plan else ""
-    return Translation(
+    translation = Translation(
         utterance=utterance,
         status=understood.status,
         program=program,
@@ -119,6 +147,39 @@ def translate(
         suggestions=understood.suggestions,
         ms=round((time.perf_counter() - started) * 1000, 3),
     )
+    if program is not None:
+        talk.note(translation)
+    return translation
+
+
+def _replied(
+    request: Request,
+    knowledge: Knowledge,
+    language: str,
+    before: str,
+    talk: Talk,
+    record: Record | None,
+) -> Reply:
+    """The answer to what is asked of the application."""
+    from nl2robot.history import told_of
+    from nl2robot.teaching import Reply, reply
+
+    pack = load_language(language)
+    if request.kind in ABOUT_RUNS:
+        answer = told_of(request, record, knowledge.lexicon(language), pack)
+        return Reply("ok" if record is not None else "rejected", answer)
+    match request.kind:
+        case "cancel":
+            talk.last = None
+            return Reply("ok", pack.phrase("dropped"))
+        case "undo":
+            return Reply("rejected", pack.phrase("nothing_to_undo"))
+        case "planned":
+            if talk.last is None or talk.carried_out(record):
+                return Reply("rejected", pack.phrase("nothing_planned"))
+            return Reply("ok", talk.last.explanation)
+        case _:
+            return reply(request, knowledge, language, before)
 
 
 def _settled(utterance: str, knowledge: Knowledge, talk: Talk) -> Reply | None:

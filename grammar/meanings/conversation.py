@@ -72,3 +72,9 @@ def edit_again(d: Discourse, node: Node) -> Edit:
 def edit_same(d: Discourse, node: Node) -> Edit:
     """ "the same for Bob", "what about the lobby": it all, with this in the place of its like."""
     return edit(d, node, "same")
+
+
+@meaning("edit_manner")
+def edit_manner(d: Discourse, node: Node) -> Edit:
+    """ "say it louder", "say that in German"."""
+    return edit(d, node, "manner")

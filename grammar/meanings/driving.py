@@ -109,7 +109,11 @@ def speaks_of(steps: Steps, name: str) -> bool:
 
 @meaning("come_back")
 def come_back(d: Discourse, node: Node) -> Steps:
-    """Back to where the command was given."""
+    """Back to where the command was given; if the robot went somewhere in the one before, to where
+    it was before that."""
+    if d.origin is not None and d.at is None and not d.done and not d.in_loop:
+        d.went(Text(d.origin))
+        return [Call("goto", {"place": Text(d.origin)})]
     start = d.start()
     d.went(start)
     return [Call("goto", {"place": start})]

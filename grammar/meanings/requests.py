@@ -9,7 +9,7 @@ import msgspec
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import START, Discourse, NotUnderstood, Steps
-from grammar.lexicon import Routine
+from grammar.lexicon import Name, Routine
 from grammar.meanings.registry import meaning
 from grammar.plan import Call, ForEach, Plan, Remember, Text
 from grammar.requests import Kind, Request
@@ -79,13 +79,13 @@ def request(d: Discourse, node: Node, kind: Kind) -> Request:
         if part is None:
             return ""
         if isinstance(part, Leaf) and isinstance(part.value, tuple):
-            known: Routine = part.value[0]
+            known: Name | Routine = part.value[0]
             return known.name
         if part.end == part.start + 1 and d.tokens[part.start].kind == "quote":
             return d.tokens[part.start].inner
         return d.words(part.start, part.end)
 
-    return Request(kind, said("name"), said("sentence"), said("part"))
+    return Request(kind, said("name"), said("new"), said("sentence"), said("part"))
 
 
 @meaning("ask_help")
@@ -121,3 +121,15 @@ def forget_routine(d: Discourse, node: Node) -> Request:
 @meaning("schedule_routine")
 def schedule_routine(d: Discourse, node: Node) -> Request:
     return request(d, node, "schedule")
+
+
+@meaning("rename_routine")
+def rename_routine(d: Discourse, node: Node) -> Request:
+    return request(d, node, "rename")
+
+
+@meaning("ask_about_run")
+def ask_about_run(d: Discourse, node: Node) -> Request:
+    """ "what did she say?", "are you done?"."""
+    kind: Kind = node.production.fixed["kind"]
+    return request(d, node, kind)
