@@ -207,7 +207,7 @@ class _Witness:
             return self.said("")
         people = [self.person(who) for who, _, said in self.answers() if self.same(said, answer)]
         if not people:
-            return self.pack.phrase("nobody_answered", answer=answer)
+            return self.pack.phrase("nobody_answered_so", answer=answer)
         return self.pack.phrase("these_said", people=", ".join(people), answer=answer)
 
     def how_many_said(self, answer: str) -> str:
