@@ -8,7 +8,7 @@ by their first alias, and by the words that the language lists under `speech: {n
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from grammar.language import Language, spoken_name
@@ -25,7 +25,10 @@ class Naming:
     looks: Mapping[str, str] = field(default_factory=dict)
     """The same for what tells one thing from others: "red", "waving"."""
     relations: Mapping[str, str] = field(default_factory=dict)
-    """The same for what stands between two nouns: "behind"."""
+    """The same for what stands between two nouns: "behind", "derrière {the}" where an article
+    follows."""
+    with_article: Callable[[str], str] = str
+    """Puts its definite article before a noun."""
     before_noun: bool = False
     """Whether what stands before a noun stays there."""
 
@@ -33,22 +36,33 @@ class Naming:
         """A name, or a noun phrase around one ("red cup" -> "tasse de couleur rouge"): what stands
         before the noun is said after it."""
         if text in self.relations:
-            return self.relations[text]
+            return self.relations[text].removesuffix(" {the}")
+        for known in (self.names, self.looks):
+            if text in known:
+                return known[text]
         words = text.split()
-        for length in range(len(words) - 1, 0, -1):
-            relation = self.relations.get(" ".join(words[:length]))
-            if relation is not None:
-                return f"{relation} {self.called(' '.join(words[length:]))}"
+        for start in range(len(words) - 1):
+            for length in range(len(words) - 1 - start, 0, -1):
+                relation = self.relations.get(" ".join(words[start : start + length]))
+                if relation is None:
+                    continue
+                if start:
+                    first = self.called(" ".join(words[:start]))
+                    return f"{first} {self.called(' '.join(words[start:]))}"
+                noun = self.called(" ".join(words[length:]))
+                if "{the}" in relation:
+                    return relation.format(the=self.with_article(noun))
+                return f"{relation} {noun}"
         for known in (self.names, self.looks):
             for length in range(len(words), 0, -1):
                 for start in range(len(words) - length + 1):
-                    noun = known.get(" ".join(words[start : start + length]))
-                    if noun is not None:
+                    called = known.get(" ".join(words[start : start + length]))
+                    if called is not None:
                         first = " ".join(words[:start])
                         before = [self.called(first)] if first else []
                         after = words[start + length :]
                         stays = self.before_noun or first in self.relations
-                        told = [*before, noun] if stays else [noun, *before]
+                        told = [*before, called] if stays else [called, *before]
                         return " ".join((*told, *([self.called(" ".join(after))] if after else [])))
         return text
 
@@ -69,7 +83,13 @@ def naming(lexicon: Lexicon, language: Language) -> Naming:
     names |= {name.name: name.aliases[0] for name in known if name.aliases}
     looks: dict[str, str] = language.speech.get("looks", {})
     relations: dict[str, str] = language.speech.get("relations", {})
-    return Naming(names, looks, relations, bool(language.speech.get("adjectives_first")))
+    return Naming(
+        names,
+        looks,
+        relations,
+        functools.partial(the, language=language),
+        bool(language.speech.get("adjectives_first")),
+    )
 
 
 def _words(language: Language) -> Speech | None:

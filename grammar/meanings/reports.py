@@ -259,7 +259,7 @@ def counted_info(d: Discourse, node: Node) -> Report:
     looked_for = sought(d, thing)
     count = Ask("count", {"thing": looked_for})
     if thing.furniture and isinstance(looked_for, Text):  # "cups on the table"
-        things, spot = things + d.called(looked_for.value.removeprefix(thing.text)), ""
+        things, spot = f"{things} {d.called(looked_for.value.removeprefix(thing.text))}", ""
     phrase = "counted_at" if spot and "counted_at" in d.language.phrases else "counted"
     words = (
         (("things", things), ("place", spot)) if phrase == "counted_at" else (("things", things),)
