@@ -212,10 +212,16 @@ class Discourse:
     """The answer that was last told of (`grammar.meanings.answers.Wanted`): "... that is"."""
     news: Any = None
     """What was told last of a poll or a round (`grammar.meanings.news.News`)."""
+    polled_for: str | None = None
+    """What the last poll was to find out: "who", "many"."""
+    asking_each: bool = False
+    """Whether a question is put to each of several: who wants tea is then whether they do."""
     checked: str | None = None
     """The variable with what was checked last."""
     report_open: bool = False
     """Whether nobody was named whom to tell the last report."""
+    last_counted: Thing | None = None
+    """What was counted last: "how many people are here, and how many in the lobby?"."""
     counted: Any = None
     """The step that counts in the last round, the place it is at, and what is counted."""
     told: Step | None = None

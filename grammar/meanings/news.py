@@ -14,7 +14,7 @@ from typing import Any, Final
 import msgspec
 
 from grammar.chart import Node
-from grammar.discourse import START, Discourse, NotUnderstood, Steps, Thing
+from grammar.discourse import START, Discourse, NotUnderstood, Steps, Thing, Where
 from grammar.meanings.answers import Said, Wanted, wanted, yes
 from grammar.meanings.finding import go, speak_to
 from grammar.meanings.nouns import is_me
@@ -319,6 +319,17 @@ def chosen_most(d: Discourse, surveys: list[Survey], kind: str = "most") -> Reca
         better = Compare(count, ">" if kind == "most" else "<", number)
         d.done.append(If(better, (Remember(number.name, count), Remember(best.name, Text(option)))))
     return best
+
+
+@meaning("thing_chosen")
+def thing_chosen(d: Discourse, node: Node) -> Thing:
+    """ "whatever most of them want"."""
+    spot: Where | None = d.get(node, "from")
+    found = Thing(chosen_most(d, asked_before(d)))
+    if spot is not None:
+        found = replace(found, place=spot.place, furniture=spot.furniture)
+    d.thing, d.thing_last = found, True
+    return found
 
 
 def _answers(d: Discourse, surveys: list[Survey], answer: Wanted, kind: str) -> Steps:

@@ -32,7 +32,7 @@ def options_of(d: Discourse, node: Node) -> tuple[str, ...]:
         if "wh" in node.parts and d.tokens[start - 1].norm != COMMA:
             start = _end_of_question(d, start, rest.end)
         return split_options(d, start, rest.end)
-    if fixed.get("yes_no"):
+    if fixed.get("yes_no") or (d.asking_each and "each" in fixed):
         return (d.language.phrase("yes"), d.language.phrase("no"))
     return ()
 
@@ -85,6 +85,9 @@ def split_options(d: Discourse, start: int, end: int) -> tuple[str, ...]:
             begin = max(begin, last - longest)
             begin, last = without_little_words(d, begin, last)
         options.append(d.words(begin, last).strip(" ()"))
+    numbers = [d.tokens[begin].value for begin, last in stripped if last - begin == 1]
+    if len(numbers) == len(stripped) and all(each is not None for each in numbers):
+        options = [f"{number:g}" for number in numbers]  # as digits, to count with
     return tuple(dict.fromkeys(option for option in options if option))
 
 

@@ -19,6 +19,7 @@ from typing import Any, Final
 from grammar.chart import Node
 from grammar.discourse import ANYONE, START, Ambiguous, Discourse, NotUnderstood, Steps, Thing
 from grammar.meanings.finding import found, go, look_for, named, not_found
+from grammar.meanings.surveys import each_asked, uses_answer
 from grammar.naming import place_called
 from grammar.plan import (
     Ask,
@@ -208,6 +209,13 @@ def over_them(d: Discourse, node: Node, person: Thing, one: One) -> Steps:
     """ "them": people, or things that were spoken of after them."""
     if d.thing_last and d.thing is not None:
         return over_things(d, node, d.thing, one)
+    asked = each_asked(d)
+    if asked is not None:  # "ask Alice and Bob what they want and bring it to them": each their own
+        scene = d.scene()
+        steps = one(asked)
+        if uses_answer(d, steps):
+            return steps
+        d.set_scene(scene)
     return over_people(d, node, person, one)
 
 

@@ -51,8 +51,10 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
         d.person = person
     question = node.parts["question"]
     assert isinstance(question, Node)
+    d.asking_each = everybody or several
     text: str = d.build(question)
     options = options_of(d, question)
+    d.asking_each = False
     scale = node.parts.get("scale")
     if scale is not None:  # "ask from one to ten how bad it is"
         options = numbers_offered(d, scale.start, scale.end)
@@ -65,6 +67,8 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
         if len(d.lexicon.places) <= MOST_OPTIONS:
             arguments["options"] = Ask("places")
         d.place = Recall(name)
+    if (everybody or several) and "each" in question.production.fixed:
+        d.polled_for = "who"
     offered(d, question, options, name)
     if person is not None and person.known:
         arguments["person"] = person.value
@@ -105,6 +109,11 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
     """What was asked about is "it" afterwards: a wheelchair that somebody may need, or whichever
     of tea and coffee they chose."""
     rest = question.parts.get("rest")
+    counted = question.parts.get("wh")
+    noun = counted.parts.get("noun") if isinstance(counted, Node) else None
+    if noun is not None:  # "how many blankets they need"
+        what = singular(d.noun_words(noun.start, noun.end), d.language)
+        d.thing, d.thing_last = Thing(Text(what)), False
     if "verb" not in question.parts or rest is None:
         return
     if len(options) > 1 and not question.production.fixed.get("where"):
@@ -133,7 +142,7 @@ def remember_answer(d: Discourse, options: tuple[str, ...], name: str) -> str:
         variable = d.variable(name)
     d.answer = variable
     d.answer_options = options
-    d.report = d.news = d.checked = None
+    d.report = d.news = d.checked = d.polled_for = None
     return variable
 
 
@@ -142,6 +151,8 @@ def question(d: Discourse, node: Node) -> str:
     """A direct question made of a reported one by its form: "Do you {verb} {rest}?"."""
     form: str = node.production.fixed["form"]
     past = node.production.fixed.get("past")
+    if d.asking_each and "each" in node.production.fixed:
+        form, past = str(node.production.fixed["each"]), None
     values: dict[str, str] = {}
     you = "to_you_who" if "asked" in node.parts else "to_you"
     for name, part in node.parts.items():
@@ -154,9 +165,9 @@ def question(d: Discourse, node: Node) -> str:
         base = past_base(d, verb) if past else None
         if base is not None:
             form, verb = str(past), base
-        elif base_form(d, verb) != verb:
+        elif base_form(d, verb) != verb and not d.asking_each:
             form = str(node.production.fixed.get("third", form))
-        as_it_is = node.production.fixed.get("as_it_is", False)
+        as_it_is = node.production.fixed.get("as_it_is", False) and not d.asking_each
         values["verb"] = verb if as_it_is else base_form(d, verb)
         values["rest"] = f"{values['rest']} {particle}"
     form = form if values["rest"].strip() else form.replace(" {rest},", ",")

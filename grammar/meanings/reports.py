@@ -252,6 +252,11 @@ def counted_info(d: Discourse, node: Node) -> Report:
         place=thing.place or more.place or (first.place if first else None),
         furniture=thing.furniture or more.furniture or (first.furniture if first else None),
     )
+    d.last_counted = thing
+    return count_report(d, thing)
+
+
+def count_report(d: Discourse, thing: Thing) -> Report:
     phrase_words = d.called(thing.text)
     spot = _spot_words(d, thing)
     noun, _, rest = phrase_words.partition(" ") if thing.person else (phrase_words, "", "")
@@ -334,7 +339,7 @@ def known_words(d: Discourse) -> Steps:
     """Say the last answer, those of all who were asked, or what the last code says."""
     if d.answer is not None:
         if d.surveys and in_loop(d, d.surveys[-1].call):
-            return news.polled(d, "answers", None).words
+            return news.polled(d, d.polled_for or "answers", None).words
         return [Call("say", {"text": Recall(d.answer)})]
     if d.code is not None:
         return [d.say("code_is", value=Recall(d.code))]
@@ -381,8 +386,10 @@ def retold(d: Discourse, person: Thing | None) -> Steps:
 def report_told(d: Discourse, node: Node) -> news.Told:
     """ "how many people are in the lobby", "what time it is", as one of several things to tell."""
     found: Report | Steps = d.get(node, "info")
-    if isinstance(found, list):
-        return news.Told(found, [])
+    return news.Told(found, []) if isinstance(found, list) else told_report(d, found)
+
+
+def told_report(d: Discourse, found: Report) -> news.Told:
     first: Steps = []
     if found.place is not None and found.place != d.at:
         first.append(Call("goto", {"place": found.place}))
@@ -392,6 +399,16 @@ def report_told(d: Discourse, node: Node) -> news.Told:
         first.append(Remember(name, found.value))
         found = replace(found, value=Recall(name))
     return news.Told([_saying(d, found)], first)
+
+
+@meaning("counted_too")
+def counted_too(d: Discourse, node: Node) -> news.Told:
+    """ "how many people are in the kitchen and how many in the lobby"."""
+    if d.last_counted is None:
+        raise NotUnderstood(d.language.phrase("count_what"))
+    spot: Where = d.get(node, "spot")
+    thing = replace(d.last_counted, place=spot.place, furniture=spot.furniture)
+    return told_report(d, count_report(d, thing))
 
 
 @meaning("whether_told")
@@ -445,7 +462,9 @@ def found_told(d: Discourse, node: Node | None = None) -> news.Told:
     if d.report is not None:
         return _report_again(d)
     if d.answer is not None and d.surveys:
-        return news.polled(d, "each" if in_loop(d, d.surveys[-1].call) else "answers", None)
+        many = node is not None and bool(node.production.fixed.get("many"))
+        each = "many" if many else d.polled_for or "each"
+        return news.polled(d, each if in_loop(d, d.surveys[-1].call) else "answers", None)
     return news.Told(known_words(d), [])
 
 

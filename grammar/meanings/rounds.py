@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
 from grammar.meanings.finding import speak_to
-from grammar.meanings.news import News, Told, go_back
+from grammar.meanings.news import News, Told, go_back, take_back
 from grammar.meanings.nouns import is_me, kind_places, sought, thing_it
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import note, replacing
@@ -108,6 +108,8 @@ def summed_up(d: Discourse, kind: str, thing: Thing | None = None) -> Told:
     """What was counted in each place, put together."""
     if d.counted is None:
         d.counted = _counting(d, thing)
+    elif d.news is not None:
+        take_back(d, d.news)  # "count them in the lobby and the hall and tell me where most are"
     counting, place, things = d.counted
     first, notes, told = _kept(d, kind, counting.name, place, things)
     note(d, counting, notes, first)
@@ -188,6 +190,7 @@ def counted_around(d: Discourse, node: Node) -> Told:
     kind = str(node.production.fixed["kind"])
     first, notes, told = _kept(d, kind, count, Recall(place), things_called(d, thing))
     counting = Remember(count, Ask("count", {"thing": sought(d, thing)}))
+    d.counted = (counting, Recall(place), things_called(d, thing))
     return Told(told, [*first, round_of(d, places, [counting, *notes], place)])
 
 

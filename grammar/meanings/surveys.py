@@ -13,7 +13,7 @@ from typing import Any, Final
 import msgspec
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, NotUnderstood, Steps
+from grammar.discourse import Discourse, NotUnderstood, Steps, Thing
 from grammar.meanings.registry import meaning
 from grammar.plan import (
     Ask,
@@ -36,7 +36,7 @@ from grammar.plan import (
     Value,
     While,
 )
-from grammar.tidy import BODIES, nodes
+from grammar.tidy import BODIES, mentions, nodes
 
 LOOPS: Final = (ForEach, Repeat, While, RepeatUntil, Forever)
 
@@ -116,6 +116,27 @@ def in_loop(d: Discourse, call: Call) -> bool:
     """Whether it is done more than once."""
     loops = [each for each in nodes(tuple(d.done)) if isinstance(each, LOOPS)]
     return any(each is call for loop in loops for each in nodes(loop))
+
+
+# --- what is done with the answer of each
+
+
+def each_asked(d: Discourse) -> Thing | None:
+    """Whoever is asked in a loop, for what is done with the answer: "ask Alice and Bob what they
+    want to drink and bring it to them"."""
+    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    if survey is None or not isinstance(survey.who, Recall) or not in_loop(d, survey.call):
+        return None
+    people = any(
+        isinstance(each, ForEach) and each.variable == survey.who.name and d.place != survey.who
+        for each in nodes(tuple(d.done))
+    )
+    return Thing(survey.who, known=True, person=True) if people else None
+
+
+def uses_answer(d: Discourse, steps: Steps) -> bool:
+    """Whether some steps need the last answer."""
+    return d.answer is not None and mentions(steps, Recall(d.answer))
 
 
 # --- until so many have answered
