@@ -19,6 +19,7 @@ from typing import Any, Final
 
 PARTS: Final = "|"
 """Between the particle of a verb that may part and the rest of it."""
+NEXT_TO_NOTHING: Final = 0.001
 AFTER: Final = ">>"
 """Before what stands behind the end of a clause."""
 
@@ -28,9 +29,9 @@ _WITHOUT: Final = re.compile(r"\s*<VERB_off>")
 
 def forms(
     verbs: Mapping[str, Sequence[str]], conjugation: Mapping[str, Any]
-) -> dict[str, list[str]]:
+) -> dict[str, Any]:
     """The rules that a language's verbs stand for, with their words."""
-    rules: dict[str, list[str]] = {}
+    rules: dict[str, Any] = {}
     for name, infinitives in verbs.items():
         first: dict[str, None] = {}
         whole: dict[str, None] = {}
@@ -50,14 +51,20 @@ def forms(
             else:
                 whole |= begins
             last |= dict.fromkeys(pattern.format(particle=particle, **made) for pattern in patterns)
-        rules[f"{name}_1"] = [f"({'|'.join(first)})"]
-        rules[f"{name}_2"] = [f"({'|'.join(last)})"]
+        rules[f"{name}_1"] = _rule(first)
+        rules[f"{name}_2"] = _rule(last)
         if particles:
-            rules[f"{name}_off"] = [f"({'|'.join(particles)})"]
+            rules[f"{name}_off"] = _rule(particles)
         if whole and parting:
-            rules[f"{name}_whole"] = [f"({'|'.join(whole)})"]
-            rules[f"{name}_parting"] = [f"({'|'.join(parting)})"]
+            rules[f"{name}_whole"] = _rule(whole)
+            rules[f"{name}_parting"] = _rule(parting)
     return rules
+
+
+def _rule(words: Mapping[str, None]) -> dict[str, Any]:
+    """A rule of its own for some words, with next to no cost: one without any would be copied into
+    each template that has the verb."""
+    return {"say": f"({'|'.join(words)})", "cost": NEXT_TO_NOTHING}
 
 
 def _conjugated(infinitive: str, conjugation: Mapping[str, Any]) -> dict[str, str]:

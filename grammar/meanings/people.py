@@ -5,7 +5,16 @@ from __future__ import annotations
 from dataclasses import replace
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import ANYONE, Ambiguous, Discourse, NotUnderstood, Steps, Thing, Where
+from grammar.discourse import (
+    ANYONE,
+    Ambiguous,
+    Discourse,
+    NotUnderstood,
+    Steps,
+    Thing,
+    Where,
+    as_value,
+)
 from grammar.meanings.finding import look_for, meet, named, speak_to, where_sent
 from grammar.meanings.nouns import is_me, kind_places
 from grammar.meanings.registry import meaning
@@ -112,6 +121,23 @@ def guide_list(d: Discourse, node: Node) -> Steps:
             d, node, kind_places(d, d.get(node, "kinds")), lambda place: [lead(d, person, place)]
         ),
     ]
+
+
+@meaning("wait_with")
+def wait_with(d: Discourse, node: Node) -> Steps:
+    """ "stay with Henry for ten minutes"."""
+    steps = meet(d, led(d, node))
+    return [*steps, Call("wait", {"seconds": as_value(d.get(node, "seconds"))})]
+
+
+@meaning("call_person")
+def call_person(d: Discourse, node: Node) -> Steps:
+    """ "call her": whoever was spoken of, if the robot has her among its contacts."""
+    person: Thing = d.get(node, "person_ref")
+    if person.text in d.lexicon.contacts:
+        return [Call("call", {"contact": person.value})]
+    words = d.words(node.parts["person_ref"].start, node.parts["person_ref"].end)
+    raise NotUnderstood(d.language.phrase("unknown_contact", name=words))
 
 
 @meaning("follow")

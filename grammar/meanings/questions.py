@@ -108,7 +108,7 @@ def several_of_a_kind(d: Discourse, node: Node, person: Thing | None) -> Thing |
 def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -> None:
     """What was asked about is "it" afterwards: a wheelchair that somebody may need, or whichever
     of tea and coffee they chose."""
-    rest = question.parts.get("rest")
+    rest = question.parts.get("subject") or question.parts.get("rest")
     counted = question.parts.get("wh")
     noun = counted.parts.get("noun") if isinstance(counted, Node) else None
     if noun is not None:  # "how many blankets they need"
@@ -122,7 +122,7 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
         if not yes_no and d.place != Recall(name):
             d.thing, d.thing_last = Thing(Recall(name)), False
         elif yes_no and 0 < end - start <= LONGEST_OFFERED:
-            d.thing, d.thing_last = Thing(Text(" ".join(d.norms(start, end)))), False
+            d.thing, d.thing_last = Thing(Text(d.noun_words(start, end))), False
 
 
 def asked(d: Discourse, call: Call, options: tuple[str, ...], who: Value | None) -> Call:

@@ -35,6 +35,14 @@ def sentence_form(text: str) -> str:
     return capital(text) if text[-1:] in ".!?…" else capital(text) + "."
 
 
+@meaning("remind")
+def remind(d: Discourse, node: Node) -> Steps:
+    """ "remind me of the meeting"."""
+    part = node.parts["text"]
+    words = d.sentence("reminder", what=d.words(part.start, part.end))
+    return speak_to(d, d.get(node, "person_ref"), [Call("say", {"text": words})])
+
+
 @meaning("say_it")
 def say_it(d: Discourse, node: Node) -> Steps:
     """ "and say it": the answer or the code of before."""
