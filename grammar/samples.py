@@ -8,16 +8,21 @@ from __future__ import annotations
 import functools
 import random
 import re
+from collections.abc import Iterable, Mapping
 from typing import Final
 
 from grammar.language import Language, load_language
 from grammar.lexicon import Lexicon
 from grammar.naming import joined_up, naming, place_called, the
-from grammar.network import Production, parts_of
+from grammar.network import parts_of
 from grammar.templates import Choice, Part, Sequence, Template, Word
 from grammar.wordforms import kind_words
 
 _SLOT: Final = re.compile(r"\{(\w+)(!the)?\}")
+SHORTER_FROM: Final = 2
+QUICKEST_FROM: Final = 6
+"""How deep in the rules a random sentence is to come to an end soon, and as fast as it can."""
+DEEPEST: Final = 20
 _SPACE_BEFORE: Final = re.compile(r" (?=[,.:]|'s\b)")
 
 
@@ -112,26 +117,20 @@ class _Sampler:
         self.lexicon = lexicon
         self.language = language
         self.chance = chance
+        self.likely = _likely(language, bool(lexicon.routines))
+        self.depths = _depths(language, bool(lexicon.routines))
 
     def sentence(self) -> str:
         return _SPACE_BEFORE.sub("", " ".join(self.rule("steps", 0)))
 
     def rule(self, name: str, depth: int) -> list[str]:
-        productions = [
-            each for each in self.language.rules[name] if each.cost < 2 and self.sayable(each)
-        ]
-        if depth > 2:
-            productions = sorted(productions, key=self.depth)[:3]
-        production = self.chance.choice(productions)
-        return self.template(self.chance.choice(production.templates), depth + 1)
-
-    def sayable(self, production: Production) -> bool:
-        """Whether there are routines, for a sentence about them."""
-        return bool(self.lexicon.routines) or not any(
-            part.name == "routine"
-            for template in production.templates
-            for part in parts_of(template)
-        )
+        each = self.likely[name]
+        if depth > SHORTER_FROM:
+            quickest = min(map(self.depth, (way for ways in each for way in ways)))
+            more = 1 if depth < QUICKEST_FROM else 0
+            short = [[way for way in ways if self.depth(way) <= quickest + more] for ways in each]
+            each = [ways for ways in short if ways]
+        return self.template(self.chance.choice(self.chance.choice(each)), depth + 1)
 
     def template(self, template: Template, depth: int) -> list[str]:
         match template:
@@ -141,8 +140,11 @@ class _Sampler:
                 return [word for part in parts for word in self.template(part, depth)]
             case Choice(alternatives):
                 empty = [each for each in alternatives if each == Sequence(())]
-                if empty and (depth > 2 or self.chance.random() < 0.7):
+                if empty and (depth > SHORTER_FROM or self.chance.random() < 0.7):
                     return []
+                if depth > SHORTER_FROM:
+                    quickest = min(map(self.depth, alternatives))
+                    alternatives = tuple(a for a in alternatives if self.depth(a) == quickest)
                 return self.template(self.chance.choice(alternatives), depth)
             case Part(name, _, True):
                 return self.rule(name, depth)
@@ -167,13 +169,55 @@ class _Sampler:
             "text": ["lunch is ready", "good morning"],
             "noun": ["banana", "green bottle"],
             "word": ["like"],
+            "verb": ["kommt"],
+            "zu_infinitive": ["anzurufen"],
+            "remark": ["lunch is ready"],
             "unknown": ["pharmacy"],
             "stranger": ["Zorro"],
         }
         return self.chance.choice(names or plain.get(name) or ["robot"])
 
-    def depth(self, production: Production) -> int:
-        """How many rules its templates refer to: the fewer, the sooner the sentence ends."""
-        return min(
-            sum(part.is_rule for part in parts_of(template)) for template in production.templates
-        )
+    def depth(self, template: Template) -> int:
+        """How deep the shortest sentence of a template goes into the rules."""
+        return _depth(template, self.depths)
+
+
+@functools.cache
+def _likely(language: Language, routines: bool) -> dict[str, list[list[Template]]]:
+    """For each rule the templates of its likely entries; without routines, none that speak of
+    them."""
+    return {
+        name: [
+            list(each.templates)
+            for each in productions
+            if each.cost < 2 and (routines or not _speaks_of_routines(each.templates))
+        ]
+        for name, productions in language.rules.items()
+    }
+
+
+def _speaks_of_routines(templates: Iterable[Template]) -> bool:
+    return any(part.name == "routine" for each in templates for part in parts_of(each))
+
+
+@functools.cache
+def _depths(language: Language, routines: bool) -> dict[str, int]:
+    """How deep the shortest sentence of each rule goes."""
+    likely = _likely(language, routines)
+    depths: dict[str, int] = {}
+    for _ in range(DEEPEST):
+        for name, entries in likely.items():
+            each = [_depth(way, depths) for ways in entries for way in ways]
+            depths[name] = 1 + min(each, default=DEEPEST)
+    return depths
+
+
+def _depth(template: Template, depths: Mapping[str, int]) -> int:
+    match template:
+        case Sequence(parts):
+            return max((_depth(part, depths) for part in parts), default=0)
+        case Choice(alternatives):
+            return min(_depth(each, depths) for each in alternatives)
+        case Part(name, _, True):
+            return depths.get(name, DEEPEST)
+    return 0
