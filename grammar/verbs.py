@@ -27,9 +27,7 @@ _MARKED: Final = re.compile(r"~(\w+)")
 _WITHOUT: Final = re.compile(r"\s*<VERB_off>")
 
 
-def forms(
-    verbs: Mapping[str, Sequence[str]], conjugation: Mapping[str, Any]
-) -> dict[str, Any]:
+def forms(verbs: Mapping[str, Sequence[str]], conjugation: Mapping[str, Any]) -> dict[str, Any]:
     """The rules that a language's verbs stand for, with their words."""
     rules: dict[str, Any] = {}
     for name, infinitives in verbs.items():

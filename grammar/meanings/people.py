@@ -130,16 +130,6 @@ def wait_with(d: Discourse, node: Node) -> Steps:
     return [*steps, Call("wait", {"seconds": as_value(d.get(node, "seconds"))})]
 
 
-@meaning("call_person")
-def call_person(d: Discourse, node: Node) -> Steps:
-    """ "call her": whoever was spoken of, if the robot has her among its contacts."""
-    person: Thing = d.get(node, "person_ref")
-    if person.text in d.lexicon.contacts:
-        return [Call("call", {"contact": person.value})]
-    words = d.words(node.parts["person_ref"].start, node.parts["person_ref"].end)
-    raise NotUnderstood(d.language.phrase("unknown_contact", name=words))
-
-
 @meaning("follow")
 def follow(d: Discourse, node: Node) -> Steps:
     person = led(d, node)
