@@ -397,6 +397,8 @@ def compared(d: Discourse, node: Node) -> Steps:
     steps: Steps = []
     counts: list[Value] = []
     for each in (left, right):
+        if not isinstance(each, Text | Recall):
+            raise NotUnderstood(d.language.phrase("which_places"))
         name = d.variable("count")
         steps += [Call("goto", {"place": each}), Remember(name, counting)]
         counts.append(Recall(name))
