@@ -283,7 +283,7 @@ class Discourse:
         return node.production.fixed.get(name, default)
 
     def _leaf(self, leaf: Leaf) -> Any:
-        if leaf.slot == "place":
+        if leaf.slot in ("place", "place_short"):
             return Text(self.one_of(leaf).name)
         if isinstance(leaf.value, tuple):
             first = leaf.value[0]

@@ -19,7 +19,7 @@ from typing import Any, Final
 
 from grammar.chart import Leaf, Node
 from grammar.language import Language
-from grammar.tokens import Token
+from grammar.tokens import COLON, Token
 
 SPOKEN: Final = frozenset({"say", "say_that"})
 REQUESTED: Final = frozenset({"ask_to"})
@@ -224,7 +224,8 @@ class Judge:
                 return doubt(at, "said_or_done")
         if node.means in ANSWERS:
             return self.answer(start, end, doubt)
-        if not spoken or clause or self.is_clause(start, end):
+        announced = start > 0 and self.tokens[start - 1].norm == COLON
+        if not spoken or clause or announced or self.is_clause(start, end):
             return None
         if self.asks(start, end):
             return doubt(start, "cannot_say")

@@ -106,12 +106,26 @@ class Names:
     def _places(self) -> None:
         for place in self.lexicon.places:
             self._add_name("place", place)
+            for text in (place.name, *place.aliases):
+                self._shorter(place, text)
         for kind in self.lexicon.place_kinds:
             one, many = kind_words(kind, self.language)
             for word in one:
                 self._add("kind", word, kind)
             for word in many:
                 self._add("kinds", word, kind)
+
+    def _shorter(self, place: Name, text: str) -> None:
+        """What is left of a place's name where its kind goes without saying: "supply" of "supply
+        room", "b" of "ward b" after "ward a"."""
+        *before, last = self.language.tokens_of(text)
+        if not before:
+            return
+        kinds = {word for kind in kind_words(place.kind or "", self.language) for word in kind}
+        if len(last) == 1 or last.isdigit():
+            self._add_words("place_tail", (last,), place)
+        elif last in kinds and not {*before} <= self.language.closed and len(before[-1]) > 2:
+            self._add_words("place_short", tuple(before), place)
 
     def _asked(self, words: tuple[str, ...]) -> Iterable[tuple[str, ...]]:
         """A question; without its articles; as it is put to others: "when visiting hours are"."""

@@ -55,8 +55,10 @@ class Knowledge:
             places=tuple(Name(p.name, p.kind, said(p.aliases)) for p in world.places),
             people=tuple(Name(p.name, p.kind, said(p.aliases), p.is_) for p in world.people),
             objects=tuple(Name(o.name, o.kind, said(o.aliases), o.is_) for o in world.objects),
-            furniture=tuple(
-                Name(f.name, f.kind, said(f.aliases), inside=f.at) for f in world.furniture
+            furniture=(
+                *(Name(f.name, f.kind, said(f.aliases), inside=f.at) for f in world.furniture),
+                # Who goes to the main entrance goes to the place it leads to.
+                *(Name(d.name, "door", inside=d.at) for d in world.doors if d.name and d.at),
             ),
             contacts=tuple(contact.name for contact in world.contacts),
             contact_aliases=tuple(

@@ -236,6 +236,35 @@ def place_list(d: Discourse, node: Node) -> list[Value]:
     return [first, *(rest or [])]
 
 
+@meaning("place_of_furniture")
+def place_of_furniture(d: Discourse, node: Node) -> Value:
+    """ "wait at the main entrance": the place where it is."""
+    furniture = d.get(node, "furniture")
+    home = home_of(d, furniture)
+    if home is None:
+        raise NotUnderstood(d.language.phrase("unknown_place", name=furniture))
+    d.place = home
+    return home
+
+
+@meaning("place_tail")
+def place_tail(d: Discourse, node: Node) -> Value:
+    """ "b" in "ward a, b and c": a place of the same kind as the one before."""
+    leaf = node.parts["place_tail"]
+    assert isinstance(leaf, Leaf)
+    before = d.place.value if isinstance(d.place, Text) else ""
+    kind = next((place.kind for place in d.lexicon.places if place.name == before), None)
+    alike = [name.name for name in leaf.value if name.kind == kind and name.name != before]
+    if len(alike) != 1:
+        raise NotUnderstood(
+            d.language.phrase("unknown_place", name=d.words(node.start, node.end)),
+            tuple(name.name for name in leaf.value),
+            (node.start, node.end),
+        )
+    d.place = Text(alike[0])
+    return d.place
+
+
 # --- what follows a noun
 
 
