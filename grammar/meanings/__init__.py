@@ -14,6 +14,7 @@ import grammar.meanings.conditions
 import grammar.meanings.control
 import grammar.meanings.conversation
 import grammar.meanings.driving
+import grammar.meanings.hosting
 import grammar.meanings.inquiries
 import grammar.meanings.loops
 import grammar.meanings.messages

@@ -121,6 +121,13 @@ def place_unknown(d: Discourse, node: Node) -> Value:
 
 
 def unknown_place(d: Discourse, words: str, node: Node) -> NotUnderstood:
+    capitals = any(token.capital for token in d.tokens[node.start : node.end] if token.start)
+    if capitals and not d.language.speech.get("capital_nouns"):
+        return NotUnderstood(
+            d.language.phrase("unknown_name", name=words),
+            nearest(words, (*d.lexicon.places, *d.lexicon.people)),
+            (node.start, node.end),
+        )
     return NotUnderstood(
         d.language.phrase("unknown_place", name=words),
         nearest(words, d.lexicon.places),
@@ -550,6 +557,19 @@ def listed(d: Discourse, node: Node) -> list[Thing]:
         each = each.parts.get("rest")
     if isinstance(each, Node):
         found.append(d.build(each))
+    return found
+
+
+@meaning("thing_something")
+def thing_something(d: Discourse, node: Node) -> Thing:
+    """ "something": of a kind that is told by where or how it is, else asked for."""
+    if "mods" not in node.parts:
+        word = d.words(node.start, node.end)
+        raise NotUnderstood(
+            d.language.phrase("bring_what", word=word), gap=(node.start, node.end)
+        )
+    found = described(d, "object", node, lies_about=True)
+    d.thing, d.thing_last = found, True
     return found
 
 

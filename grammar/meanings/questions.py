@@ -114,6 +114,8 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
     if noun is not None:  # "how many blankets they need"
         what = singular(d.noun_words(noun.start, noun.end), d.language)
         d.thing, d.thing_last = Thing(Text(what)), False
+    elif not options and "verb" in question.parts and d.thing is None and d.place != Recall(name):
+        d.thing, d.thing_last = Thing(Recall(name)), False  # "ask what they need and bring it"
     if "verb" not in question.parts or rest is None:
         return
     if len(options) > 1 and not question.production.fixed.get("where"):

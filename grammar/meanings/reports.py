@@ -41,7 +41,7 @@ from grammar.plan import (
     Truth,
     Value,
 )
-from grammar.wordforms import plural
+from grammar.wordforms import plural, singular
 
 
 @dataclass(frozen=True)
@@ -203,6 +203,16 @@ def things_on(d: Discourse, place: Thing) -> Report:
     return Report("only", Recall(words), place.place, before=before)
 
 
+@meaning("kind_seen")
+def kind_seen(d: Discourse, node: Node) -> Report:
+    """ "which drinks are on the counter?"."""
+    head = node.parts["head"]
+    assert isinstance(head, Leaf)
+    name = str(head.value[0]) if head.value else d.noun_words(head.start, head.end)
+    thing = described(d, singular(name, d.language), node, lies_about=True)
+    return Report("only", Ask("describe", {"thing": sought(d, thing)}), thing.place, name="description")
+
+
 @meaning("looks_of")
 def looks_of(d: Discourse, node: Node) -> Report:
     """How something looks; a description says it all."""
@@ -236,7 +246,8 @@ def _best(d: Discourse, node: Node) -> Thing:
     head = node.parts.get("head")
     noun = "object"
     if isinstance(head, Leaf):
-        noun = str(head.value[0]) if head.value else d.words(head.start, head.end)
+        said = str(head.value[0]) if head.value else d.noun_words(head.start, head.end)
+        noun = singular(said, d.language)
     return described(d, noun, node)
 
 

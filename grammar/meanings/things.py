@@ -39,6 +39,8 @@ def grab(d: Discourse, node: Node) -> Steps:
 
 def pick_up(d: Discourse, thing: Thing) -> Steps:
     """Find a thing and take it; nothing if it is in the hand by what was said."""
+    if thing.person:
+        raise NotUnderstood(d.language.phrase("what_is_it", word=thing.text))
     if d.holding == thing.value:
         return []
     take_back_delivery(d, thing)
@@ -98,7 +100,21 @@ def bring(d: Discourse, node: Node) -> Steps:
         person.coming or person.group is not None or person.count is not None
     ):
         raise NotUnderstood(d.language.phrase("one_person"))
+    if node.production.fixed.get("handing") and person is not None and not thing.pronoun:
+        person = handed_there(d, thing, person)
     return deliver(d, thing, person, d.get(node, "where"))
+
+
+def handed_there(d: Discourse, thing: Thing, person: Thing) -> Thing:
+    """ "go to the lounge and give the bowl to Alex": he is there; the bowl has to be looked for."""
+    last = d.done[-1] if d.done else None
+    going = isinstance(last, Call) and last.method == "goto" and last.arguments["place"] == d.at
+    if not going or not isinstance(d.at, Text) or is_me(person) or thing.place or person.place:
+        return person
+    place = d.at
+    d.done.pop()
+    d.at = None
+    return replace(person, place=place, here=False)
 
 
 @meaning("bring_too")

@@ -1,0 +1,77 @@
+"""What a host does: introducing people to each other, leading somebody to somebody or by a way."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from grammar.chart import Node
+from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, Where
+from grammar.meanings.driving import go_to
+from grammar.meanings.finding import meet, named, speak_to, where_sent
+from grammar.meanings.people import guide, lead, led, speaks_of_things
+from grammar.meanings.registry import meaning
+from grammar.meanings.things import deliver
+from grammar.plan import Call, Text, Value
+
+
+@meaning("introduce")
+def introduce(d: Discourse, node: Node) -> Steps:
+    """ "introduce Mary to the guests in the living room": take her there, and say who she is."""
+    who = led(d, node)
+    remembered = d.person
+    to: Thing = where_sent(d, d.get(node, "to"))
+    d.person = remembered
+    steps: Steps = []
+    if to.place is not None and to.place != d.at:
+        steps = [*meet(d, who), lead(d, who, to.place)]
+        to = replace(to, here=to.plural)
+    if to.known and to.group is None:
+        saying = d.say("introducing_to", to=named(d, to), who=named(d, who))
+    else:
+        saying = d.say("introducing", who=named(d, who))
+    return [*steps, *speak_to(d, to, [saying])]
+
+
+@meaning("guide_to_person")
+def guide_to_person(d: Discourse, node: Node) -> Steps:
+    """ "take her to the man in the study": to where he is; a place that is not said is asked for."""
+    things = d.thing_last and speaks_of_things(d, node.parts["person_ref"])
+    thing = None if things else led(d, node)
+    other: Thing = d.get(node, "other")
+    if things and d.thing is not None:
+        return deliver(d, replace(d.thing, pronoun=True), other, None)
+    if other.place is None or thing is None:
+        person = named(d, other)
+        words = person if isinstance(person, str) else d.language.phrase("somebody")
+        raise NotUnderstood(d.language.phrase("where_is_person", person=words))
+    return [*meet(d, thing), lead(d, thing, other.place)]
+
+
+@meaning("guide_by_way")
+def guide_by_way(d: Discourse, node: Node) -> Steps:
+    """ "take her to the study via the kitchen"."""
+    way: Value = d.get(node, "by_way")
+    steps = guide(d, node)
+    last = steps[-1]
+    if not isinstance(last, Call) or last.method != "guide":
+        raise NotUnderstood(d.language.phrase("guide_needs_place"))
+    return [*steps[:-1], Call("guide", {**last.arguments, "place": way}), last]
+
+
+@meaning("go_by_way")
+def go_by_way(d: Discourse, node: Node) -> Steps:
+    """ "go to the study via the kitchen"."""
+    way: Value = d.get(node, "by_way")
+    return [Call("goto", {"place": way}), *go_to(d, node)]
+
+
+@meaning("bare_place")
+def bare_place(d: Discourse, node: Node) -> Value:
+    place: Value | Where = d.get(node, "place")
+    return place.place or Text("") if isinstance(place, Where) else place
+
+
+@meaning("cannot_do")
+def cannot_do(d: Discourse, node: Node) -> Steps:
+    """ "pour the milk into the cup": known, and beyond the methods of a robot."""
+    raise NotUnderstood(d.language.phrase("cannot_do", what=d.words(node.start, node.end)))
