@@ -34,7 +34,7 @@ def introduce(d: Discourse, node: Node) -> Steps:
 
 @meaning("guide_to_person")
 def guide_to_person(d: Discourse, node: Node) -> Steps:
-    """ "take her to the man in the study": to where he is; a place that is not said is asked for."""
+    """ "take her to the man in the study": to where he is. Asks for a place that is not said."""
     things = d.thing_last and speaks_of_things(d, node.parts["person_ref"])
     thing = None if things else led(d, node)
     other: Thing = d.get(node, "other")

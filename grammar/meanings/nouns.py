@@ -565,9 +565,7 @@ def thing_something(d: Discourse, node: Node) -> Thing:
     """ "something": of a kind that is told by where or how it is, else asked for."""
     if "mods" not in node.parts:
         word = d.words(node.start, node.end)
-        raise NotUnderstood(
-            d.language.phrase("bring_what", word=word), gap=(node.start, node.end)
-        )
+        raise NotUnderstood(d.language.phrase("bring_what", word=word), gap=(node.start, node.end))
     found = described(d, "object", node, lies_about=True)
     d.thing, d.thing_last = found, True
     return found

@@ -210,7 +210,9 @@ def kind_seen(d: Discourse, node: Node) -> Report:
     assert isinstance(head, Leaf)
     name = str(head.value[0]) if head.value else d.noun_words(head.start, head.end)
     thing = described(d, singular(name, d.language), node, lies_about=True)
-    return Report("only", Ask("describe", {"thing": sought(d, thing)}), thing.place, name="description")
+    return Report(
+        "only", Ask("describe", {"thing": sought(d, thing)}), thing.place, name="description"
+    )
 
 
 @meaning("looks_of")
