@@ -363,7 +363,7 @@ class Reader:
             "rejected",
             message=message,
             suggestions=suggestions,
-            unclear=self.words(*reason.span),
+            unclear=self.words(*(reason.span if reason.span != (0, 0) else reason.gap)),
             context=replace(self.context, question=self._open(reason)),
         )
 

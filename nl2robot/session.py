@@ -14,12 +14,18 @@ from typing import Any
 
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.operator import Operator
+from nl2robot.review import Review
 from nl2robot.runner import Approval, Status
-from nl2robot.terminal import Terminal
+from nl2robot.terminal import Decision, Terminal
 from nl2robot.translation import Translation
 from robot_api.errors import LostConnection
 from sandbox.limits import MAX_PROGRAM
 
+STOP = "robot.stop()\n"
+MOST_QUESTIONS = 5
+"""Questions back that are asked before the command is left alone."""
+LOOK_EVERY = 0.1
+"""Seconds between two looks whether a run is over."""
 LAST_WORDS = 2.0
 """Seconds to wait for the events of a run that is over."""
 
@@ -42,6 +48,10 @@ class Session:
         self.planner = planner
         self.approve_all = approve_all
         self.last_run: int | None = None
+        self.listens = False
+        """Whether what is typed while a program runs is heard at once: "stop"."""
+        self._typed: list[str] = []
+        """What was typed meanwhile and can wait."""
         self._talk = secrets.token_hex(8)
         self._watching = threading.Event()
         """While a run of this session goes on; others may use the same robot in between."""
@@ -54,15 +64,25 @@ class Session:
         if translation.program is None:
             self._show_answer(translation)
             return ExitStatus.OK if translation.status == "ok" else ExitStatus.NOT_UNDERSTOOD
+        if translation.program == STOP:  # nobody need approve that the robot stands still
+            self.operator.stop()
+            self.terminal.show_end("stopped", None)
+            return ExitStatus.OK
         return self.perform_program(translation.program, translation, heard)
 
+    def next_line(self) -> str | None:
+        """What was typed while a program ran and waits for its turn."""
+        return self._typed.pop(0) if self._typed else None
+
     def understand(self, utterance: str) -> Translation:
-        """Translate, asking back once where a question is open and somebody is there to answer."""
+        """Translate, asking back while a question is open and somebody is there to answer."""
         translation = self._translate(utterance)
         if translation.status == "clarify" and translation.request and self.approve_all:
             self._show_answer(translation)
             return self._translate(translation.suggestions[0])  # "yes", and so it is learned
-        if translation.status == "clarify" and self.terminal.somebody_is_there:
+        for _ in range(MOST_QUESTIONS):
+            if translation.status != "clarify" or not self.terminal.somebody_is_there:
+                break
             self.terminal.show_refusal(translation)
             translation = self._translate(self.terminal.ask("> "))
         return translation
@@ -84,9 +104,10 @@ class Session:
     def perform_program(
         self, program: str, translation: Translation | None = None, heard: str | None = None
     ) -> ExitStatus:
-        """Review a program, have it approved, run it."""
-        explanation = translation.explanation if translation else ""
+        """Review a program, have it approved, run it. A correction instead of a decision makes
+        another program of it, which is reviewed in its place."""
         while True:
+            explanation = translation.explanation if translation else ""
             if len(program.encode()) > MAX_PROGRAM:
                 raise UserError(
                     f"The program is longer than {MAX_PROGRAM // 1000} kB. Make it shorter."
@@ -95,16 +116,34 @@ class Session:
             edited = translation is None or program != translation.program
             self.terminal.show_review(review, "" if edited else explanation)
             if self.approve_all and not review.acceptable:
-                self.terminal.console.print("The program cannot be approved. Nothing was run.")
+                self.terminal.console.print(self.terminal.words["cannot_be_approved"])
                 return ExitStatus.NOT_APPROVED
-            decision = "approve" if self.approve_all else self.terminal.decide(review)
-            if decision == "reject":
-                self.terminal.console.print("Rejected. Nothing was run.")
-                return ExitStatus.NOT_APPROVED
+            decision, said = self._decision(review)
             if decision == "approve":
                 break
-            program = self.terminal.edit(program)
+            if decision == "edit":
+                program = self.terminal.edit(program)
+                continue
+            if decision is None:
+                changed = self.understand(said)
+                if changed.program is not None and changed.program != STOP:
+                    translation, program = changed, changed.program
+                    continue
+                if not self._is_dropped(changed):
+                    self._show_answer(changed)
+                    continue
+            self.terminal.console.print(self.terminal.words["rejected"])
+            return ExitStatus.NOT_APPROVED
         return self._run(self.operator.approve(review, translation, heard))
+
+    def _decision(self, review: Review) -> tuple[Decision | None, str]:
+        return ("approve", "") if self.approve_all else self.terminal.decide(review)
+
+    @staticmethod
+    def _is_dropped(translation: Translation) -> bool:
+        """Whether nothing is to be done after all."""
+        request = translation.request
+        return translation.program == STOP or (request is not None and request.kind == "cancel")
 
     def _run(self, approval: Approval) -> ExitStatus:
         """Run what was approved, in view, to its end. Ctrl-C stops the robot."""
@@ -133,12 +172,53 @@ class Session:
         run = None
         try:
             run = self.last_run = self.operator.run(approval)
-            return self.operator.wait(run), False
+            return self._wait(run), False
         except KeyboardInterrupt:
             self.operator.stop()
             if run is None:
                 raise
             return self.operator.wait(run), True
+
+    def _wait(self, run: int) -> Status:
+        """Wait for the end of a run, with an open ear where somebody may type meanwhile."""
+        if not self.listens:
+            return self.operator.wait(run)
+        ended: list[Status] = []
+        failed: list[BaseException] = []
+
+        def wait() -> None:
+            try:
+                ended.append(self.operator.wait(run))
+            except BaseException as error:  # noqa: BLE001 - raised again below
+                failed.append(error)
+
+        waiting = threading.Thread(target=wait, name=f"wait for run {run}", daemon=True)
+        waiting.start()
+        while waiting.is_alive():
+            line = self.terminal.typed(LOOK_EVERY)
+            if line and waiting.is_alive():
+                self._answer_meanwhile(line)
+            elif line:
+                self._typed.append(line)
+        if failed:
+            raise failed[0]
+        return ended[0]
+
+    def _answer_meanwhile(self, line: str) -> None:
+        """What is typed while a program runs: a stop at once, answers to questions about it; the
+        rest waits for its turn."""
+        from grammar.requests import ABOUT_RUNS
+
+        heard = self.operator.translate(line, self.language, self.planner)
+        if heard.program == STOP:
+            self.operator.stop()
+        elif heard.request is not None and heard.request.kind in ABOUT_RUNS:
+            self.terminal.show_message(heard)
+        else:
+            self._typed.append(line)
+            self.terminal.console.print(
+                self.terminal.words["next"].format(words=line), markup=False
+            )
 
     def _show(self, kind: str, data: Mapping[str, Any]) -> None:
         if self._watching.is_set():

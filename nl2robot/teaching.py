@@ -313,8 +313,10 @@ class Teacher:
         return None
 
     def slot_of(self, words: tuple[str, ...]) -> str | None:
-        """The kind of name that these words are in the world or in the language."""
+        """The kind of name that these words are in the world or of the robot."""
         for slot, trie in names_of(self.pack, self.lexicon).tries.items():
+            if slot in self.pack.lists:
+                continue  # words of the language, whose commands are looked at
             node = trie
             for word in words:
                 following = node.branches.get(word)

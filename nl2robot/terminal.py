@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import os
+import select
 import shlex
 import signal
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal
@@ -26,6 +29,7 @@ from nl2robot.review import Review
 from nl2robot.translation import Translation
 
 Decision = Literal["approve", "edit", "reject"]
+DATA = Path(__file__).parent / "data" / "terminal.yaml"
 
 NARROWEST = 20
 """Columns; a terminal that says it has fewer does not know."""
@@ -39,7 +43,8 @@ class _Console(Console):
 class Terminal:
     """What an operator sees and answers at a terminal."""
 
-    def __init__(self, console: Console | None = None) -> None:
+    def __init__(self, console: Console | None = None, language: str = "en") -> None:
+        self.words = _words(language)
         self.console = console or _Console(highlight=False, emoji=False)
         if self.console.width < NARROWEST:
             self.console.width = 80
@@ -52,9 +57,9 @@ class Terminal:
 
     def show_refusal(self, translation: Translation) -> None:
         """Say why there is no program, and what could be said instead."""
-        self.console.print(_plain(translation.message or "This was not understood."))
+        self.console.print(_plain(translation.message or ""))
         if translation.suggestions:
-            self.console.print("You could say:")
+            self.console.print(self.words["could_say"])
             for phrase in translation.suggestions:
                 self.console.print(f"  [bold]{_plain(phrase)}[/]")
 
@@ -76,7 +81,7 @@ class Terminal:
         self.console.print(
             Panel(
                 Syntax(visible(program).rstrip("\n"), "python", line_numbers=True, word_wrap=True),
-                title="Program",
+                title=self.words["program"],
                 title_align="left",
                 border_style="dim",
             )
@@ -85,45 +90,48 @@ class Terminal:
     def show_review(self, review: Review, explanation: str) -> None:
         self.show_program(review.program)
         if explanation:
-            self.console.print(f"[bold]In words:[/] {_plain(explanation)}")
+            self.console.print(f"[bold]{self.words['in_words']}[/] {_plain(explanation)}")
         elif review.reading:
-            self.console.print("[bold]In words:[/]")
+            self.console.print(f"[bold]{self.words['in_words']}[/]")
             for told in review.reading:
                 self.console.print(f"[dim]{told.line:>4}[/] {'  ' * told.depth}{_plain(told.text)}")
         for finding in review.findings:
-            style, word = ("red", "Error") if finding.severity == "error" else ("yellow", "Note")
-            self.console.print(
-                f"[{style}]{word}, line {finding.line}:[/] {_plain(finding.message)}"
-            )
+            style, word = ("red", "error") if finding.severity == "error" else ("yellow", "note")
+            where = f"{self.words[word]}, {self.words['line']} {finding.line}"
+            self.console.print(f"[{style}]{where}:[/] {_plain(finding.message)}")
         if review.dry_run is not None:
             self._show_dry_run(review.dry_run)
 
     def _show_dry_run(self, dry_run: DryRun) -> None:
         ends = {
-            "done": "It would take",
-            "failed": f"It would fail at line {dry_run.line} after",
-            "stopped": "It would stop itself after",
-            "limit": f"It would be ended at line {dry_run.line} after",
-            "unfinished": "It would still be going on after",
+            "done": "would_be_done",
+            "failed": "would_fail",
+            "stopped": "would_be_stopped",
+            "limit": "would_be_ended",
+            "unfinished": "would_go_on",
         }[dry_run.status]
-        text = f"{ends} {_duration(dry_run.seconds)} and drive {dry_run.metres:g} m."
-        self.console.print(f"[bold]Dry run:[/] {text} {_plain(dry_run.message or '')}".rstrip())
+        time, metres = _duration(dry_run.seconds), f"{dry_run.metres:g}"
+        text = self.words[ends].format(time=time, metres=metres, line=dry_run.line)
+        heading = self.words["dry_run"]
+        self.console.print(f"[bold]{heading}[/] {text} {_plain(dry_run.message or '')}".rstrip())
         if dry_run.places:
-            self.console.print(f"  way: {_plain(' → '.join(dry_run.places))}")
+            self.console.print(f"  {self.words['way']}: {_plain(' → '.join(dry_run.places))}")
         for words in dict.fromkeys(dry_run.says):
-            self.console.print(f"  says: {_plain(words)}")
+            self.console.print(f"  {self.words['says']}: {_plain(words)}")
 
-    def decide(self, review: Review) -> Decision:
-        """Ask whether the program may run. What cannot be approved is not offered for it."""
-        choices: dict[str, Decision] = {"e": "edit", "r": "reject"}
-        question = "[e]dit or [r]eject?"
-        if review.acceptable:
-            choices = {"a": "approve", **choices}
-            question = "[a]pprove, [e]dit or [r]eject?"
+    def decide(self, review: Review) -> tuple[Decision | None, str]:
+        """Ask whether the program may run; returns the decision and the words of the answer. What
+        is none of the answers is left to the caller: a correction, maybe. What cannot be approved
+        is not offered for it."""
+        question = "approve_edit_reject" if review.acceptable else "edit_reject"
         while True:
-            answer = self.ask(f"{question} ").strip().lower()
-            if answer[:1] in choices:
-                return choices[answer[:1]]
+            answer = self.ask(self.words[question]).strip()
+            said = answer.lower().strip(" .!,")
+            for decision, ways in self.words["answers"].items():
+                if said in ways and (review.acceptable or decision != "approve"):
+                    return decision, answer
+            if said:
+                return None, answer
 
     def ask(self, question: str) -> str:
         """Read a line. The end of the input counts as no answer, and no answer as a refusal."""
@@ -136,6 +144,20 @@ class Terminal:
                 " or approve beforehand: nl2robot run --yes.",
                 ExitStatus.NOT_APPROVED,
             ) from None
+
+    def typed(self, seconds: float) -> str | None:
+        """A line that is typed within so many seconds, without asking for one."""
+        try:
+            ready, _, _ = select.select([sys.stdin], [], [], seconds)
+        except (OSError, ValueError):  # an input that cannot be looked at without reading it
+            time.sleep(seconds)
+            return None
+        if not ready:
+            return None
+        line = sys.stdin.readline()
+        if not line:  # the end of the input: whoever asks next is told
+            time.sleep(seconds)
+        return line.strip() or None
 
     def edit(self, program: str) -> str:
         """Let the operator change the program in $VISUAL or $EDITOR; returns the new text, or the
@@ -184,15 +206,11 @@ class Terminal:
             self.console.print(f"     {_plain(data['text'].rstrip())}")
 
     def show_end(self, state: str, message: str | None) -> None:
-        words = {
-            "done": "[green]Done.[/]",
-            "failed": "[red]The robot could not finish.[/]",
-            "stopped": "[yellow]Stopped.[/]",
-            "limit": "[red]The program was ended.[/]",
-        }
+        style = {"done": "green", "stopped": "yellow"}.get(state, "red")
+        told = f"[{style}]{self.words.get(state, state)}[/]"
         # The reader of a pipe may have left; how it ended is in the exit status, too.
         with contextlib.suppress(BrokenPipeError):
-            self.console.print(f"{words.get(state, state)} {_plain(message or '')}".rstrip())
+            self.console.print(f"{told} {_plain(message or '')}".rstrip())
 
     @staticmethod
     def plain(text: str) -> str:
@@ -204,6 +222,16 @@ class Terminal:
         for heading in headings:
             table.add_column(heading, overflow="fold")
         return table
+
+
+@functools.cache
+def _words(language: str) -> Mapping[str, Any]:
+    """What the terminal says in a language; in English where it does not speak that."""
+    import yaml
+
+    words: dict[str, dict[str, Any]] = yaml.safe_load(DATA.read_text(encoding="utf-8"))
+    found: Mapping[str, Any] = words.get(language, words["en"])
+    return found
 
 
 def _plain(text: str) -> str:

@@ -616,8 +616,9 @@ def person_unknown(d: Discourse, node: Node) -> Thing:
 
 def unknown_person(d: Discourse, words: str, node: Node) -> NotUnderstood:
     known = nearest(words, d.lexicon.people)
-    span = (node.start, node.end) if known else (0, 0)
-    return NotUnderstood(d.language.phrase("unknown_person", name=words), known, span)
+    message = d.language.phrase("unknown_person", name=words)
+    span = (node.start, node.end)
+    return NotUnderstood(message, known, span if known else (0, 0), gap=span)
 
 
 @meaning("person_kind")

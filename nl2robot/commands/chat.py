@@ -14,9 +14,6 @@ from nl2robot.errors import ExitStatus
 from nl2robot.session import Session
 from robot_api.errors import LostConnection, RobotError
 
-GREETING = """\
-Tell the robot what to do, in your own words. Nothing moves before you have approved it.
-help shows what you can say, Ctrl-C stops the robot, quit (or Ctrl-D) ends the conversation."""
 DATA = Path(__file__).parents[1] / "data" / "chat.yaml"
 
 
@@ -31,14 +28,16 @@ def run(options: argparse.Namespace) -> int:
         import readline  # noqa: F401  (arrow keys and history in input())
     endings = _endings(options.lang)
     with open_session(options) as (session, _):
-        session.terminal.console.print(GREETING)
-        while (line := _next_line()) is not None:
+        words_of = session.terminal.words
+        session.listens = session.terminal.somebody_is_there
+        session.terminal.console.print(words_of["greeting"], markup=False)
+        while (line := session.next_line() or _next_line(words_of["you"])) is not None:
             words = line.strip()
             if words.lower().rstrip(".!") in endings:
                 break
             if words:
                 _answer(session, words)
-    session.terminal.console.print("Goodbye.")
+    session.terminal.console.print(session.terminal.words["goodbye"])
     return ExitStatus.OK
 
 
@@ -48,10 +47,10 @@ def _endings(language: str) -> set[str]:
     return {*words["any"], *words.get(language, ())}
 
 
-def _next_line() -> str | None:
+def _next_line(prompt: str) -> str | None:
     while True:
         try:
-            return input("\nyou: ")
+            return input(f"\n{prompt}")
         except EOFError:
             return None
         except KeyboardInterrupt:
@@ -65,7 +64,7 @@ def _answer(session: Session, words: str) -> None:
     try:
         session.perform(words)
     except KeyboardInterrupt:
-        session.terminal.console.print("\nRejected. Nothing was run.")
+        session.terminal.console.print(f"\n{session.terminal.words['rejected']}")
     except LostConnection:
         raise
     except RobotError as error:

@@ -76,7 +76,7 @@ def open_session(
         yield (
             Session(
                 Operator(robot, user_name()),
-                Terminal(),
+                Terminal(language=options.lang),
                 language=options.lang,
                 planner=options.planner,
                 approve_all=approve_all,

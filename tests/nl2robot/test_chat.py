@@ -1,5 +1,7 @@
 """A conversation at the terminal: nothing moves before it was approved, nothing ends it but you."""
 
+import io
+
 import pytest
 
 from nl2robot.errors import ExitStatus
@@ -19,6 +21,18 @@ def log_of(home):
         return runs
 
     return log_of
+
+
+@pytest.fixture
+def run_piped(nl2robot, monkeypatch):
+    """Run a command with these lines as its input; returns what it said."""
+
+    def run_piped(*arguments: str, said: list[str]) -> str:
+        monkeypatch.setattr("sys.stdin", io.StringIO("\n".join([*said, ""])))
+        _, out, _ = nl2robot(*arguments)
+        return out
+
+    return run_piped
 
 
 def test_a_nurse_talks_with_the_robot(start, log_of) -> None:
@@ -134,3 +148,69 @@ def test_the_end_of_the_input_is_no_approval(start, log_of) -> None:
     assert command.end() == ExitStatus.NOT_APPROVED
     assert "Nobody is there to answer" in command.output
     assert log_of() == []
+
+
+def test_a_correction_instead_of_a_decision_is_reviewed_in_its_place(start, log_of) -> None:
+    chat = start(*CHAT, at_terminal=True)
+    chat.until("you: ")
+    chat.type("go to ward a\n")
+    chat.until("eject? ")
+    chat.type("no, ward b\n")
+    assert 'robot.goto("ward b")' in chat.until("eject? ")
+    chat.type("and then wave\n")
+    assert 'robot.gesture("wave")' in chat.until("eject? ")
+    chat.type("what will you do?\n")
+    assert "wave" in chat.until("eject? ")
+    chat.type("oh yes, please\n")  # no decision, and no command either
+    chat.until("eject? ")
+    chat.type("Yes.\n")
+    chat.until("Done.")
+    chat.until("you: ")
+    chat.type("wave\n")
+    chat.until("eject? ")
+    chat.type("never mind\n")
+    assert "Nothing was run" in chat.until("you: ")
+    chat.type(CTRL_D)
+    assert chat.end() == ExitStatus.OK
+    assert log_of() == [("and then wave", "done")]
+
+
+def test_stop_needs_no_approval_even_while_a_program_runs(start, log_of) -> None:
+    chat = start(*CHAT, "--speed", "1", at_terminal=True)
+    chat.until("you: ")
+    chat.type("stop\n")
+    chat.until("Stopped.")
+    chat.until("you: ")
+    chat.type("go to ward b\n")
+    chat.until("eject? ")
+    chat.type("ok\n")
+    chat.until("goto(place='ward b')")
+    chat.type("are you done?\n")
+    chat.until("Not yet.")
+    chat.type("wave\n")
+    chat.until("when this is done")
+    chat.type("stop!\n")
+    chat.until("Stopped.")
+    assert 'robot.gesture("wave")' in chat.until("eject? ")  # its turn has come
+    chat.type("n\n")
+    chat.until("you: ")
+    chat.type("quit\n")
+    assert chat.end() == ExitStatus.OK
+    assert log_of() == [("go to ward b", "stopped")]
+
+
+def test_a_piped_conversation_loses_no_line(run_piped) -> None:
+    told = run_piped(
+        *CHAT, said=["go to ward a", "no, ward b", "yes", "what happened?", "go to ward a", "n", "quit"]
+    )
+    assert told.count('robot.goto("ward b")') == 1
+    assert "“no, ward b” is done." in told
+    assert "Nothing was run" in told
+    assert told.rstrip().endswith("Goodbye.")
+
+
+def test_the_terminal_speaks_german_and_french(run_piped) -> None:
+    told = run_piped(*CHAT, "--lang", "de", said=["geh in die Station A", "ja", "ende"])
+    assert "In Worten:" in told and "Fertig." in told and "Auf Wiedersehen." in told
+    told = run_piped(*CHAT, "--lang", "fr", said=["va au service A", "oui", "fin"])
+    assert "En clair :" in told and "C'est fait." in told and "Au revoir." in told
