@@ -7,6 +7,7 @@ from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 from grammar.lexicon import Lexicon, Name, Question, Routine
+from nl2robot.errors import UserError
 from sim.world import World
 
 if TYPE_CHECKING:
@@ -31,15 +32,21 @@ class Knowledge:
         self.world = world
         self.capabilities = capabilities
         self.routines = routines
+        self.trouble: str | None = None
+        """Why the routines are unknown, if they could not be read last time."""
         self._names = cache(self._lexicon)
         self._with = lru_cache(maxsize=8)(self._lexicon_with)
 
     def lexicon(self, language: str) -> Lexicon:
         """The names of the world and the robot as they are said in a language ("en"), and the
-        routines in it. Raises `UserError` where the routines cannot be read."""
+        routines in it, if they can be read: all else can be said without them."""
         if self.routines is None:
             return self._names(language)
-        known = self.routines.known(language)
+        try:
+            known, self.trouble = self.routines.known(language), None
+        except UserError as error:
+            self.trouble = str(error)
+            return self._names(language)
         return self._with(language, tuple((each.name, each.sentence) for each in known))
 
     def _lexicon_with(self, language: str, routines: tuple[tuple[str, str], ...]) -> Lexicon:

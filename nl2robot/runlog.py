@@ -1,12 +1,13 @@
 """The log of every run, in SQLite: heard, understood, program, who approved it, each call.
 
 Each fact is committed as it happens (write-ahead log), so a crash or a kill loses nothing that was
-done. A run that was never finished reads as "interrupted". When a line cannot be written (a full
+done. A run that was never finished, and whose process is gone, reads as "interrupted". When a line cannot be written (a full
 disk), `LogError` is raised: the caller stops the robot, because what is not logged is not done.
 """
 
 from __future__ import annotations
 
+import os
 import sqlite3
 import threading
 import time
@@ -38,7 +39,8 @@ CREATE TABLE IF NOT EXISTS runs (
     status TEXT,                     -- done | failed | stopped | limit; NULL while it runs
     message TEXT,
     picture TEXT,                    -- path of the picture of the run
-    start TEXT                       -- JSON: x, y (metres), theta (degrees) of a simulated robot
+    start TEXT,                      -- JSON: x, y (metres), theta (degrees) of a simulated robot
+    process INTEGER                  -- that runs it
 );
 CREATE TABLE IF NOT EXISTS calls (
     run INTEGER NOT NULL REFERENCES runs(id),
@@ -59,8 +61,8 @@ CREATE TABLE IF NOT EXISTS output (
 );
 """
 
-_VERSION = 2
-_ADDED = {"start": "TEXT"}
+_VERSION = 3
+_ADDED = {"start": "TEXT", "process": "INTEGER"}
 """Columns of `runs` that a log of an older version has not got."""
 
 
@@ -89,6 +91,22 @@ class Run(msgspec.Struct, frozen=True, kw_only=True):
     message: str | None
     picture: str | None
     start: str | None
+    process: int | None
+
+    @property
+    def going_on(self) -> bool:
+        """Whether it is not over and the process that runs it still lives."""
+        return self.status is None and self.process is not None and _lives(self.process)
+
+
+def _lives(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:  # it is somebody else's
+        return True
+    return True
 
 
 _COLUMNS = ", ".join(Run.__struct_fields__)
@@ -145,6 +163,7 @@ class RunLog:
         """Note that an approved program starts; returns the run's number."""
         values = {
             "started": time.time(),
+            "process": os.getpid(),
             "program": program,
             "sha256": sha256,
             "approved_by": approved_by,

@@ -10,6 +10,7 @@ from typing import Any
 
 import msgspec
 
+from grammar.language import UnknownLanguage
 from grammar.samples import samples
 from nl2robot.errors import UserError
 from nl2robot.runner import Runner
@@ -160,7 +161,7 @@ def _service(
     def handle(parameters: dict[str, Any], context: CallContext) -> Any:
         try:
             return msgspec.to_builtins(handler(parameters))
-        except UserError as error:
+        except (UserError, UnknownLanguage) as error:
             raise InvalidCall(str(error)) from error
 
     return Service(handler=handle, params=_object(properties or {}, required), doc=doc)

@@ -22,6 +22,7 @@ from rich.panel import Panel
 from rich.syntax import Syntax
 from rich.table import Table
 
+from grammar.language import load_language
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.plain import visible
 from nl2robot.rehearsal import DryRun
@@ -44,6 +45,7 @@ class Terminal:
     """What an operator sees and answers at a terminal."""
 
     def __init__(self, console: Console | None = None, language: str = "en") -> None:
+        self.language = language
         self.words = _words(language)
         self.console = console or _Console(highlight=False, emoji=False)
         if self.console.width < NARROWEST:
@@ -59,7 +61,7 @@ class Terminal:
         """Say why there is no program, and what could be said instead."""
         self.console.print(_plain(translation.message or ""))
         if translation.suggestions:
-            self.console.print(self.words["could_say"])
+            self.console.print(load_language(self.language).phrase("could_say"))
             for phrase in translation.suggestions:
                 self.console.print(f"  [bold]{_plain(phrase)}[/]")
 

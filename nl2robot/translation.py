@@ -52,13 +52,13 @@ class Translation(msgspec.Struct, frozen=True, kw_only=True):
     def to_json(self) -> str:
         return msgspec.json.encode(self).decode()
 
-    def readable(self) -> str:
+    def readable(self, language: str = "en") -> str:
         """For people at a terminal: the program with its explanation, or why there is none."""
         if self.program is not None:
             return visible(f"{self.program}# {self.explanation}\n")
-        lines = [self.message or "This was not understood."]
+        lines = [self.message or ""]
         if self.suggestions:
-            lines += ["You could say:", *(f"  {phrase}" for phrase in self.suggestions)]
+            lines += [load_language(language).phrase("could_say"), *(f"  {phrase}" for phrase in self.suggestions)]
         return visible("\n".join(lines))
 
 
@@ -143,13 +143,20 @@ def translate(
         source="grammar" if plan else None,
         confidence=understood.confidence,
         explanation=explanation,
-        message=understood.message,
+        message=_with_trouble(understood.message, knowledge),
         suggestions=understood.suggestions,
         ms=round((time.perf_counter() - started) * 1000, 3),
     )
     if program is not None:
         talk.note(translation)
     return translation
+
+
+def _with_trouble(message: str | None, knowledge: Knowledge) -> str | None:
+    """Why something was not understood; that may be because the routines could not be read."""
+    if message is None or knowledge.trouble is None:
+        return message
+    return f"{message} {knowledge.trouble}"
 
 
 def _replied(

@@ -371,7 +371,9 @@ class _Client:
                 case protocol.Send():
                     self.send(action.frame)
                 case protocol.Cancel():
-                    self._server.dispatcher.cancel(self._jobs[action.call])
+                    job = self._jobs.get(action.call)  # a stop is none: it cannot be cancelled
+                    if job is not None:
+                        self._server.dispatcher.cancel(job)
                 case protocol.Call(method=protocol.STOP):
                     self._stop(action)
                 case protocol.Call():
@@ -471,7 +473,8 @@ def _listen(host: str, port: int) -> socket.socket:
         )[0]
         listening = socket.socket(family, kind, number)
     except OSError:
-        raise CannotListen(f"{host} is no address of this machine. Try 127.0.0.1.") from None
+        what = f"{host} is" if host else "An empty text is"
+        raise CannotListen(f"{what} no address of this machine. Try 127.0.0.1.") from None
     try:
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listening.bind(where)

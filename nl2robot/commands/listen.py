@@ -50,7 +50,7 @@ def run(options: argparse.Namespace) -> int:
             print(json.dumps(data, ensure_ascii=False), flush=True)
         else:
             print(f'heard: "{heard.text}" ({heard.confidence:.0%})')
-            print(translation.readable(), flush=True)
+            print(translation.readable(options.lang), flush=True)
 
     return _each(options.wav, command)
 

@@ -138,7 +138,7 @@ def _whole(log: RunLog, row: Run) -> dict[str, Any]:
 
 
 def _how(row: Run) -> str:
-    return row.status or "interrupted"
+    return row.status or ("running" if row.going_on else "interrupted")
 
 
 def _when(seconds: float) -> str:

@@ -1,4 +1,4 @@
-"""`nl2robot routines`: commands that people gave a name: list, explain, learn, change, forget."""
+"""`nl2robot routines`: commands that people gave a name: list, explain, learn, change, rename, forget."""
 
 from __future__ import annotations
 
@@ -14,14 +14,19 @@ from nl2robot.routines import open_routines
 from nl2robot.teaching import Reply, Teacher, settle
 from nl2robot.terminal import Terminal
 
-ACTIONS = ("list", "explain", "learn", "change", "forget")
-WITH_SENTENCE = ("learn", "change")
+ACTIONS = ("list", "explain", "learn", "change", "rename", "forget")
+WITH_SENTENCE = {
+    "learn": "go to every ward and say good night",
+    "change": "go to ward a and say good night",
+    "rename": "night round",
+}
+"""Actions that need something more than a name, with an example of it."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("action", choices=ACTIONS, nargs="?", default="list")
     parser.add_argument("name", nargs="?", type=words, help="what the routine is called")
-    parser.add_argument("sentence", nargs="?", type=words, help="learn, change: what it does")
+    parser.add_argument("sentence", nargs="?", type=words, help="learn, change: what it does; rename: its new name")
     parser.add_argument("-y", "--yes", action="store_true", help="without being asked")
     parser.add_argument("--json", action="store_true", help="list: one JSON object a routine")
     add_world(parser)
@@ -34,7 +39,7 @@ def run(options: argparse.Namespace) -> int:
         return _list(knowledge, options.json)
     example = '"evening round"'
     if options.action in WITH_SENTENCE:
-        example += ' "go to every ward and say good night"'
+        example += f' "{WITH_SENTENCE[options.action]}"'
     if not options.name or (options.action in WITH_SENTENCE) != bool(options.sentence):
         raise UserError(f"Write it so: nl2robot routines {options.action} {example}.")
     terminal = Terminal()
@@ -53,6 +58,8 @@ def _reply(teacher: Teacher, options: argparse.Namespace) -> Reply:
             return teacher.learn(options.name, options.sentence)
         case "change":
             return teacher.change(options.name, options.sentence)
+        case "rename":
+            return teacher.rename(options.name, options.sentence)
         case "forget":
             return teacher.forget(options.name)
         case _:

@@ -439,3 +439,49 @@ def test_routines_are_taught_over_the_wire(operator) -> None:
     assert open_routines().known() == ()
     assert operator.translate("yes", talk="kim").status == "ok"
     assert operator.translate("tea dance").program == 'robot.gesture("wave")\n'
+
+
+# --- renamed, added to, lost
+
+
+def test_a_routine_is_renamed_and_added_to(nurse) -> None:
+    for words in ("when I say tea dance, go to ward a and say tea", "yes"):
+        nurse.says(words)
+    assert nurse.says("change tea dance: also wave").status == "clarify"
+    assert nurse.says("yes").status == "ok"
+    assert nurse.says("change tea dance: without the announcement").status == "clarify"
+    nurse.says("yes")
+    assert nurse.says("tea dance").program == 'robot.goto("ward a")\nrobot.gesture("wave")\n'
+    assert "a place" in nurse.says("rename tea dance to ward b").message
+    assert "would be called" in nurse.says("rename the tea dance to tea time").message
+    assert nurse.says("yes").status == "ok"
+    assert nurse.says("tea dance").status == "rejected"
+    twice = nurse.says("do the tea time twice and then come back").program
+    assert "for repetition in range(2):" in twice and "robot.goto(start)" in twice
+
+
+@pytest.mark.parametrize(
+    ("language", "teach", "rename", "new"),
+    [
+        ("de", "Wenn ich Teerunde sage, wink", "nenn Teerunde in Kaffeerunde um", "Kaffeerunde"),
+        ("fr", "quand je dis tournée du thé, fais coucou", "renomme tournée du thé en ronde", "ronde"),
+    ],
+)
+def test_routines_are_renamed_in_every_language(routines, language, teach, rename, new) -> None:
+    nurse = Nurse(routines, language=language)
+    for words in (teach, "ja" if language == "de" else "oui", rename):
+        assert nurse.says(words).status in ("clarify", "ok"), words
+    assert nurse.says("ja" if language == "de" else "oui").status == "ok"
+    assert nurse.says(new).program == 'robot.gesture("wave")\n'
+
+
+def test_without_its_routines_everything_else_is_understood(capsys, home) -> None:
+    home.mkdir()
+    (home / "routines.yaml").write_text("routines:\n  - {nam: x\n")
+    assert main(["translate", "wave"]) == 0
+    assert "wave" in capsys.readouterr().out
+    main(["translate", "do the evening round"])
+    told = " ".join(capsys.readouterr().out.split())
+    assert "did not understand" in told and "it is no YAML" in told
+    main(["translate", "what routines do you know"])
+    assert "it is no YAML" in " ".join(capsys.readouterr().err.split())

@@ -217,3 +217,14 @@ def alive(pid: int) -> bool:
     except FileNotFoundError:
         return False
     return status.rpartition(")")[2].split()[0] != "Z"
+
+
+def test_a_run_that_still_goes_on_is_no_interrupted_one(start, serve, nl2robot) -> None:
+    _, address = serve("--speed", "1")
+    nurse = start(*ROUND, "--robot", address)
+    nurse.until("goto(place='ward a')")
+    _, out, _ = nl2robot("log")
+    assert "running" in out and "interrupted" not in out
+    nurse.interrupt()
+    nurse.end()
+    assert "stopped" in nl2robot("log")[1]
