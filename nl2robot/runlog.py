@@ -1,8 +1,9 @@
 """The log of every run, in SQLite: heard, understood, program, who approved it, each call.
 
 Each fact is committed as it happens (write-ahead log), so a crash or a kill loses nothing that was
-done. A run that was never finished, and whose process is gone, reads as "interrupted". When a line cannot be written (a full
-disk), `LogError` is raised: the caller stops the robot, because what is not logged is not done.
+done. A run that was never finished, and whose process is gone, reads as "interrupted". When a line
+cannot be written (a full disk), `LogError` is raised: the caller stops the robot, because what is
+not logged is not done.
 """
 
 from __future__ import annotations

@@ -58,7 +58,10 @@ class Translation(msgspec.Struct, frozen=True, kw_only=True):
             return visible(f"{self.program}# {self.explanation}\n")
         lines = [self.message or ""]
         if self.suggestions:
-            lines += [load_language(language).phrase("could_say"), *(f"  {phrase}" for phrase in self.suggestions)]
+            lines += [
+                load_language(language).phrase("could_say"),
+                *(f"  {phrase}" for phrase in self.suggestions),
+            ]
         return visible("\n".join(lines))
 
 

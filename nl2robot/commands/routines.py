@@ -1,4 +1,4 @@
-"""`nl2robot routines`: commands that people gave a name: list, explain, learn, change, rename, forget."""
+"""`nl2robot routines`: commands that go by a name: list, explain, learn, change, rename, forget."""
 
 from __future__ import annotations
 
@@ -26,7 +26,9 @@ WITH_SENTENCE = {
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("action", choices=ACTIONS, nargs="?", default="list")
     parser.add_argument("name", nargs="?", type=words, help="what the routine is called")
-    parser.add_argument("sentence", nargs="?", type=words, help="learn, change: what it does; rename: its new name")
+    parser.add_argument(
+        "sentence", nargs="?", type=words, help="learn, change: what it does; rename: its new name"
+    )
     parser.add_argument("-y", "--yes", action="store_true", help="without being asked")
     parser.add_argument("--json", action="store_true", help="list: one JSON object a routine")
     add_world(parser)

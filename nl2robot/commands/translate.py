@@ -29,5 +29,8 @@ def run(options: argparse.Namespace) -> int:
     )
     for line in lines:
         translation = translate(line, knowledge, options.lang, options.planner)
-        print(translation.to_json() if options.json else translation.readable(options.lang), flush=True)
+        print(
+            translation.to_json() if options.json else translation.readable(options.lang),
+            flush=True,
+        )
     return ExitStatus.OK

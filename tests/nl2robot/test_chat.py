@@ -201,7 +201,8 @@ def test_stop_needs_no_approval_even_while_a_program_runs(start, log_of) -> None
 
 def test_a_piped_conversation_loses_no_line(run_piped) -> None:
     told = run_piped(
-        *CHAT, said=["go to ward a", "no, ward b", "yes", "what happened?", "go to ward a", "n", "quit"]
+        *CHAT,
+        said=["go to ward a", "no, ward b", "yes", "what happened?", "go to ward a", "n", "quit"],
     )
     assert told.count('robot.goto("ward b")') == 1
     assert "“no, ward b” is done." in told

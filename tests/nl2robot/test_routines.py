@@ -464,7 +464,12 @@ def test_a_routine_is_renamed_and_added_to(nurse) -> None:
     ("language", "teach", "rename", "new"),
     [
         ("de", "Wenn ich Teerunde sage, wink", "nenn Teerunde in Kaffeerunde um", "Kaffeerunde"),
-        ("fr", "quand je dis tournée du thé, fais coucou", "renomme tournée du thé en ronde", "ronde"),
+        (
+            "fr",
+            "quand je dis tournée du thé, fais coucou",
+            "renomme tournée du thé en ronde",
+            "ronde",
+        ),
     ],
 )
 def test_routines_are_renamed_in_every_language(routines, language, teach, rename, new) -> None:
