@@ -80,7 +80,7 @@ class Knowledge:
             ),
         )
         if robot is None:
-            return lexicon
+            return replace(lexicon, robot_name=world.robot.name or "")
         # A robot may declare less than people suggest; what it cannot do, the review refuses.
         return replace(
             lexicon,

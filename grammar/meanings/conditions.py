@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
-from grammar.chart import Node
+from grammar.chart import Leaf, Node
 from grammar.discourse import (
     ANYONE,
     Discourse,
@@ -340,7 +340,10 @@ def people_asked(d: Discourse, surveys: list[Survey]) -> Value:
 def code_is(d: Discourse, node: Node) -> Condition:
     if d.code is None:
         raise NotUnderstood(d.language.phrase("no_code"))
-    return Compare(Recall(d.code), "==", Text(str(d.get(node, "text"))))
+    part = node.parts["text"]  # its digits as they were said, should it be a number
+    number = isinstance(part, Leaf) and part.slot == "number"
+    text = d.words(part.start, part.end) if number else str(d.build(part))
+    return Compare(Recall(d.code), "==", Text(text))
 
 
 @meaning("is_heard")

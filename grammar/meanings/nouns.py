@@ -202,11 +202,6 @@ def where(d: Discourse, node: Node) -> Where:
     place = d.get(node, "place_at") or d.get(node, "place")
     if place is None and "beside" in node.parts:  # "the sofa by the window"
         place = home_of(d, d.get(node, "beside"))
-    owner: Thing | None = d.get(node, "owner")
-    if owner is not None:  # "Bob's desk"
-        mark = owner.text.lower() + d.language.speech["possessive"]
-        own = [each.name for each in d.lexicon.places if each.name.lower().startswith(mark)]
-        place = Text(own[0]) if own else place
     if place is None and furniture:
         place = home_of(d, furniture)
     return Where(place, furniture)

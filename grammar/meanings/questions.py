@@ -169,7 +169,9 @@ def question(d: Discourse, node: Node) -> str:
             form, verb = str(past), base
         elif base_form(d, verb) != verb and not d.asking_each:
             form = str(node.production.fixed.get("third", form))
-        as_it_is = node.production.fixed.get("as_it_is", False) and not d.asking_each
+        as_it_is = node.production.fixed.get("as_it_is", False) and not (
+            d.asking_each and "each" in node.production.fixed
+        )
         values["verb"] = verb if as_it_is else base_form(d, verb)
         values["rest"] = f"{values['rest']} {particle}"
     form = form if values["rest"].strip() else form.replace(" {rest},", ",")
