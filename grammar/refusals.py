@@ -3,7 +3,7 @@ and `no_things` in a language's data."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from typing import Final
 
 from grammar.language import Language
@@ -61,9 +61,10 @@ def _headed(words: tuple[str, ...], name: tuple[str, ...], language: Language) -
     )
 
 
-def why_not(tokens: Sequence[Token], language: Language) -> str:
-    """The phrase for a sentence of which nothing was understood: why it is none of its business."""
-    words = {token.norm for token in tokens}
+def why_not(tokens: Sequence[Token], language: Language, names: Set[str]) -> str:
+    """The phrase for a sentence of which nothing was understood: why it is none of its business.
+    Words of names say nothing about that: who goes to the blood lab gives no blood."""
+    words = {token.norm for token in tokens if token.norm not in names}
     for phrase, signs in language.speech.get("refusals", {}).items():
         if any(words.issuperset(language.tokens_of(sign)) for sign in signs):
             return str(phrase)

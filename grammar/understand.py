@@ -459,7 +459,7 @@ class Reader:
         """Which part was not understood; of a sentence that is none of its business, why."""
         if part:
             return self.language.phrase("not_understood", part=part)
-        return self.language.phrase(why_not(self.tokens, self.language))
+        return self.language.phrase(why_not(self.tokens, self.language, self.names.words))
 
     def _begun(self, chart: Chart) -> Node | None:
         """The longest beginning that is a sentence in itself."""

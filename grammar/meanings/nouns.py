@@ -150,8 +150,11 @@ def place_of_owner(d: Discourse, node: Node) -> Value:
     """ "Alice's": the one place that is called after her."""
     leaf = node.parts["person"]
     assert isinstance(leaf, Leaf)
+    return place_called_after(d, d.one_of(leaf).name, node)
+
+
+def place_called_after(d: Discourse, owner: str, node: Node) -> Value:
     mark = d.language.speech["possessive"]
-    owner = d.one_of(leaf).name
     own = [
         each.name for each in d.lexicon.places if each.name.lower().startswith(owner.lower() + mark)
     ]
@@ -181,8 +184,14 @@ def place_where(d: Discourse, node: Node) -> Thing:
 
 @meaning("where_owned")
 def where_owned(d: Discourse, node: Node) -> Where:
-    """ "Bob's desk": the desk in Bob's office."""
-    return Where(place_of_owner(d, node), d.get(node, "furniture"))
+    """ "Bob's desk", "his desk": the desk in Bob's office."""
+    if "person" in node.parts:
+        return Where(place_of_owner(d, node), d.get(node, "furniture"))
+    owner = d.person.value if d.person is not None and d.person.known else owner_of(d)
+    if not isinstance(owner, Text):
+        word = d.words(node.start, node.start + 1)
+        raise NotUnderstood(d.language.phrase("what_is_it", word=word), gap=(node.start, node.end))
+    return Where(place_called_after(d, owner.value, node), d.get(node, "furniture"))
 
 
 def nearest(words: str, names: tuple[Name, ...]) -> tuple[str, ...]:

@@ -295,7 +295,8 @@ def _spot_words(d: Discourse, thing: Thing) -> str:
 
 @meaning("whether_seen")
 def whether_seen(d: Discourse, node: Node) -> Report:
-    """ "is there anybody in the waiting room?"."""
+    """ "is there anybody in the waiting room?", "has Bob got a cup on his desk?"."""
+    d.get(node, "holder")  # whose desk "his desk" is
     thing: Thing = d.get(node, "thing") or d.get(node, "person_ref")
     more = described(d, thing.text, node)
     thing = replace(
@@ -322,16 +323,25 @@ def named_some(d: Discourse, thing: Thing) -> str:
 
 @meaning("where_found")
 def where_found(d: Discourse, node: Node) -> Steps:
-    """ "where is the stapler?": look for it and say where it is."""
+    """ "where is the stapler?": look for it, come back and say where it is."""
     thing: Thing = d.get(node, "thing") or d.get(node, "person_ref")
     called = d.called(thing.text)
     known = called if thing.known and thing.person else the(called, d.language)
-    found = d.say("it_is_at", thing=known, place=Ask("location"))
     arguments: dict[str, Value] = {"thing": sought(d, thing)}
     if thing.place is not None:
         arguments["place"] = thing.place
-    d.at = None
-    return [If(Holds(Ask("find", arguments)), (found,), (not_found(d, thing),))]
+    name = d.variable("place")
+    start = d.start()
+    back = Call("goto", {"place": start})
+    told = d.say("it_is_at", thing=known, place=Recall(name))
+    d.went(start)
+    return [
+        If(
+            Holds(Ask("find", arguments)),
+            (Remember(name, Ask("location")), back, told),
+            (back, not_found(d, thing)),
+        )
+    ]
 
 
 def kept(d: Discourse) -> str | None:

@@ -43,6 +43,14 @@ def remind(d: Discourse, node: Node) -> Steps:
     return speak_to(d, d.get(node, "person_ref"), [Call("say", {"text": words})])
 
 
+@meaning("said_with")
+def said_with(d: Discourse, node: Node) -> Steps:
+    """Say some words as part of a phrase: "invite them to the party"."""
+    part = node.parts["text"]
+    saying = d.say(str(node.production.fixed["phrase"]), what=d.words(part.start, part.end))
+    return speak_to(d, d.get(node, "person_ref"), [saying])
+
+
 @meaning("say_it")
 def say_it(d: Discourse, node: Node) -> Steps:
     """ "and say it": the answer or the code of before."""
