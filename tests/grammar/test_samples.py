@@ -50,6 +50,8 @@ def test_what_the_rules_can_say_they_understand(language: str, seed: int) -> Non
     lexicon = hospital(language)
     sentence = random_sentence(lexicon, language, seed)
     understood = understand(sentence, lexicon, language)
+    if understood.request is not None:  # "how many said yes?": nothing for the robot to do
+        return
     if understood.plan is None:  # "put it there": nothing was spoken of before
         assert understood.message is not None
         misunderstood = load_language(language).phrase("not_understood_at_all").split(".")[0]
