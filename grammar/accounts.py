@@ -73,12 +73,16 @@ def unspoken(tree: Node, tokens: tuple[Token, ...], plan: Plan, language: Langua
     parts = [word for word in known if len(word) > ALIKE]
     weighty = weighty_words(language)
     silent = language.closed | {word for filler in language.fillers for word in filler}
+    turned = language.speech.get("base_forms", {})  # "elle doit" told to her: "vous devez"
     return [
         token.norm
         for leaf in _leaves(tree, FREE)
         for token in tokens[leaf.start : leaf.end]
         if token.kind == "word"
         and token.norm not in known
+        and not known.issuperset(
+            language.tokens_of(str(turned.get(token.spelled or token.norm, "?")))
+        )
         and (
             token.norm in weighty
             or not (
