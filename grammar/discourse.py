@@ -158,6 +158,8 @@ class Discourse:
     lexicon: Lexicon
     tokens: tuple[Token, ...]
     text: str
+    depth: int = 0
+    """How many sequences the present one is in, itself included."""
     done: Steps = field(default_factory=list)
     """The steps so far of the sequence that is being made."""
     needs_start: bool = False
@@ -218,6 +220,8 @@ class Discourse:
     """Whether a question is put to each of several: who wants tea is then whether they do."""
     checked: str | None = None
     """The variable with what was checked last."""
+    report_counts: bool = False
+    """Whether the last report is a count that nobody was named to be told of."""
     report_open: bool = False
     """Whether nobody was named whom to tell the last report."""
     last_counted: Thing | None = None
@@ -448,11 +452,13 @@ class Discourse:
     def sequence(self, make: Callable[[], None]) -> Steps:
         """The steps that `make` adds to `done`, as a sequence of their own."""
         outer, self.done = self.done, []
+        self.depth += 1
         try:
             make()
             return self.done
         finally:
             self.done = outer
+            self.depth -= 1
 
 
 def as_value(value: Any) -> Value:

@@ -193,11 +193,11 @@ def counted(d: Discourse, node: Node) -> Condition:
     spot: Where | None = d.get(node, "where")
     if spot is not None:
         thing = replace(thing, place=spot.place, furniture=spot.furniture)
-    if thing.person:
-        d.person = thing
     if thing.place is not None and thing.place != d.at:
         d.went(thing.place)
         d.pending.append(Call("goto", {"place": thing.place}))
+    if thing.person:
+        d.person = replace(thing, plural=True, place=None, here=True)
     operator = d.get(node, "operator", "==")
     return Compare(
         Ask("count", {"thing": sought(d, thing)}), operator, Number(int(d.get(node, "count")))

@@ -9,6 +9,7 @@ from grammar.discourse import Discourse, Steps, Thing
 from grammar.meanings.branches import exclusive
 from grammar.meanings.finding import not_found
 from grammar.meanings.registry import meaning
+from grammar.meanings.reports import summed_at_end
 from grammar.meanings.rounds import in_round
 from grammar.plan import Ask, Call, Holds, If, Not, Recall, Remember, Text
 from grammar.tidy import mentions
@@ -38,6 +39,8 @@ def steps(d: Discourse, node: Node) -> Steps:
             if isinstance(beyond, Node):  # after the rest
                 further.append(beyond)
             each = rest if isinstance(rest, Node) else further.pop() if further else None
+        if d.depth == 1:
+            d.done.extend(summed_at_end(d))
         d.done[:] = exclusive(guard_finds(d, speak_codes(d, d.done)))
 
     return d.sequence(make)

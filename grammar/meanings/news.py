@@ -41,7 +41,7 @@ from grammar.plan import (
     Text,
     Value,
 )
-from grammar.tidy import BODIES
+from grammar.tidy import BODIES, nodes
 
 BACK: Final = Call("goto", {"place": Recall(START)})
 
@@ -162,7 +162,26 @@ def told_list(d: Discourse, node: Node) -> list[Told]:
 @meaning("poll")
 def poll(d: Discourse, node: Node) -> Told:
     """What was answered: of all, or of those who gave one answer."""
-    return polled(d, str(node.production.fixed["kind"]), said_in(d, node))
+    kind, said = str(node.production.fixed["kind"]), said_in(d, node)
+    if kind in ("each", "answers") and (d.report is not None or d.counted is not None):
+        return last_found(d)  # "the numbers": what was counted
+    if said is not None and kind in ("who", "many", "share") and not asked_yet(d):
+        return polled_now(d, kind, said)
+    return polled(d, kind, said)
+
+
+def asked_yet(d: Discourse) -> bool:
+    """Whether anybody was asked anything in this sequence."""
+    calls = [each for each in nodes(tuple(d.done)) if isinstance(each, Call)]
+    return any(survey.call is each for survey in d.surveys for each in calls)
+
+
+def polled_now(d: Discourse, kind: str, said: Said) -> Told:
+    """ "find out who wants coffee": everybody here is asked."""
+    from grammar.meanings.questions import ask_everybody_here
+
+    d.done += ask_everybody_here(d, said.start, said.end)
+    return polled(d, kind, None)
 
 
 def said_in(d: Discourse, node: Node) -> Said | None:

@@ -633,7 +633,7 @@ def person_kind(d: Discourse, node: Node) -> Thing:
         by_furniture(d, described(d, kind, node)),
         person=True,
         here=bool(node.production.fixed.get("here")),
-        plural=bool(node.production.fixed.get("plural")),
+        plural=bool(node.production.fixed.get("plural")) or kind_in_plural(d, node),
         every=bool(node.production.fixed.get("plural")),
     )
     for each in d.lexicon.people:  # "the person named Alice" is Alice
@@ -641,6 +641,15 @@ def person_kind(d: Discourse, node: Node) -> Thing:
             found = replace(found, value=Text(each.name), known=True)
     d.person, d.thing_last = found, False
     return found
+
+
+def kind_in_plural(d: Discourse, node: Node) -> bool:
+    """ "the visitors", not "the visitor"."""
+    part = node.parts.get("kind_of_person")
+    if not isinstance(part, Leaf):
+        return False
+    said = " ".join(d.norms(part.start, part.end))
+    return singular(said, d.language) != said
 
 
 def by_furniture(d: Discourse, person: Thing) -> Thing:

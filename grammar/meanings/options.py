@@ -17,6 +17,8 @@ def options_of(d: Discourse, node: Node) -> tuple[str, ...]:
     listed = node.parts.get("options")
     if listed is not None:
         return split_options(d, listed.start, listed.end)
+    if fixed.get("choices") and "rest" in node.parts:
+        return split_options(d, node.parts["rest"].start, node.parts["rest"].end)
     numbers = numbers_offered(d, node.start, node.end)
     if numbers:
         return numbers
@@ -29,7 +31,7 @@ def options_of(d: Discourse, node: Node) -> tuple[str, ...]:
         return (*split_options(d, start, rest.end), *later)
     if rest is not None and joins & set(d.norms(rest.start, rest.end)):
         start = rest.start
-        if "wh" in node.parts and d.tokens[start - 1].norm != COMMA:
+        if not fixed.get("yes_no") and d.tokens[start - 1].norm != COMMA:
             start = _end_of_question(d, start, rest.end)
         return split_options(d, start, rest.end)
     if fixed.get("yes_no") or (d.asking_each and "each" in fixed):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from typing import Final
+from typing import Any, Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where, capital
@@ -26,6 +26,9 @@ LONGEST_OFFERED: Final = 3
 def ask(d: Discourse, node: Node) -> Steps:
     """Ask somebody a question and remember the answer."""
     person: Thing | None = d.get(node, "person_ref")
+    question = node.parts.get("question")
+    if person is None and isinstance(question, Node) and "each" in question.production.fixed:
+        person = Thing(Text(ANYONE), person=True, plural=True, here=True)  # "ask who wants tea"
     if person is not None and person.coming:
         waiting = Call("wait_for", {"thing": person.value})
         d.person = replace(person, coming=False)
@@ -91,6 +94,30 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
     return [*steps, asked(d, Call("ask", arguments, save_as=name), options, known or who_else)]
 
 
+def ask_everybody_here(d: Discourse, start: int, end: int) -> Steps:
+    """Whether they do what some words say: "wants coffee", "would like to come", "is ready"."""
+    forms: dict[str, Any] | None = d.language.speech.get("poll_forms")
+    first = d.tokens[start].norm
+    known = forms is not None and any(first in forms[each] for each in ("be", "aux", "verbs"))
+    if forms is None or not known or d.at is None:  # only those who are where it was sent
+        raise NotUnderstood(d.language.phrase("no_question"))
+    kind = next((each for each in ("be", "aux") if first in forms[each]), "verb")
+    verb = first if kind == "aux" else base_form(d, past_base(d, first) or first)
+    form = forms["past" if kind == "verb" and past_base(d, first) else f"{kind}_form"]
+    rest = turn_to_you(d, start + 1, end)
+    text = capital(" ".join(form.format(verb=verb, rest=rest).split()).replace(" ?", "?"))
+    options = (d.language.phrase("yes"), d.language.phrase("no"))
+    answer = remember_answer(d, options, "answer")
+    who = Recall(d.variable("person"))
+    arguments: dict[str, Value] = {
+        "question": Text(text),
+        "options": Items(tuple(Text(each) for each in options)),
+        "person": who,
+    }
+    call = asked(d, Call("ask", arguments, save_as=answer), options, who)
+    return [ForEach(who.name, Ask("people"), (call,))]
+
+
 def several_of_a_kind(d: Discourse, node: Node, person: Thing | None) -> Thing | None:
     """ "the visitors in the lobby": each of them."""
     part = node.parts.get("person_ref")
@@ -116,6 +143,10 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
         d.thing, d.thing_last = Thing(Text(what)), False
     elif not options and "verb" in question.parts and d.thing is None and d.place != Recall(name):
         d.thing, d.thing_last = Thing(Recall(name)), False  # "ask what they need and bring it"
+    about = question.parts.get("subject")
+    if isinstance(about, Node) and any(each in about.parts for each in ("noun", "object")):
+        start, end = without_little_words(d, about.start, about.end)
+        d.thing, d.thing_last = Thing(Text(d.noun_words(start, end))), False
     if "verb" not in question.parts or rest is None:
         return
     if len(options) > 1 and not question.production.fixed.get("where"):
@@ -182,6 +213,12 @@ def question(d: Discourse, node: Node) -> str:
     return capital(text.replace(" ?", mark).replace(" ,", ",").replace(" .", "."))
 
 
+def _ends_phrase(d: Discourse, at: int, end: int) -> bool:
+    """Whether no noun follows here."""
+    token = d.tokens[at] if at < end else None
+    return token is None or token.kind == "mark" or token.norm in d.language.closed
+
+
 def turn_to_you(d: Discourse, start: int, end: int, words: str = "to_you") -> str:
     """The original words with "they", "their", "her" ... turned to the person spoken to. Where
     that person is the subject, only what is theirs: "ob er ihn mag" asks about somebody else."""
@@ -198,6 +235,9 @@ def turn_to_you(d: Discourse, start: int, end: int, words: str = "to_you") -> st
             original = first.norm
         opened = " ".join(token.norm for token in d.tokens[position:last])
         turned = you.get(first.norm)
+        alone = d.language.speech.get("to_you_alone", {})
+        if first.norm in alone and _ends_phrase(d, position + 1, end):
+            turned = alone[first.norm]  # "better for her", but "her office"
         if turned is not None:
             original = opened.replace(first.norm, turned, 1)
         before = d.text[d.tokens[position - 1].end : first.start] if pieces else ""
@@ -286,6 +326,8 @@ def ask_in(d: Discourse, node: Node) -> Steps:
 def answer(d: Discourse, node: Node) -> Steps:
     """Answer somebody's question from the predefined ones."""
     person: Thing | None = d.get(node, "person_ref")
+    if person is not None and person.plural and person.text != ANYONE:
+        person = replace(person, plural=False)  # "the girls question" is the girl's
     known = node.parts.get("question_known")
     arguments: dict[str, Value] = {}
     if isinstance(known, Leaf):

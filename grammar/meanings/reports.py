@@ -41,6 +41,7 @@ from grammar.plan import (
     Truth,
     Value,
 )
+from grammar.tidy import nodes
 from grammar.wordforms import plural, singular
 
 
@@ -74,7 +75,9 @@ def report(d: Discourse, node: Node) -> Steps:
     if isinstance(found, list):
         return speak_to(d, person, found)
     asked_by_me = person is None or is_me(person)
-    d.report_open = person is None and not node.production.fixed.get("to_me")
+    fixed = node.production.fixed
+    d.report_open = person is None and bool(fixed.get("open", not fixed.get("to_me")))
+    d.report_counts = person is None and bool(fixed.get("counted"))
     back = bool(node.production.fixed.get("to_me")) or is_me(person)
     steps: Steps = []
     if found.place is not None and found.place != d.at:
@@ -505,6 +508,20 @@ def _report_again(d: Discourse) -> news.Told:
         d.done.pop()
         _not_back_yet(d)
     return news.Told([_saying(d, found)], [])
+
+
+def summed_at_end(d: Discourse) -> Steps:
+    """What was counted in a round that nobody was told of: brought back to the speaker."""
+    from grammar.meanings.rounds import last_round
+
+    at = last_round(d)
+    found: Report | None = d.report
+    if at is None or at != len(d.done) - 1 or found is None or not d.report_counts:
+        return []
+    if found.name != "count" or not any(each is d.report_step for each in nodes(d.done[at])):
+        return []
+    told = summed_or_said(d, found)
+    return [*told.first, *news.go_back(d, []), *told.words]
 
 
 def summed_or_said(d: Discourse, found: Report) -> news.Told:

@@ -66,6 +66,19 @@ def last_round(d: Discourse) -> int | None:
     return None
 
 
+def round_of_visits(d: Discourse) -> int | None:
+    """ "go to the lobby and the kitchen and see where ...": what was said of both, as a round."""
+    visits: list[Value] = []
+    while d.done and isinstance(last := d.done[-1], Call) and last.method == "goto":
+        visits.insert(0, last.arguments["place"])
+        d.done.pop()
+    if len(visits) < 2:
+        d.done += [Call("goto", {"place": each}) for each in visits]
+        return None
+    d.done.append(round_of(d, Items(tuple(visits)), [], d.variable("place")))
+    return len(d.done) - 1
+
+
 def goes_to(step: Step, variable: str) -> bool:
     return step == Call("goto", {"place": Recall(variable)})
 
@@ -355,7 +368,7 @@ def places_told(d: Discourse, node: Node) -> Told:
 def looked_around(d: Discourse, node: Node, trait: Trait | None) -> Told:
     named = any(name in node.parts for name in ("kinds", "place_list"))
     named = named or bool(node.production.fixed.get("all"))
-    at = None if named else last_round(d)
+    at = None if named else last_round(d) if last_round(d) is not None else round_of_visits(d)
     if not named and at is None:
         raise NotUnderstood(d.language.phrase("which_places"))
     loop = None if at is None else d.done[at]
