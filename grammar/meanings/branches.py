@@ -13,6 +13,7 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import Claim, Discourse, Meeting, Steps, Thing
 from grammar.meanings.conditions import condition_of, negated, said_so
 from grammar.meanings.finding import not_found, speak_to
+from grammar.meanings.news import polled
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import known_words, named_some, tell_speaker
@@ -85,6 +86,8 @@ def claim_of(d: Discourse, node: Node, condition: Condition, met: Meeting | None
     part = node.parts["condition"]
     if what_it_means(part) in ("so", "answered"):
         return None
+    if what_it_means(part) == "answers_many":  # "if anyone says yes, tell Alice": how many did
+        return polled(d, "many", None).words[0]
     if node.production.fixed.get("turned") or node.production.fixed.get("unless"):
         return found_claim(d, condition, met)
     end = part.end

@@ -309,7 +309,7 @@ def answer_counts(d: Discourse, node: Node) -> Condition:
 def answers_many(d: Discourse, node: Node) -> Condition:
     """ "if both say yes", "if more than half of them agree", "if nobody wants any"."""
     surveys = asked_before(d)
-    answer = wanted_answer(d, surveys[-1], d.get(node, "said"))
+    answer = d.said = wanted_answer(d, surveys[-1], d.get(node, "said"))
     if not in_loop(d, surveys[-1].call):
         return answer.given(surveys[-1])
     said = counted_answers(d, surveys, answer)

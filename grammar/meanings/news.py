@@ -272,6 +272,14 @@ def _and_not(condition: Condition, other: Condition) -> Condition:
     return Both((condition, Not(other)))
 
 
+def how_many(d: Discourse, surveys: list[Survey], answer: Wanted) -> Value:
+    """How many gave an answer: those whose names are kept, or a number of its own."""
+    key = ("who", answer, *(survey.who for survey in surveys))
+    ids = tuple(id(survey.call) for survey in surveys)
+    named = d.notes.get((*key, *ids))
+    return counted(d, surveys, answer) if named is None else Length(Recall(named))
+
+
 def counted(d: Discourse, surveys: list[Survey], answer: Wanted | None) -> Recall:
     """A variable that counts how often this was answered, or how often anybody was asked."""
     name = "asked" if answer is None else _name_for(answer)
@@ -287,12 +295,12 @@ def counted(d: Discourse, surveys: list[Survey], answer: Wanted | None) -> Recal
 
 
 def _many(d: Discourse, surveys: list[Survey], answer: Wanted, kind: str) -> Steps:
-    said, asked = counted(d, surveys, answer), counted(d, surveys, None)
+    said, asked = how_many(d, surveys, answer), counted(d, surveys, None)
     return [d.say("how_many_said", number=said, asked=asked, answer=answer.label(d))]
 
 
 def _share(d: Discourse, surveys: list[Survey], answer: Wanted, kind: str) -> Steps:
-    said, asked = counted(d, surveys, answer), counted(d, surveys, None)
+    said, asked = how_many(d, surveys, answer), counted(d, surveys, None)
     return [d.say("share_said", share=Share(said, asked), answer=answer.label(d))]
 
 

@@ -707,15 +707,22 @@ def person_either(d: Discourse, node: Node) -> list[Thing]:
     return listed(d, node)
 
 
+def known_by_name(d: Discourse, found: Thing, kind: str) -> tuple[Text, ...]:
+    """All people of a kind, if the world knows them by name and nothing tells which are meant."""
+    here = found.place is not None or d.at is not None
+    if found.text != kind or here or kind in ("visitor", "patient"):
+        return ()
+    return tuple(Text(each.name) for each in d.lexicon.people if each.kind == kind)
+
+
 @meaning("person_group_kind")
 def person_group_kind(d: Discourse, node: Node) -> Thing:
     """ "all nurses": those whom the world knows by name; of others, whoever is there."""
     kind = str(d.get(node, "kind_of_person", ANYONE))
     found = replace(by_furniture(d, described(d, kind, node)), person=True, plural=True)
     but: Thing | None = d.get(node, "but")
-    named = tuple(Text(each.name) for each in d.lexicon.people if each.kind == kind)
-    here = found.place is not None or d.at is not None
-    if named and found.text == kind and not here and kind not in ("visitor", "patient"):
+    named = known_by_name(d, found, kind)
+    if named:
         left_out = but.group.items if but and isinstance(but.group, Items) else (but and but.value,)
         d.group = Items(tuple(name for name in named if name not in left_out))
         return replace(found, known=True, group=d.group)

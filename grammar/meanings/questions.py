@@ -9,7 +9,7 @@ from typing import Any, Final
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where, capital
 from grammar.meanings.finding import go, if_found, meet, speak_to, where_sent
-from grammar.meanings.nouns import is_me
+from grammar.meanings.nouns import is_me, known_by_name
 from grammar.meanings.options import MOST_OPTIONS, numbers_offered, options_of, without_little_words
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import Survey
@@ -121,14 +121,18 @@ def ask_everybody_here(d: Discourse, start: int, end: int) -> Steps:
 def several_of_a_kind(d: Discourse, node: Node, person: Thing | None) -> Thing | None:
     """ "the visitors in the lobby": each of them."""
     part = node.parts.get("person_ref")
-    if person is None or not isinstance(part, Node) or person.group is not None:
+    if person is None or not isinstance(part, Node) or person.group or person.count:
         return person
     kind = part.parts.get("kind_of_person")
-    if person.plural or not isinstance(kind, Leaf) or person.value != Text(str(kind.value[0])):
+    if not isinstance(kind, Leaf) or person.value != Text(str(kind.value[0])):
         return person
     said = " ".join(d.norms(kind.start, kind.end))
     if singular(said, d.language) == said:
         return person
+    named = known_by_name(d, person, person.text)
+    if named:
+        d.group = Items(named)
+        return replace(person, known=True, plural=True, group=d.group)
     return replace(person, value=Text(ANYONE), plural=True)
 
 
@@ -184,7 +188,8 @@ def question(d: Discourse, node: Node) -> str:
     """A direct question made of a reported one by its form: "Do you {verb} {rest}?"."""
     form: str = node.production.fixed["form"]
     past = node.production.fixed.get("past")
-    if d.asking_each and "each" in node.production.fixed:
+    turned_each = d.asking_each and "each" in node.production.fixed
+    if turned_each:
         form, past = str(node.production.fixed["each"]), None
     values: dict[str, str] = {}
     you = "to_you_who" if "asked" in node.parts else "to_you"
@@ -198,11 +203,9 @@ def question(d: Discourse, node: Node) -> str:
         base = past_base(d, verb) if past else None
         if base is not None:
             form, verb = str(past), base
-        elif base_form(d, verb) != verb and not d.asking_each:
+        elif base_form(d, verb) != verb and not turned_each:
             form = str(node.production.fixed.get("third", form))
-        as_it_is = node.production.fixed.get("as_it_is", False) and not (
-            d.asking_each and "each" in node.production.fixed
-        )
+        as_it_is = node.production.fixed.get("as_it_is", False) and not turned_each
         values["verb"] = verb if as_it_is else base_form(d, verb)
         values["rest"] = f"{values['rest']} {particle}"
     form = form if values["rest"].strip() else form.replace(" {rest},", ",")

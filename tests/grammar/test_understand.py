@@ -50,7 +50,7 @@ def refused(sentence: str) -> str:
 # --- the breadth of what people say
 
 
-@pytest.mark.parametrize("file", ["sentences_en.yaml", "sentences_en_2.yaml"])
+@pytest.mark.parametrize("file", ["sentences_en.yaml", "sentences_en_2.yaml", "errands_en.yaml"])
 def test_ten_people_are_understood(file: str) -> None:
     rows = [row for each in read(file).values() for row in each]
     missed = []
