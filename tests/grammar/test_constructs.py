@@ -15,7 +15,10 @@ from sandbox.check import check
 from tests.grammar.test_honest import unbound
 from tests.grammar.ward import WARD, program
 
-FILES = [Path(__file__).with_name(name) for name in ("constructs_en.yaml", "clauses_en.yaml", "reports_en.yaml")]
+FILES = [
+    Path(__file__).with_name(name)
+    for name in ("constructs_en.yaml", "clauses_en.yaml", "reports_en.yaml")
+]
 ROWS = [
     (row["say"], row["means"])
     for file in FILES
