@@ -69,7 +69,9 @@ def last_round(d: Discourse) -> int | None:
 def round_of_visits(d: Discourse) -> int | None:
     """ "go to the lobby and the kitchen and see where ...": what was said of both, as a round."""
     visits: list[Value] = []
-    while d.done and isinstance(last := d.done[-1], Call) and last.method == "goto":
+    while d.done and isinstance(last := d.done[-1], Call) and "place" in last.arguments:
+        if last.method != "goto":
+            break
         visits.insert(0, last.arguments["place"])
         d.done.pop()
     if len(visits) < 2:
