@@ -175,7 +175,20 @@ class _Sampler:
             "unknown": ["pharmacy"],
             "stranger": ["Zorro"],
         }
-        return self.chance.choice(names or plain.get(name) or ["robot"])
+        return self.chance.choice(names or plain.get(name) or self.known(name) or ["robot"])
+
+    def known(self, name: str) -> list[str]:
+        """What a slot matches that only the names of the world fill, such as {place_tail}."""
+        from grammar.slots import names_of
+
+        found: list[str] = []
+        trie = names_of(self.language, self.lexicon).tries.get(name)
+        todo = [("", trie)] if trie else []
+        while todo:
+            words, node = todo.pop()
+            found += [words] if node.values else []
+            todo += [(f"{words} {word}".strip(), each) for word, each in node.branches.items()]
+        return sorted(found)
 
     def depth(self, template: Template) -> int:
         """How deep the shortest sentence of a template goes into the rules."""
