@@ -125,6 +125,10 @@ class Meeting:
     """Whether it is here if the condition holds."""
 
 
+ONE_ONLY: Final = frozenset({"person_ref", "thing", "place"})
+"""Parts that are a single one wherever a meaning asks for them."""
+
+
 @dataclass(frozen=True)
 class Claim:
     """What is so in a branch of a condition, for "if there is a cup, tell me"."""
@@ -282,9 +286,13 @@ class Discourse:
     def get(self, node: Node, name: str, default: Any = None) -> Any:
         """What the part of this name means, or the fixed value of this name, or the default."""
         part = node.parts.get(name)
-        if part is not None:
-            return self.build(part)
-        return node.production.fixed.get(name, default)
+        if part is None:
+            return node.production.fixed.get(name, default)
+        value = self.build(part)
+        if name in ONE_ONLY and isinstance(value, list):
+            # Only commands are done for one after the other (`grammar.meanings.quantifiers`).
+            raise NotUnderstood(self.language.phrase("one_person"))
+        return value
 
     def _leaf(self, leaf: Leaf) -> Any:
         if leaf.slot in ("place", "place_short"):

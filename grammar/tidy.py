@@ -7,7 +7,9 @@ from typing import Any, Final
 
 import msgspec
 
+from grammar.discourse import START
 from grammar.plan import (
+    Ask,
     Call,
     Collect,
     ForEach,
@@ -23,11 +25,15 @@ from grammar.plan import (
     RepeatUntil,
     Step,
     Try,
+    Value,
     While,
 )
 
 BODIES: Final = ("steps", "then", "otherwise")
 """Parts of a step that are steps themselves."""
+
+
+LOOPS: Final = (Repeat, ForEach, While, RepeatUntil, Forever)
 
 
 class Unbound(Exception):
@@ -150,7 +156,40 @@ def _all_given(steps: tuple[Step, ...]) -> frozenset[str]:
 
 def _goes_back(step: Step) -> bool:
     """Whether it goes to a remembered place: news of a failure are told there, too."""
-    return isinstance(step, Call) and step == Call("goto", {"place": Recall("start")})
+    return isinstance(step, Call) and step == Call("goto", {"place": Recall(START)})
+
+
+def returning(plan: Plan) -> Plan:
+    """The plan with a way back at the end of each round that begins with waiting for somebody and
+    leads away: the next one is waited for where the first was."""
+    steps = _returning(plan.steps, Recall(START))
+    first = Remember(START, Ask("location"))
+    if mentions(steps, Recall(START)) and first not in steps:
+        steps = (first, *steps)
+    return msgspec.structs.replace(plan, steps=steps)
+
+
+def _returning(steps: tuple[Step, ...], here: Value) -> tuple[Step, ...]:
+    result: list[Step] = []
+    for step in steps:
+        inner = {name: _returning(body, here) for name in BODIES if (body := _body(step, name))}
+        step = msgspec.structs.replace(step, **inner) if inner else step
+        if isinstance(step, LOOPS) and _leaves(step.steps):
+            step = msgspec.structs.replace(step, steps=(*step.steps, Call("goto", {"place": here})))
+        if isinstance(step, Call) and step.method == "goto" and "place" in step.arguments:
+            here = step.arguments["place"]
+        result.append(step)
+    return tuple(result)
+
+
+def _leaves(steps: tuple[Step, ...]) -> bool:
+    """Whether a round waits for somebody first, and ends somewhere else."""
+    waits = steps and isinstance(steps[0], Call) and steps[0].method == "wait_for"
+    away = {"goto", "guide", "find", "follow", "dock"}
+    called = [each for each in nodes(steps) if isinstance(each, Call | Ask) and each.method in away]
+    last = steps[-1] if steps else None
+    comes_back = isinstance(last, Call) and last.method in ("goto", "dock")
+    return bool(waits and called and not comes_back)
 
 
 def without_unused(plan: Plan) -> Plan:

@@ -26,7 +26,8 @@ class Token:
     start: int
     end: int
     kind: str = "word"
-    """word, number, time, quote, url, selector, mark (punctuation), symbol (anything else)."""
+    """word, verb (`grammar.gerunds`), number, time, quote, url, selector, mark (punctuation),
+    symbol (anything else)."""
     value: float | None = None
     """Of a number."""
     inner: str = ""

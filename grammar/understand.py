@@ -17,6 +17,7 @@ from grammar.accounts import left_out, unheeded, unspoken
 from grammar.chart import Chart, Node, Slot, TooMuch
 from grammar.discourse import Ambiguous, Discourse, NotUnderstood, Thing
 from grammar.freetext import Doubt, doubtful, words_for
+from grammar.gerunds import as_verbs
 from grammar.language import Language, load_language
 from grammar.lexicon import Lexicon
 from grammar.naming import joined_up, place_called
@@ -26,7 +27,7 @@ from grammar.refusals import forbidden, no_thing, signs, why_not
 from grammar.requests import Request
 from grammar.slips import mended
 from grammar.slots import Names, Slots, command_words, names_of
-from grammar.tidy import Unbound, scoped, without_unused
+from grammar.tidy import Unbound, returning, scoped, without_unused
 from grammar.tokens import COMMA, Token, tokenise
 
 LONGEST_TEXT: Final = 2000
@@ -150,9 +151,9 @@ class Reader:
         self.context = context
         self.names: Names = names_of(language, lexicon)
         known = language.words | self.names.words | language.closed
-        self.tokens = mended(
-            tokenise(text, language.spelling), language, known, command_words(language)
-        )
+        commands = command_words(language)
+        mended_tokens = mended(tokenise(text, language.spelling), language, known, commands)
+        self.tokens = as_verbs(mended_tokens, language, commands)
         self.skips = self._skips()
         self.corrections = self._corrections()
 
@@ -227,7 +228,7 @@ class Reader:
             phrase, thing = impossible
             message = self.language.phrase(phrase, thing=thing)
             return replace(rejected(self.text, message, self.context), unclear=thing)
-        plan = without_unused(plan)
+        plan = returning(without_unused(plan))
         return Understanding(
             self.text,
             "ok",

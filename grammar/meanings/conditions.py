@@ -77,11 +77,11 @@ def negated(condition: Condition) -> Condition:
     return Not(condition)
 
 
-def condition_of(d: Discourse, node: Node) -> tuple[Steps, Condition]:
+def condition_of(d: Discourse, node: Node, name: str = "condition") -> tuple[Steps, Condition]:
     """The condition of a clause, and the steps that it needs before it can be checked; whom it is
     about is then `d.met`."""
     outer, d.pending, d.met = d.pending, [], None
-    condition: Condition = d.get(node, "condition")
+    condition: Condition = d.get(node, name)
     before, d.pending = d.pending, outer
     return before, condition
 
@@ -350,4 +350,9 @@ def code_is(d: Discourse, node: Node) -> Condition:
 def is_heard(d: Discourse, node: Node) -> Condition:
     """ "you hear help"."""
     heard: Value = Recall(d.heard) if d.heard else Ask("listen")
+    if node.production.fixed.get("own_name"):
+        if not d.lexicon.robot_name:
+            words = d.words(node.start, node.end)
+            raise NotUnderstood(d.language.phrase("cannot_check", what=words))
+        return Compare(Text(d.lexicon.robot_name), "in", heard)
     return Compare(Text(str(d.get(node, "text"))), "in", heard)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import Final
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, Steps, Thing
+from grammar.discourse import Discourse, NotUnderstood, Steps, Thing
 from grammar.meanings.branches import exclusive
-from grammar.meanings.finding import not_found
+from grammar.meanings.finding import go, not_found
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import summed_at_end
 from grammar.meanings.rounds import in_round
-from grammar.plan import Ask, Call, Holds, If, Not, Recall, Remember, Text
+from grammar.plan import Ask, Call, Holds, If, Not, Recall, Remember, Step, Text, Value
 from grammar.tidy import mentions
 
 NEEDS_IT: Final = frozenset({"grab", "put", "give", "guide", "follow", "describe"})
@@ -111,3 +111,47 @@ def corrected(d: Discourse, node: Node) -> Steps:
     """ "go to the kitchen, no, the lobby": only what stands last counts."""
     result: Steps = d.build(node.parts["second"])
     return result
+
+
+@meaning("on_the_way")
+def on_the_way(d: Discourse, node: Node) -> Steps:
+    """ "go to the kitchen; on the way stop at the reception": that comes first."""
+    target: Value | None = d.get(node, "place")
+    if node.production.fixed.get("back"):
+        target = d.start()
+    last = d.done[-1] if d.done else None
+    if target is not None:
+        going: Step = Call("goto", {"place": target})
+    elif isinstance(last, Call) and last.method in ("goto", "guide"):
+        going = d.done.pop()
+        target = last.arguments.get("place")
+    else:
+        raise NotUnderstood(d.language.phrase("where_is_there"))
+    d.at = None
+    stops: Steps = d.build(node.parts["steps"])
+    if isinstance(going, Call) and going.method == "guide":
+        stops = [_guided(each, going) for each in stops]
+    d.at = d.place = target
+    return [*stops, going]
+
+
+def _guided(step: Step, guiding: Call) -> Step:
+    """A stop on the way, for somebody who is led past it."""
+    if isinstance(step, Call) and step.method == "goto" and "place" in step.arguments:
+        place = step.arguments["place"]
+        return Call("guide", {"person": guiding.arguments["person"], "place": place})
+    return step
+
+
+@meaning("being_there")
+def being_there(d: Discourse, node: Node) -> Steps:
+    """ "while you are at the pharmacy, ...": go there, unless that is where the robot is."""
+    return [*go(d, d.get(node, "place")), *d.build(node.parts["steps"])]
+
+
+@meaning("refused_part")
+def refused_part(d: Discourse, node: Node) -> Steps:
+    """A clause that no program can do as it was meant: refused with its words."""
+    words = d.words(node.start, node.end)
+    phrase = str(node.production.fixed["phrase"])
+    raise NotUnderstood(d.language.phrase(phrase, part=words), span=(node.start, node.end))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import Any, Final
 
 import msgspec
 
@@ -15,15 +16,18 @@ from grammar.meanings.control import guard_finds
 from grammar.meanings.nouns import kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import until_answered
-from grammar.meanings.waiting import wait_until
+from grammar.meanings.waiting import at_least, wait_until
 from grammar.plan import (
     Ask,
     Call,
+    Compare,
+    Condition,
     ForEach,
     Forever,
     Holds,
     If,
     Items,
+    Number,
     Recall,
     Repeat,
     RepeatUntil,
@@ -32,7 +36,25 @@ from grammar.plan import (
     Value,
     While,
 )
-from grammar.tidy import mentions
+from grammar.tidy import mentions, nodes
+
+HOLDS: Final = frozenset({"goto", "dock", "show", "emotion", "wait"})
+"""Methods after which something goes on by itself: "stay in the lobby until noon"."""
+A_MINUTE: Final = 60
+FULL_HOUR: Final = Compare(Text(":00"), "in", Ask("clock", field="time"))
+
+
+def stays(body: Steps) -> bool:
+    """Whether some steps only bring about what then goes on by itself."""
+    held = [step for step in body if not (isinstance(step, Call) and step.method == "wait")]
+    return len(held) < 2 and all(
+        isinstance(step, Call) and step.method in HOLDS and step.save_as is None for step in body
+    )
+
+
+def held(body: Steps) -> Steps:
+    """Such steps without the moments that "stay" and "wait" mean where no time is said."""
+    return [step for step in body if not (isinstance(step, Call) and step.method == "wait")]
 
 
 @meaning("until")
@@ -43,8 +65,14 @@ def until(d: Discourse, node: Node) -> Steps:
     else:
         body = d.build(node.parts["steps"])
         looking, condition = condition_of(d, node)
-    if all(isinstance(step, Call) and step.method in ("wait",) for step in body):
-        return [*looking, *wait_until(condition)]
+    return done_until(d, body, looking, condition)
+
+
+def done_until(d: Discourse, body: Steps, looking: Steps, condition: Condition) -> Steps:
+    """Steps again and again until something is so; what goes on by itself only until then."""
+    condition = at_least(condition)
+    if stays(body):
+        return [*held(body), *looking, *wait_until(condition)]
     return until_answered(d, condition, [*body, *looking])
 
 
@@ -73,9 +101,103 @@ def at_intervals(d: Discourse, node: Node) -> Steps:
     return [Forever((*d.build(node.parts["steps"]), Call("wait", {"seconds": seconds})))]
 
 
+@meaning("loop")
+def loop(d: Discourse, node: Node) -> Steps:
+    """Steps and how often they are done: "every ten minutes until five", "three times"."""
+    part = node.parts["steps"]
+    return looped(d, d.get(node, "loop"), lambda: d.build(part))
+
+
+@meaning("loop_that")
+def loop_that(d: Discourse, node: Node) -> Steps:
+    """ "do that every hour": all that was said before."""
+    return looped(d, d.get(node, "loop"), lambda: list(all_before(d)))
+
+
+@meaning("how_often")
+def how_often(d: Discourse, node: Node) -> Node:
+    """At what intervals, and how many times or until when: what it means depends on what is done,
+    and so is made out with that (`looped`)."""
+    return node
+
+
+def looped(d: Discourse, often: Node, build: Callable[[], Steps]) -> Steps:
+    """The steps, as often as that, with the pause that it names."""
+
+    def make() -> Steps:
+        return one_round(build())
+
+    if "while_condition" in often.parts:
+        looking, condition = condition_of(d, often, "while_condition")
+        meet_there(d, d.met)
+        body = each_who_comes(d, make)
+        return [*looking, While(condition, (*_paced(d, often, body), *looking))]
+    if "condition" in often.parts:
+        body = each_who_comes(d, make)
+        looking, condition = condition_of(d, often)
+        return done_until(d, _paced(d, often, body), looking, condition)
+    if "times" in often.parts:
+        body = make()
+        return [Repeat(as_value(d.get(often, "times")), tuple(_paced(d, often, body)))]
+    if "lasting" in often.parts:
+        return _lasting(d, often, make)
+    body = each_who_comes(d, make)
+    return [Forever(tuple(_paced(d, often, body)))]
+
+
+def one_round(body: Steps) -> Steps:
+    """The steps of one round, where they alone would go on without end: "greet everybody who comes
+    in until five"."""
+    last = body[-1] if body else None
+    return [*body[:-1], *last.steps] if isinstance(last, Forever) else body
+
+
+def _paced(d: Discourse, often: Node, body: Steps) -> Steps:
+    """A round, with the pause behind it; at the full hour, with the wait for it before it."""
+    if "hourly" in often.parts:
+        return [*wait_until(FULL_HOUR), *body, Call("wait", {"seconds": Number(A_MINUTE)})]
+    pause = d.get(often, "pause")
+    return body if pause is None else [*body, Call("wait", {"seconds": as_value(pause)})]
+
+
+def _lasting(d: Discourse, often: Node, make: Callable[[], Steps]) -> Steps:
+    """For some time: as many rounds as there are pauses in it. Without a pause only what goes on
+    by itself can be said to last, for a program cannot tell how long it has been busy."""
+    lasting = float(d.get(often, "lasting"))
+    pause = A_MINUTE * 60 if "hourly" in often.parts else d.get(often, "pause")
+    body = make()
+    if pause is not None:
+        rounds = Number(max(1, round(lasting / float(pause))))
+        return [Repeat(rounds, tuple(_paced(d, often, body)))]
+    if not stays(body):
+        part = often.parts["lasting"]
+        words = d.words(part.start, part.end)
+        raise NotUnderstood(
+            d.language.phrase("cannot_time", time=words), span=(part.start, part.end)
+        )
+    return [*held(body), Call("wait", {"seconds": as_value(lasting)})]
+
+
+def each_who_comes(d: Discourse, make: Callable[[], Steps]) -> Steps:
+    """A round of "keep greeting visitors": it begins when one comes."""
+    before = d.person
+    body = make()
+    person = d.person
+    if person is None or person is before or person.known or person.me or person.group is not None:
+        return body
+    only = body[0] if len(body) == 1 else None
+    if isinstance(only, If) and only.condition == Holds(Ask("find", {"thing": person.value})):
+        body = list(only.then)  # not one after the other, all over the house
+    spoken = [step for step in body if isinstance(step, Call) and step.method in ("say", "ask")]
+    if not spoken or len(spoken) != len(body):
+        return body
+    return [Call("wait_for", {"thing": person.value}), *body]
+
+
 @meaning("forever")
 def forever(d: Discourse, node: Node) -> Steps:
-    return [Forever(tuple(d.build(node.parts["steps"])))]
+    body = each_who_comes(d, lambda: one_round(d.build(node.parts["steps"])))
+    return [Forever(tuple(body))]
 
 
 # --- all that was said before
@@ -179,6 +301,30 @@ def each_place(d: Discourse, items: Value, steps: Leaf | Node | None, goes: bool
     d.at = None if body else before
     d.with_person = None
     return [ForEach(variable, items, tuple(body))]
+
+
+@meaning("same_at")
+def same_at(d: Discourse, node: Node) -> Steps:
+    """ "do the same in the kitchen", "do that for every office, too": the steps before, with the
+    place that they are about changed."""
+    kinds = d.get(node, "kinds")
+    steps = d.done[:]
+    old = next((each for each in reversed([*nodes(tuple(steps))]) if _is_place(d, each)), None)
+    if not steps or old is None:
+        raise NotUnderstood(d.language.phrase("repeat_what"))
+    assert isinstance(old, Text)
+    if kinds is None:
+        place: Value = d.get(node, "place")
+        d.went(place)
+        return [replaced(step, old, place) for step in steps]
+    variable = d.variable("place")
+    d.at = d.with_person = None
+    body = tuple(replaced(step, old, Recall(variable)) for step in steps)
+    return [ForEach(variable, kind_places(d, kinds), body)]
+
+
+def _is_place(d: Discourse, value: object) -> bool:
+    return isinstance(value, Text) and any(value.value == each.name for each in d.lexicon.places)
 
 
 @meaning("for_each_of_them")

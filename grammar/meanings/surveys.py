@@ -8,7 +8,7 @@ before everything the empty list or the zero that it is noted in.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any
 
 import msgspec
 
@@ -22,23 +22,18 @@ from grammar.plan import (
     Condition,
     End,
     ForEach,
-    Forever,
     If,
     Increase,
     Items,
     Number,
     Recall,
     Remember,
-    Repeat,
     RepeatUntil,
     Step,
     Text,
     Value,
-    While,
 )
-from grammar.tidy import BODIES, mentions, nodes
-
-LOOPS: Final = (ForEach, Repeat, While, RepeatUntil, Forever)
+from grammar.tidy import BODIES, LOOPS, mentions, nodes
 
 
 @dataclass(frozen=True)
@@ -172,7 +167,9 @@ def until_answered(d: Discourse, condition: Condition, body: Steps) -> Steps:
     if loop is not None and loop.steps == (survey.call,):  # of those who come, one after the other
         body = [other for each in body for other in ((survey.call,) if each is loop else (each,))]
     steps = list(noting(body, survey.call, [count]))
-    if any(step is survey.call for step in steps) and (survey.who is None or loop is not None):
+    waits = any(isinstance(step, Call) and step.method == "wait_for" for step in steps)
+    nameless = survey.who is None or loop is not None
+    if any(step is survey.call for step in steps) and nameless and not waits:
         who = d.person.value if d.person is not None else Text("person")
         at = next(at for at, step in enumerate(steps) if step is survey.call)
         arguments = {key: each for key, each in survey.call.arguments.items() if key != "person"}

@@ -51,8 +51,21 @@ def tell_when(d: Discourse, node: Node) -> Steps:
     return [*waiting, *told]
 
 
+def at_least(condition: Condition) -> Condition:
+    """ "until there are three people": more are enough, too."""
+    if (
+        isinstance(condition, Compare)
+        and condition.operator == "=="
+        and isinstance(condition.left, Ask)
+        and condition.left.method == "count"
+    ):
+        return Compare(condition.left, ">=", condition.right)
+    return condition
+
+
 def wait_until(condition: Condition) -> Steps:
     """Wait until a condition holds."""
+    condition = at_least(condition)
     if isinstance(condition, Holds) and isinstance(condition.value, Ask):
         asked = condition.value
         if asked.method in ("sees", "wait_for"):
