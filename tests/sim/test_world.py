@@ -287,7 +287,7 @@ def test_loading_needs_nothing_heavy() -> None:
 
 
 def test_the_builtin_worlds_are_these() -> None:
-    assert builtin_worlds() == ["city-hospital", "lab-tour", "ward"]
+    assert builtin_worlds() == ["city-hospital", "household", "lab-tour", "ward"]
 
 
 def test_translating_needs_only_the_names(tmp_path) -> None:
