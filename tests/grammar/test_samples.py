@@ -54,7 +54,7 @@ def test_what_the_rules_can_say_they_understand(language: str, seed: int) -> Non
         return
     if understood.plan is None:  # "put it there": nothing was spoken of before
         assert understood.message is not None
-        misunderstood = load_language(language).phrase("not_understood_at_all").split(".")[0]
+        misunderstood = load_language(language).phrase("not_understood_at_all").split(".")[0] + "."
         assert misunderstood not in understood.message, sentence
         return
     program = write_program(understood.plan)
