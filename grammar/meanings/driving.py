@@ -47,7 +47,12 @@ def look_in(d: Discourse, node: Node) -> Steps:
 def go_find(d: Discourse, node: Node) -> Steps:
     """ "go to the kitchen to find the cup"."""
     going = go_to(d, node)
-    return [*going, *d.build(node.parts["then"])]
+    d.done.extend(going)  # what is done there may look at where it was gone to
+    then: Steps = d.build(node.parts["then"])
+    if d.done[-len(going) :] != going:
+        return then
+    del d.done[-len(going) :]
+    return [*going, *then]
 
 
 @meaning("go_places")

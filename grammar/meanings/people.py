@@ -83,6 +83,9 @@ def fetch_person(d: Discourse, node: Node) -> Steps:
 @meaning("guide_nowhere")
 def guide_nowhere(d: Discourse, node: Node) -> Steps:
     """ "guide Bob": asks back where to."""
+    last = d.done[-1] if d.done else None
+    if isinstance(last, Call) and last.method == "guide":
+        return []  # "Bob wants to go to the kitchen, show him the way"
     who = named(d, led(d, node))
     words = who if isinstance(who, str) else d.language.phrase("somebody")
     to_place = d.language.speech["to_place"]

@@ -9,7 +9,7 @@ from typing import Any, Final
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where, capital
 from grammar.meanings.finding import go, if_found, meet, speak_to, where_sent
-from grammar.meanings.nouns import is_me, known_by_name
+from grammar.meanings.nouns import described, is_me, known_by_name
 from grammar.meanings.options import MOST_OPTIONS, numbers_offered, options_of, without_little_words
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import Survey
@@ -343,6 +343,10 @@ def answer(d: Discourse, node: Node) -> Steps:
     spot: Where | None = d.get(node, "from") or d.get(node, "where")
     if person is not None and spot is not None:
         person = replace(person, place=spot.place, here=False)
+    if person is not None and "mods" in node.parts:  # "the man's question who is waving"
+        more = described(d, person.text, node)
+        value = person.value if person.known else more.value
+        person = replace(person, value=value, place=more.place or person.place)
     if person is None or is_me(person):
         if spot is not None and spot.place is not None:
             d.went(spot.place)

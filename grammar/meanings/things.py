@@ -102,6 +102,10 @@ def bring(d: Discourse, node: Node) -> Steps:
         raise NotUnderstood(d.language.phrase("one_person"))
     if node.production.fixed.get("handing") and person is not None and not thing.pronoun:
         person = handed_there(d, thing, person)
+    if person is not None and thing.pronoun and d.done:
+        given = Call("give", {"thing": thing.value, "person": person.value})
+        if d.done[-1] == given:
+            return []  # "Alice needs the cup, bring it to her"
     return deliver(d, thing, person, d.get(node, "where"))
 
 
@@ -121,9 +125,15 @@ def handed_there(d: Discourse, thing: Thing, person: Thing) -> Thing:
 def bring_too(d: Discourse, node: Node) -> Steps:
     """ "take the cup to Alice and the blanket to Bob": the second, too."""
     last = d.done[-1] if d.done else None
-    if not (isinstance(last, Call) and last.method in ("give", "put")):
+    if not (isinstance(last, Call) and last.method in ("give", "put")) and not whole(d, node):
         raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
     return bring(d, node)
+
+
+def whole(d: Discourse, node: Node) -> bool:
+    """Whether a command without a verb says both from where and where to: "cup from here to there"."""
+    thing: Thing = d.get(node, "thing")
+    return not d.done and (thing.place is not None or thing.furniture is not None)
 
 
 @meaning("bring_each")

@@ -58,7 +58,7 @@ def test_reasons_stand_in_the_program_and_in_its_words() -> None:
         "the lift is broken and the coffee is cold",
         "go to the kitchen and the moon is made of cheese",
         "Alice went to the lobby and wave",
-        "Bob has to be taken to radiology. Say hello.",
+        "Bob has to be washed. Say hello.",
     ],
 )
 def test_remarks_alone_and_duties_are_no_background(sentence: str) -> None:
