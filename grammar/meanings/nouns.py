@@ -122,7 +122,8 @@ def place_unknown(d: Discourse, node: Node) -> Value:
 
 def unknown_place(d: Discourse, words: str, node: Node) -> NotUnderstood:
     capitals = any(token.capital for token in d.tokens[node.start : node.end] if token.start)
-    if capitals and not d.language.speech.get("capital_nouns"):
+    known = words.lower() in (each.name.lower() for each in d.lexicon.people)
+    if capitals and not known and not d.language.speech.get("capital_nouns"):
         return NotUnderstood(
             d.language.phrase("unknown_name", name=words),
             nearest(words, (*d.lexicon.places, *d.lexicon.people)),

@@ -341,6 +341,10 @@ def answer(d: Discourse, node: Node) -> Steps:
     ):
         return []  # "the girl has a question, answer it"
     spot: Where | None = d.get(node, "from") or d.get(node, "where")
+    if person is None and spot is None and known is None and d.person is not None:
+        elsewhere = d.person.place is not None and d.person.place != d.at and not d.person.plural
+        if elsewhere and not d.person.here and d.with_person != d.person.value:
+            person = d.person  # "the girl in the study has a question, please respond"
     if person is not None and spot is not None:
         person = replace(person, place=spot.place, here=False)
     if person is not None and "mods" in node.parts:  # "the man's question who is waving"

@@ -69,7 +69,7 @@ class Report:
 @meaning("report")
 def report(d: Discourse, node: Node) -> Steps:
     if node.production.fixed.get("joke"):
-        return told(d, joke(d), None)
+        return told(d, joke(d), d.get(node, "person_ref"))
     person: Thing | None = d.get(node, "person_ref")
     found: Report | Steps = d.get(node, "info")
     if isinstance(found, list):

@@ -131,7 +131,7 @@ def bring_too(d: Discourse, node: Node) -> Steps:
 
 
 def whole(d: Discourse, node: Node) -> bool:
-    """Whether a command without a verb says both from where and where to: "cup from here to there"."""
+    """Whether a command without a verb says from where and where to: "cup from here to there"."""
     thing: Thing = d.get(node, "thing")
     return not d.done and (thing.place is not None or thing.furniture is not None)
 
