@@ -216,6 +216,8 @@ class _Walk:
     held: dict[str, set[str]] = field(default_factory=dict)
     taken: dict[str, _Step] = field(default_factory=dict)
     results: dict[str, Frame] = field(default_factory=dict)
+    spots: set[str] = field(default_factory=set)
+    """Variables that keep where the robot was."""
 
     def steps(self, steps: tuple[Any, ...]) -> None:
         for step in steps:
@@ -235,7 +237,7 @@ class _Walk:
         act = getattr(self, f"_{method}", None)
         if act is not None:
             act(arguments, save_as)
-        elif method != "location":
+        else:
             self._do(Frame(method))
 
     # --- ways and searches, which may only serve what follows
@@ -332,9 +334,10 @@ class _Walk:
     def _say(self, arguments: dict[str, Value], save_as: str | None) -> None:
         said = arguments["text"]
         asked = {ask.method: ask for ask in _inside(said, Ask)}
-        if "location" in asked and self.looked:
-            return  # where it was found
         names = [each.name for each in _inside(said, Recall)]
+        if self.looked and ("location" in asked or self.spots & set(names)):
+            self._arrive()
+            return  # where it was found
         for method in TOLD & asked.keys():
             self.call(method, asked[method].arguments, method)
             names.append(method)
@@ -368,6 +371,9 @@ class _Walk:
         text = _text(arguments["thing"])
         best = any(each.startswith("superlative") for each in self._noun(text))
         self._keep(save_as, "say", text, ("what=which" if best else "asked=description",))
+
+    def _location(self, arguments: dict[str, Value], save_as: str | None) -> None:
+        self.spots |= {save_as} if save_as is not None else set()
 
     def _people(self, arguments: dict[str, Value], save_as: str | None) -> None:
         self._keep(save_as, "say", "", ("asked=name",))
