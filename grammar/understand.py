@@ -337,6 +337,7 @@ class Reader:
         """What unknown words may be misspellings of."""
         corrections: dict[int, tuple[str, ...]] = {}
         known = self.language.words | self.names.words | self.language.closed
+        known |= words_for(self.language).verbs  # what the robot cannot do is no slip
         known |= signs(self.language)
         for at, token in enumerate(self.tokens):
             if token.kind != "word" or token.norm in known or len(token.norm) < SHORTEST_CORRECTED:

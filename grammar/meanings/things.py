@@ -188,7 +188,8 @@ def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None
 @meaning("statement")
 def statement(d: Discourse, node: Node) -> Steps:
     """ "there is a cup on the table": nothing to do, but now it is spoken of."""
-    thing: Thing | None = d.get(node, "thing") or d.get(node, "person_ref")
+    spoken_of: Thing | list[Thing] | None = d.get(node, "thing") or d.get(node, "person_ref")
+    thing = spoken_of[0] if isinstance(spoken_of, list) else spoken_of  # "it" is one of them
     spot: Where | None = d.get(node, "from")
     if thing is None:  # "he is in the kitchen"
         thing = d.person or d.thing or Thing(Text(ANYONE), person=True)
