@@ -280,7 +280,9 @@ class _Teller:
                 if not patterns:
                     yield self.named(readable)
             case p.ForEach():
-                yield fill(self.words.values["item"], {"name": readable})
+                sort = readable.rstrip("0123456789").strip()
+                item = self.words.values.get(f"item {sort}", self.words.values["item"])
+                yield fill(item, {"name": readable})
             case _:
                 yield self.named(readable)
 
@@ -325,7 +327,7 @@ class _Teller:
             case p.Repeat():
                 yield self.loop("repeat", step.steps, times=self.times(step.times))
             case p.ForEach():
-                yield self.loop("for each", step.steps, items=self.value(step.items))
+                yield self.loop("for each", step.steps, items=self.each_of(step))
             case p.While():
                 yield self.loop("while", step.steps, condition=self.condition(step.condition))
             case p.RepeatUntil():
@@ -366,6 +368,14 @@ class _Teller:
                     break
         self.latest = before
         self.forget((whole,))
+
+    def each_of(self, step: p.ForEach) -> str:
+        """What a loop goes over; places and people by the names that speakers have for them."""
+        items = step.items.items if isinstance(step.items, p.Items) else ()
+        names = [item.value for item in items if isinstance(item, p.Text)]
+        if len(names) < len(items) or all(self.called(name) == name for name in names):
+            return self.value(step.items)
+        return self.listed([self.words.nouns.the(self.called(name)) for name in names], "and")
 
     def loop(self, kind: str, steps: tuple[p.Step, ...], **values: str) -> Told:
         self.forget(steps)
@@ -517,7 +527,9 @@ class _Teller:
         return self.patterned(words.value or words.do, ask.arguments)
 
     def series(self, items: Sequence[p.Value], word: str) -> str:
-        told = [self.value(item) for item in items]
+        return self.listed([self.value(item) for item in items], word)
+
+    def listed(self, told: Sequence[str], word: str) -> str:
         if not told:
             return self.words.values["nothing"]
         if len(told) == 1:
