@@ -349,7 +349,9 @@ def _goes_to_name(step: Call) -> bool:
 @meaning("check_each_place")
 def check_each_place(d: Discourse, node: Node) -> Steps:
     """ "check every ward for visitors and tell them ...": go there, and if one is seen, do it."""
-    sought_for: Thing = d.get(node, "person_ref") or d.get(node, "thing")
+    sought_for: Thing | list[Thing] = d.get(node, "person_ref") or d.get(node, "thing")
+    if isinstance(sought_for, list):  # "check every ward for Alice or Bob"
+        raise NotUnderstood(d.language.phrase("one_person"))
     variable = d.variable("place")
     d.at = d.place = Recall(variable)
     if sought_for.person:
