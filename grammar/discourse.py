@@ -238,6 +238,10 @@ class Discourse:
     """The step that tells it."""
     bound: dict[int, Any] = field(default_factory=dict)
     """What noun phrases that speak of several stand for within their loop, by their `id`."""
+    taking_apart: bool = False
+    """Whether a noun phrase that speaks of several is made for the loop over them."""
+    found_already: bool = False
+    """Whether what a command is about was looked for by the steps around it."""
     at_people: bool = False
     """Whether the robot is where it is to meet people, so that things need not be there, too."""
     loops: dict[str, Value] = field(default_factory=dict)
@@ -264,7 +268,7 @@ class Discourse:
         if id(part) in self.bound:
             return self.bound[id(part)]
         if SETTING in part.parts:
-            return MEANINGS[SETTING](self, part)
+            return distributed(self, part, lambda: MEANINGS[SETTING](self, part))
         meaning = MEANINGS.get(part.means)
         if part.production.rule == "command" and (meaning or part.means in METHODS):
             return distributed(self, part, lambda: self._command(part))

@@ -193,6 +193,7 @@ class Slots:
         self._joins = frozenset(self.language.speech.get("joins", ()))
         self._judge = Judge(tokens, self.language)
         self._adverb = re.compile(self.language.speech.get("adverbs", r"(?!)")).search
+        self._possessive = str(self.language.speech.get("possessive", "")).strip()
         self._noun_joins = frozenset(self.language.speech.get("noun_joins", ()))
         self._spoken_fillers = frozenset(self.language.speech.get("spoken_fillers", ()))
         self._fillers = {word for filler in self.language.fillers for word in filler}
@@ -500,6 +501,8 @@ class Slots:
         matches: list[Match] = []
         for position in range(at, min(at + LONGEST_UNKNOWN, len(self.tokens))):
             token = self.tokens[position]
+            if token.norm == self._possessive and matches:
+                continue  # "Mrs Miller's room"
             if token.kind == "mark" or token.norm in self.language.closed:
                 break
             matches.append((position + 1, UNKNOWN_NAME + FREE_WORD * (position + 1 - at), None))

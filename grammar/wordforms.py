@@ -48,7 +48,10 @@ def _changed(noun: str, language: Language, change: Callable[[str, Language], st
     if ends is None:  # "boxes of gloves" is several boxes
         joins = language.speech.get("noun_joins", ())
         head = next((at - 1 for at, word in enumerate(words) if at and word in joins), -1)
-        words[head] = change(words[head], language)
+        if head >= 0 and change is _singular:  # "glasses of water" are no spectacles
+            words[head] = _by_endings(words[head], language)
+        else:
+            words[head] = change(words[head], language)
         return " ".join(words)
     last = next(
         (at for at, word in enumerate(words) if f"{word} ".startswith(tuple(ends))), len(words)
@@ -95,6 +98,11 @@ def _singular(word: str, language: Language) -> str:
     if last is not None:
         one = str(ones[last])
         return head + one if head else (one.capitalize() if word[:1].isupper() else one)
+    return _by_endings(word, language)
+
+
+def _by_endings(word: str, language: Language) -> str:
+    low = word.lower()
     for one_ending, many_ending in language.plurals.get("singular_endings", ()):
         if low.endswith(many_ending) and len(low) > len(many_ending) + 1:
             return word[: len(word) - len(many_ending)] + str(one_ending)

@@ -121,7 +121,7 @@ def describe(hospital: Hospital, thing: str) -> str:
     sights = in_view(hospital, thing)
     if not sights:
         raise NotFound(f'The robot does not see "{thing}" here. Look for it in another place.')
-    if set(parse(thing).words) & words().several:
+    if _is_plural(thing, sights):
         return f"I see {_listed([_shown(hospital, sight) for sight in sights])}."
     sight = sights[0]
     if isinstance(sight, Furniture):
@@ -410,6 +410,12 @@ def _seen(hospital: Hospital, sight: Sight) -> Seen:
     if isinstance(sight, Item):
         return Seen(sight.thing.name, sight.thing.kind, sight.thing.is_, x, y, False)
     return Seen(sight.name, sight.kind, (), x, y, False)
+
+
+def _is_plural(thing: str, sights: Sequence[Sight]) -> bool:
+    """Whether a phrase asks for all of them: "objects", "red cups"."""
+    known = frozenset().union(*(_vocabulary(sight) for sight in sights))
+    return any(token in words().several or token not in known for token in parse(thing).words)
 
 
 def _shown(hospital: Hospital, sight: Sight) -> str:

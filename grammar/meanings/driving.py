@@ -9,7 +9,8 @@ from grammar.discourse import SETTING, Discourse, NotUnderstood, Steps, Thing, W
 from grammar.meanings.finding import go, look_for, noun_of, where_sent
 from grammar.meanings.nouns import is_me, sought
 from grammar.meanings.registry import meaning
-from grammar.plan import Call, Number, Repeat, Text, Value
+from grammar.meanings.waiting import wait_until
+from grammar.plan import Ask, Both, Call, Either, Holds, Items, Number, Repeat, Text, Value
 from grammar.tidy import nodes
 
 
@@ -181,6 +182,9 @@ def wait_for(d: Discourse, node: Node) -> Steps:
     thing = noun_of(d, node)
     timeout = d.get(node, "seconds")
     steps = go(d, thing.place) if thing.place is not None else []
+    if isinstance(thing.group, Items):  # "Alice or Bob"
+        seen = tuple(Holds(Ask("sees", {"thing": name})) for name in thing.group.items)
+        return [*steps, *wait_until(Either(seen) if is_either(node) else Both(seen))]
     arguments: dict[str, Value] = {"thing": sought(d, thing)}
     if timeout is not None:
         arguments["timeout"] = as_value(timeout)
@@ -190,6 +194,12 @@ def wait_for(d: Discourse, node: Node) -> Steps:
     if thing.count is not None:
         return [*steps, Repeat(Number(thing.count), (Call("wait_for", arguments),))]
     return [*steps, Call("wait_for", arguments)]
+
+
+def is_either(node: Node) -> bool:
+    """Whether a command is about one person or another: "Alice or Bob"."""
+    part = node.parts.get("person_ref")
+    return isinstance(part, Node) and part.means == "person_either"
 
 
 @meaning("patrol")

@@ -42,9 +42,7 @@ def noun_of(d: Discourse, node: Node) -> Thing:
     """The thing or person of a command."""
     thing: Thing | None = d.get(node, "thing")
     if thing is None:
-        person: Thing | list[Thing] = d.build(node.parts["person_ref"])
-        if isinstance(person, list):  # "Alice or Bob", of whom a condition is true
-            person = together(person)
+        person: Thing = d.build(node.parts["person_ref"])
         thing = Thing(Text(ANYONE), person=True, here=True) if is_me(person) else person
     spot: Where | None = d.get(node, "from")
     if spot is not None:

@@ -337,6 +337,9 @@ def for_each_of_them(d: Discourse, node: Node) -> Steps:
         going.insert(0, last)
     if len(going) < 2:
         d.done.extend(going)
+        if d.in_loop and d.at is not None and d.at == d.place:
+            inside: Steps = d.build(node.parts["steps"])  # "visit the labs and ... in each"
+            return inside
         raise NotUnderstood(d.language.phrase("which_places"))
     places = Items(tuple(call.arguments["place"] for call in going))
     return each_place(d, places, node.parts["steps"], goes=True)

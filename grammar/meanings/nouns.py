@@ -44,9 +44,17 @@ def place_of_kind(d: Discourse, node: Node) -> Value:
 @meaning("each_place")
 def each_place(d: Discourse, node: Node) -> Value:
     """ "every office": the places, for a loop (`grammar.meanings.quantifiers`)."""
+    only_taken_apart(d, node)
     if "place" in node.parts:
         return Items((d.get(node, "place"), *d.get(node, "place_list")))
     return kind_places(d, d.get(node, "places"))
+
+
+def only_taken_apart(d: Discourse, node: Node) -> None:
+    """Refuse a phrase that speaks of several where nothing makes a loop of it."""
+    if not d.taking_apart:
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("one_of_several", words=words))
 
 
 @meaning("all_places")
@@ -170,15 +178,35 @@ def place_called_after(d: Discourse, owner: str, node: Node) -> Value:
 @meaning("place_any")
 def place_any(d: Discourse, node: Node) -> Value:
     """ "any office": whichever; the only one if there is no other."""
+    only_taken_apart(d, node)
     places = d.lexicon.place_kinds[d.get(node, "kind")]
     if len(places) == 1:
         return Text(places[0].name)
     return kind_places(d, d.get(node, "kind"))
 
 
+@meaning("place_either")
+def place_either(d: Discourse, node: Node) -> list[Value]:
+    """ "the lobby or the kitchen"."""
+    only_taken_apart(d, node)
+    return [d.get(node, "first"), d.get(node, "second")]
+
+
+@meaning("place_other")
+def place_other(d: Discourse, node: Node) -> Value:
+    """ "the other office": of two, the one that was not spoken of; else the question which."""
+    places = d.lexicon.place_kinds[d.get(node, "kind")]
+    others = [each.name for each in places if Text(each.name) != d.place]
+    if len(others) == 1:
+        d.place = Text(others[0])
+        return d.place
+    raise d.which(node.start, node.end, tuple(others))
+
+
 @meaning("place_where")
 def place_where(d: Discourse, node: Node) -> Thing:
     """ "where Bob is", "a room with a printer": wherever that is found."""
+    only_taken_apart(d, node)
     found: Thing = d.get(node, "thing") or d.get(node, "person_ref")
     return found
 
@@ -283,7 +311,9 @@ def place_tail(d: Discourse, node: Node) -> Value:
 @meaning("mods")
 def mods(d: Discourse, node: Node) -> list[Where | str]:
     """All that follows a noun: where it is, and what tells it from others."""
-    first = d.get(node, "first")
+    part = node.parts["first"]
+    says_nothing = isinstance(part, Node) and not part.parts and part.production.means is None
+    first = None if says_nothing else d.build(part)  # "the bottle you can find"
     found = [first] if isinstance(first, Where) or (isinstance(first, str) and first) else []
     words = d.norms(node.parts["first"].start, node.parts["first"].end)
     if words[-1] in d.language.speech.get("pointing", ()):
@@ -541,12 +571,14 @@ def thing_same(d: Discourse, node: Node) -> Thing:
 @meaning("things")
 def things(d: Discourse, node: Node) -> list[Thing]:
     """ "the cup and the book"."""
+    only_taken_apart(d, node)
     return listed(d, node)
 
 
 @meaning("thing_either")
 def thing_either(d: Discourse, node: Node) -> list[Thing]:
     """ "the red cup, or if there is none the blue one"."""
+    only_taken_apart(d, node)
     first: Thing = d.get(node, "first")
     rest = node.parts["rest"]
     assert isinstance(rest, Node)
@@ -703,9 +735,12 @@ def person_group(d: Discourse, node: Node) -> Thing:
 
 
 @meaning("person_either")
-def person_either(d: Discourse, node: Node) -> list[Thing]:
-    """ "Alice or Bob"."""
-    return listed(d, node)
+def person_either(d: Discourse, node: Node) -> list[Thing] | Thing:
+    """ "Alice or Bob": one of them; for a condition, both as a group."""
+    from grammar.meanings.finding import together
+
+    people = listed(d, node)
+    return people if d.taking_apart else together(people)
 
 
 def known_by_name(d: Discourse, found: Thing, kind: str) -> tuple[Text, ...]:
@@ -729,7 +764,7 @@ def person_group_kind(d: Discourse, node: Node) -> Thing:
         return replace(found, known=True, group=d.group)
     if but is not None:
         if found.text != ANYONE:
-            raise NotUnderstood(d.language.phrase("one_person"))
+            raise NotUnderstood(d.language.phrase("but_whom"))
         found = replace(found, but=but.group or Items((but.value,)))
     d.group = Ask("people")
     d.person, d.thing_last = found, False

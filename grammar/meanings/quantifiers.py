@@ -17,7 +17,16 @@ from dataclasses import replace
 from typing import Any, Final
 
 from grammar.chart import Node
-from grammar.discourse import ANYONE, START, Ambiguous, Discourse, NotUnderstood, Steps, Thing
+from grammar.discourse import (
+    ANYONE,
+    SETTING,
+    START,
+    Ambiguous,
+    Discourse,
+    NotUnderstood,
+    Steps,
+    Thing,
+)
 from grammar.meanings.finding import found, go, look_for, named, not_found
 from grammar.meanings.surveys import each_asked, uses_answer
 from grammar.naming import place_called
@@ -46,7 +55,10 @@ from grammar.plan import (
     While,
 )
 from grammar.tidy import nodes
+from grammar.wordforms import singular
 
+HANDED: Final = frozenset({"bring", "put"})
+"""Commands that change where things are."""
 LIST_PARTS: Final = frozenset({"more_names", "either_names", "more_things", "either_things"})
 """Rules for the rest of a list, which is a part of the whole."""
 
@@ -62,8 +74,11 @@ TOGETHER: Final = frozenset(
 )  # fmt: skip
 """Commands that know themselves what to do with several people."""
 ALWAYS: Final = frozenset(
-    {"each_place", "person_either", "place_any", "place_where", "thing_either", "things"}
-)
+    {
+        "each_place", "person_either", "place_any", "place_either", "place_where", "thing_either",
+        "things",
+    }
+)  # fmt: skip
 """Noun phrases that no command knows itself what to do with."""
 CLAUSES: Final = frozenset({"command", "closing", "clause", "steps", "body", "whole"})
 """Rules in which commands of their own stand."""
@@ -71,9 +86,18 @@ CLAUSES: Final = frozenset({"command", "closing", "clause", "steps", "body", "wh
 
 def distributed(d: Discourse, node: Node, make: Make) -> Steps:
     """The steps of a command, in a loop for each of its noun phrases that speak of several."""
-    several = [part for part in phrases(node) if speaks_of_several(d, node, part)]
+    within = setting_of(node) or node
+    several = [part for part in phrases(within) if speaks_of_several(d, node, part)]
     several.sort(key=lambda part: part.production.rule == "thing")  # things change hands inside
     return over(d, several, make)
+
+
+def setting_of(node: Node) -> Node | None:
+    """ "in any office, ...": where a command is done, if that is said before it."""
+    setting = node.parts.get(SETTING)
+    if not isinstance(setting, Node):
+        return None
+    return replace(node, parts={SETTING: setting})
 
 
 def phrases(node: Node) -> Iterator[Node]:
@@ -91,6 +115,8 @@ def speaks_of_several(d: Discourse, node: Node, part: Node) -> bool:
     together = node.means in TOGETHER
     if id(part) in d.bound:
         return False
+    if node.means == "wait_for" and part.means == "person_either":
+        return False
     by_name = node.means == "greet" and part.means in ("person_group", "person_group_kind")
     if together and part.means not in ALWAYS and "but" not in part.parts and not by_name:
         return False
@@ -100,18 +126,39 @@ def speaks_of_several(d: Discourse, node: Node, part: Node) -> bool:
         return d.thing is not None and d.thing.several and d.is_plural(part)
     if part.means == "person_pronoun":
         return d.person is not None and d.person.group is not None and d.is_plural(part)
+    if part.means == "thing" and part.production.rule == "simple_thing":
+        return False
     if part.means == "thing":
-        return "number" in part.parts or "every" in part.production.fixed
+        told = {*part.parts, *part.production.fixed}
+        return bool(told & {"number", "every"}) or (node.means in HANDED and all_of(d, part))
     if part.means == "thing_it":
         return d.thing is not None and d.thing.several and d.is_plural(part)
     return True
+
+
+def all_of(d: Discourse, part: Node) -> bool:
+    """Whether it speaks of all there are: "the boxes in the supply room"."""
+    head = part.parts.get("head")
+    if d.tokens[part.start].norm not in d.language.speech.get("definite", ()) or head is None:
+        return False
+    last = d.tokens[head.end - 1].norm
+    if "superlative" in part.parts or singular(last, d.language) == last:
+        return False
+    before = d.thing, d.thing_last
+    thing: Thing = d.build(part)
+    d.thing, d.thing_last = before
+    return not thing.here and (thing.place is not None or bool(thing.furniture))
 
 
 def over(d: Discourse, several: list[Node], make: Make) -> Steps:
     if not several:
         return make()
     first, *rest = several
-    phrase = d.build(first)
+    d.taking_apart = True
+    try:
+        phrase = d.build(first)
+    finally:
+        d.taking_apart = False
 
     def one(bound: Any) -> Steps:
         """The steps for one of them."""
@@ -236,6 +283,21 @@ def over_places(d: Discourse, node: Node, places: Value, one: One) -> Steps:
     return [ForEach(place.name, places, tuple(another_one(d, body)))]
 
 
+def over_either_place(d: Discourse, node: Node, places: list[Value], one: One) -> Steps:
+    """ "look for it in the lobby or the kitchen": in the one, then in the other."""
+    otherwise: Steps = []
+    for place in reversed(places):
+        d.at = None
+        search = d.sequence(lambda p=place: d.done.extend(one(p)))  # type: ignore[misc]
+        first = search[0] if len(search) == 1 else None
+        if not (isinstance(first, Call) and first.method == "find"):
+            named_places = tuple(each.value for each in places if isinstance(each, Text))
+            raise d.which(node.start, node.end, named_places)
+        missing = otherwise or [not_found(d, Thing(first.arguments["thing"]))]
+        otherwise = [If(Not(Holds(Ask("find", first.arguments))), tuple(missing))]
+    return otherwise
+
+
 def over_any_place(d: Discourse, node: Node, places: Value, one: One) -> Steps:
     """ "any office": one of them, no matter which."""
     if isinstance(places, Text):
@@ -293,12 +355,15 @@ def rounds(d: Discourse, node: Node, thing: Thing, single: Thing, body: Steps) -
     if thing.place is not None or target is None:
         if thing.count is not None:
             return [Repeat(Number(thing.count), tuple(body))]
-        if thing.place is None:
+        if thing.place is not None:
+            return [While(Holds(Ask("find", found(d, single).arguments)), tuple(body))]
+        if not (isinstance(body[-1], Call) and body[-1].method == "give"):
             raise where_from(d, node, thing)
-        return [While(Holds(Ask("find", found(d, single).arguments)), tuple(body))]
     source = Recall(d.variable("source"))
     search = Holds(Ask("find", {**found(d, single).arguments, "place": source}))
-    body = [step for step in body if not (isinstance(step, Call) and step.method == "find")]
+    if target is None:  # what is handed over is not found again
+        return [ForEach(source.name, Ask("places"), (While(search, tuple(without_find(body))),))]
+    body = without_find(body)
     other = is_other(d, source, target)
     if thing.count is None:
         return [ForEach(source.name, Ask("places"), (While(Both((other, search)), tuple(body)),))]
@@ -311,6 +376,11 @@ def rounds(d: Discourse, node: Node, thing: Thing, single: Thing, body: Steps) -
         ForEach(source.name, Ask("places"), (loop,)),
         If(few, (only,)),
     ]
+
+
+def without_find(body: Steps) -> Steps:
+    """A round whose loop has already found the thing."""
+    return [step for step in body if not (isinstance(step, Call) and step.method == "find")]
 
 
 def another_one(d: Discourse, body: Steps) -> Steps:
@@ -407,7 +477,12 @@ def first_found(d: Discourse, things: list[Thing], one: One) -> Steps:
     for thing in reversed(things):
         d.at, d.holding, d.with_person = before[:3]
         d.variables.intersection_update(before[3])  # the same names in either branch
+        d.found_already = True
         body = round_of_steps(d, lambda t=thing: one(replace(t, here=True)))  # type: ignore[misc]
+        d.found_already = False
+        if not body:
+            otherwise = [If(Not(Holds(Ask("find", found(d, thing).arguments))), tuple(otherwise))]
+            continue
         otherwise = [
             If(Holds(Ask("find", found(d, thing).arguments)), tuple(body), tuple(otherwise))
         ]
@@ -418,6 +493,7 @@ def first_found(d: Discourse, things: list[Thing], one: One) -> Steps:
 OVER: Final[dict[str, Callable[[Discourse, Node, Any, One], Steps]]] = {
     "each_place": over_places,
     "place_any": over_any_place,
+    "place_either": over_either_place,
     "place_where": over_place_where,
     "person_coming": over_people,
     "person_count": over_people,

@@ -30,6 +30,7 @@ from grammar.plan import (
     Ask,
     Call,
     Choice,
+    Compare,
     Holds,
     If,
     Items,
@@ -208,14 +209,18 @@ def things_on(d: Discourse, place: Thing) -> Report:
 
 @meaning("kind_seen")
 def kind_seen(d: Discourse, node: Node) -> Report:
-    """ "which drinks are on the counter?"."""
+    """ "which cups are on the table?": all of them in a sentence, or that there are none."""
     head = node.parts["head"]
     assert isinstance(head, Leaf)
     name = str(head.value[0]) if head.value else d.noun_words(head.start, head.end)
     thing = described(d, singular(name, d.language), node, lies_about=True)
-    return Report(
-        "only", Ask("describe", {"thing": sought(d, thing)}), thing.place, name="description"
-    )
+    words = d.variable("description")
+    several = replace(thing, value=Text(plural(thing.text, d.language)))
+    look = Remember(words, Ask("describe", {"thing": sought(d, several)}))
+    none = d.sentence("none_seen", things=d.called(several.text))
+    seen = Holds(Ask("sees", {"thing": sought(d, thing)}))
+    before = (Remember(words, none), If(seen, (look,)))
+    return Report("only", Recall(words), thing.place, before=before)
 
 
 @meaning("looks_of")
@@ -280,7 +285,7 @@ def count_report(d: Discourse, thing: Thing) -> Report:
     looked_for = sought(d, thing)
     count = Ask("count", {"thing": looked_for})
     if thing.furniture and isinstance(looked_for, Text):  # "cups on the table"
-        things, spot = f"{things} {d.called(looked_for.value.removeprefix(thing.text))}", ""
+        things, spot = f"{things} {d.called(looked_for.value.removeprefix(thing.text).strip())}", ""
     phrase = "counted_at" if spot and "counted_at" in d.language.phrases else "counted"
     words = (
         (("things", things), ("place", spot)) if phrase == "counted_at" else (("things", things),)
@@ -615,7 +620,6 @@ def tell(d: Discourse, node: Node) -> Steps:
 
 @meaning("battery_low")
 def battery_low(d: Discourse, node: Node) -> object:
-    from grammar.plan import Compare
 
     fixed = node.production.fixed
     return Compare(Ask("battery"), str(fixed["operator"]), Number(int(fixed["percent"])))

@@ -22,6 +22,8 @@ def find(d: Discourse, node: Node) -> Steps:
         who = Recall(d.variable("person"))
         d.at = d.with_person = None
         return [ForEach(who.name, thing.group, tuple(if_missing(d, who)))]
+    if d.found_already:
+        return []
     if thing.place is None and d.at is not None:
         thing = replace(thing, place=d.at)  # "go to the kitchen and find the cup"
     return look_for(d, thing)
