@@ -5,7 +5,9 @@ from __future__ import annotations
 from grammar.chart import Node
 from grammar.discourse import Discourse, NotUnderstood, Steps, as_value
 from grammar.meanings.finding import speak_to
+from grammar.meanings.news import on_screen
 from grammar.meanings.registry import meaning
+from grammar.meanings.surveys import each_asked
 from grammar.plan import Call, Items, Recall, Text
 
 
@@ -17,6 +19,8 @@ def show(d: Discourse, node: Node) -> Steps:
         return [Call("show", {"url": Text(address)})]
     quote = node.parts.get("quote")
     part = quote or node.parts.get("text")
+    if part is None and d.answer is not None and each_asked(d) is not None:
+        return on_screen(d)  # of all who were asked
     if part is None:
         return [Call("show", {"text": Recall(found_out(d))})]
     return [Call("show", {"text": Text(str(d.build(part)))})]

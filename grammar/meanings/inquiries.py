@@ -35,6 +35,8 @@ def bring_many(d: Discourse, node: Node) -> Steps:
     if d.answer is None or not d.surveys:
         raise NotUnderstood(d.language.phrase("no_question"))
     survey: Survey = d.surveys[-1]
+    if survey.options and not all(each.isdigit() for each in survey.options):
+        raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
     thing: Thing | None = d.get(node, "thing") or d.thing
     if thing is None:
         raise NotUnderstood(d.language.phrase("what_is_it", word=d.words(node.start, node.end)))

@@ -121,6 +121,11 @@ def _shown(step: Any) -> Any:
     return msgspec.structs.replace(step, **inner) if inner else step
 
 
+def on_screen(d: Discourse) -> Steps:
+    """What was found out last, on the screen."""
+    return [_shown(each) for each in last_found(d).words]
+
+
 def told_again(d: Discourse, person: Thing | None) -> Steps | None:
     """The last news told to somebody else, too; None if there are none."""
     found: News | None = d.news

@@ -94,7 +94,10 @@ def split_options(d: Discourse, start: int, end: int) -> tuple[str, ...]:
 
 
 def without_little_words(d: Discourse, start: int, end: int) -> tuple[int, int]:
+    kept = d.language.speech.get("negations", ())  # "not at all"
     while start < end - 1 and d.tokens[start].norm in d.language.closed:
+        if d.tokens[start].norm in kept:
+            break
         start += 1
     return start, end
 

@@ -151,11 +151,12 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
     if isinstance(about, Node) and any(each in about.parts for each in ("noun", "object")):
         start, end = without_little_words(d, about.start, about.end)
         d.thing, d.thing_last = Thing(Text(d.noun_words(start, end))), False
-    if "verb" not in question.parts or rest is None:
+    if rest is None or not {"verb", "aux"} & question.parts.keys():
         return
     if len(options) > 1 and not question.production.fixed.get("where"):
         yes_no = options == (d.language.phrase("yes"), d.language.phrase("no"))
-        start, end = without_little_words(d, rest.start, rest.end)
+        begin = rest.start if "verb" in question.parts else rest.start + 1  # "would like a coffee"
+        start, end = without_little_words(d, begin, rest.end)
         if not yes_no and d.place != Recall(name):
             d.thing, d.thing_last = Thing(Recall(name)), False
         elif yes_no and 0 < end - start <= LONGEST_OFFERED:

@@ -116,7 +116,12 @@ def round_report(d: Discourse, node: Node) -> Steps:
 def round_told(d: Discourse, node: Node) -> Told:
     """ "the total", "how many cups there are in each", "where most are"."""
     thing: Thing | None = d.get(node, "thing")
-    return summed_up(d, str(node.production.fixed["kind"]), thing)
+    kind = str(node.production.fixed["kind"])
+    nothing_yet = d.counted is None and d.report is None and last_round(d) is None
+    if thing is not None and "kind" in node.parts and nothing_yet:
+        # "tell me which ward has the fewest beds": to count them is left to do
+        return around(d, kind, thing, kind_places(d, d.get(node, "kind")))
+    return summed_up(d, kind, thing)
 
 
 def summed_up(d: Discourse, kind: str, thing: Thing | None = None) -> Told:
@@ -200,9 +205,11 @@ def round_count(d: Discourse, node: Node) -> Steps:
 def counted_around(d: Discourse, node: Node) -> Told:
     """Going round for nothing but to count."""
     thing: Thing = d.get(node, "thing")
-    places = places_of(d, node)
+    return around(d, str(node.production.fixed["kind"]), thing, places_of(d, node))
+
+
+def around(d: Discourse, kind: str, thing: Thing, places: Value) -> Told:
     place, count = d.variable("place"), d.variable("count")
-    kind = str(node.production.fixed["kind"])
     first, notes, told = _kept(d, kind, count, Recall(place), things_called(d, thing))
     counting = Remember(count, Ask("count", {"thing": sought(d, thing)}))
     d.counted = (counting, Recall(place), things_called(d, thing))
