@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Final
 
 from grammar.chart import Node
-from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
+from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.meanings.nouns import is_me, sought
 from grammar.naming import the
 from grammar.plan import (
@@ -40,10 +40,7 @@ def go(d: Discourse, place: Value) -> Steps:
 
 def noun_of(d: Discourse, node: Node) -> Thing:
     """The thing or person of a command."""
-    thing: Thing | list[Thing] | None = d.get(node, "thing")
-    if isinstance(thing, list):  # "the cup or the bottle", where only one can be meant
-        part = d.words(node.start, node.end)
-        raise NotUnderstood(d.language.phrase("not_understood", part=part))
+    thing: Thing | None = d.get(node, "thing")
     if thing is None:
         person: Thing = d.build(node.parts["person_ref"])
         thing = Thing(Text(ANYONE), person=True, here=True) if is_me(person) else person
