@@ -188,7 +188,7 @@ class _Sampler:
             words, node = todo.pop()
             found += [words] if node.values else []
             todo += [(f"{words} {word}".strip(), each) for word, each in node.branches.items()]
-        return sorted(found)
+        return sorted(each for each in found if any(map(str.isalnum, each)))
 
     def depth(self, template: Template) -> int:
         """How deep the shortest sentence of a template goes into the rules."""
