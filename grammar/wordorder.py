@@ -131,6 +131,9 @@ def _verb_first(rules: Any, groups: Sequence[Group]) -> str:
 def _first_part(rules: Any, d: Discourse, groups: Sequence[Group]) -> int:
     """How many words the first part of a clause has: its subject, or what stands before that."""
     at = 0
+    if groups[0].norm in rules.get("comparing", ()):  # "mehr als zehn Leute sind da"
+        nouns = [number for number, group in enumerate(groups[:-1]) if number and group.capital]
+        return _noun_end(rules, groups, nouns[0]) if nouns else 1
     if groups[0].norm in rules["prepositions"]:
         at = 1
         if at >= len(groups):
