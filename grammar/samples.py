@@ -23,6 +23,9 @@ SHORTER_FROM: Final = 2
 QUICKEST_FROM: Final = 6
 """How deep in the rules a random sentence is to come to an end soon, and as fast as it can."""
 DEEPEST: Final = 20
+PARTS_OF_NAMES: Final = {"place_tail", "place_short", "owner"}
+"""Slots that take a part of a name only: "ward a, b and c"."""
+UNSAID: Final = PARTS_OF_NAMES | {"routine"}
 _SPACE_BEFORE: Final = re.compile(r" (?=[,.:]|'s\b)")
 
 
@@ -203,14 +206,14 @@ def _likely(language: Language, routines: bool) -> dict[str, list[list[Template]
         name: [
             list(each.templates)
             for each in productions
-            if each.cost < 2 and (routines or not _speaks_of_routines(each.templates))
+            if each.cost < 2 and not _slots(each.templates) & (PARTS_OF_NAMES if routines else UNSAID)
         ]
         for name, productions in language.rules.items()
     }
 
 
-def _speaks_of_routines(templates: Iterable[Template]) -> bool:
-    return any(part.name == "routine" for each in templates for part in parts_of(each))
+def _slots(templates: Iterable[Template]) -> set[str]:
+    return {part.name for each in templates for part in parts_of(each) if not part.is_rule}
 
 
 @functools.cache
