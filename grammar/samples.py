@@ -206,7 +206,8 @@ def _likely(language: Language, routines: bool) -> dict[str, list[list[Template]
         name: [
             list(each.templates)
             for each in productions
-            if each.cost < 2 and not _slots(each.templates) & (PARTS_OF_NAMES if routines else UNSAID)
+            if each.cost < 2
+            and not _slots(each.templates) & (PARTS_OF_NAMES if routines else UNSAID)
         ]
         for name, productions in language.rules.items()
     }
