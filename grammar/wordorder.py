@@ -138,6 +138,8 @@ def _first_part(rules: Any, d: Discourse, groups: Sequence[Group]) -> int:
         at = 1
         if at >= len(groups):
             return at
+        if groups[at].number and at + 1 < len(groups) and _begins_noun(rules, groups[at + 1]):
+            return at + 1  # "um drei beginnt die Visite"
     named = _named(d, groups, at)
     if named:
         return _noun_end(rules, groups, named - 1)

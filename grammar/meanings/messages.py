@@ -119,6 +119,9 @@ def turned(d: Discourse, start: int, end: int, person: Thing | None) -> dict[int
     changed: dict[int, str] = {}
     if person is None or person.me or not data:
         return changed
+    stands = {d.tokens[at].norm for at in range(start, end)} & set(data["stands"])
+    if d.thing is not None and stands:  # "put the box there and tell Bob that it stands there"
+        return changed
     last = next((at for at in range(start, end) if d.tokens[at].norm in data["ends"]), end)
     for at in range(start, last):
         word = d.tokens[at].norm

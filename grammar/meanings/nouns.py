@@ -464,7 +464,7 @@ def thing(d: Discourse, node: Node) -> Thing:
         words = d.noun_words(head.start, head.end)
         name = head.value[0] if isinstance(head.value, tuple) else words
         one = singular(name, d.language)
-        known = head.slot == "object"
+        known = head.slot in ("object", "furniture")
         one = name if known else one
         many = words not in (one, name) or one != name
         one = instead_of_one(d, node, one)
