@@ -202,15 +202,13 @@ class _Sampler:
 def _likely(language: Language, routines: bool) -> dict[str, list[list[Template]]]:
     """For each rule the templates of its likely entries; without routines, none that speak of
     them."""
-    return {
-        name: [
-            list(each.templates)
-            for each in productions
-            if each.cost < 2
-            and not _slots(each.templates) & (PARTS_OF_NAMES if routines else UNSAID)
-        ]
-        for name, productions in language.rules.items()
-    }
+    unsaid = PARTS_OF_NAMES if routines else UNSAID
+    likely: dict[str, list[list[Template]]] = {}
+    for name, productions in language.rules.items():
+        usual = [each.templates for each in productions if each.cost < 2]
+        sayable = [each for each in usual if not _slots(each) & unsaid]
+        likely[name] = [list(each) for each in sayable or usual]
+    return likely
 
 
 def _slots(templates: Iterable[Template]) -> set[str]:
