@@ -47,7 +47,10 @@ def places_of(d: Discourse, node: Node) -> Value:
     """The places that are gone round: all of a kind, or those listed."""
     listed: list[Value] | None = d.get(node, "place_list")
     if listed:
-        return Items((d.get(node, "place"), *listed))
+        places = (d.get(node, "place"), *listed)
+        if not all(isinstance(each, Text | Recall) for each in places):
+            raise NotUnderstood(d.language.phrase("which_places"))
+        return Items(places)
     return kind_places(d, d.get(node, "kinds"))
 
 
