@@ -19,7 +19,7 @@ from grammar.plan import Plan
 from grammar.tidy import nodes
 from grammar.tokens import Token
 
-NAMES: Final = frozenset({"noun", "object", "person", "place", "furniture"})
+NAMES: Final = frozenset({"noun", "object", "person", "stranger", "place", "furniture"})
 TEXTS: Final = frozenset({"text", "word", "verb", "quote"})
 FREE: Final = frozenset({"text"})
 NO_PART: Final = frozenset(

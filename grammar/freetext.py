@@ -23,7 +23,7 @@ from grammar.tokens import COLON, Token
 
 SPOKEN: Final = frozenset({"say", "say_that"})
 REQUESTED: Final = frozenset({"ask_to"})
-ANSWERS: Final = frozenset({"option_words"})
+ANSWERS: Final = frozenset({"option_words", "said_so"})
 QUIET: Final = frozenset({"remark", "remark_where", "remark_name", "refused"})
 """Meanings whose text asks for nothing."""
 
@@ -95,6 +95,16 @@ class Words:
     """What goes with a greeting as little as with an order: "to", "in", "at"."""
     manners: frozenset[str]
     """Words that tell how, when or whether something is done: "without", "unless"."""
+    screens: frozenset[str]
+    """What a text is shown on: no part of the text."""
+    adverbs: frozenset[str]
+    """Of the words that may stand anywhere: those that are no verbs for certain."""
+    subordinating: frozenset[str]
+    """Words that begin a clause which is no statement: "as Bob does"."""
+    never_first: frozenset[str]
+    """Pronouns that no statement begins with: "me"."""
+    how: re.Pattern[str]
+    """Ways to do something that no question is about: "without shouting"."""
     back: tuple[tuple[str, ...], ...]
     """Speaking of the robot's return: "when you are back"."""
     clauses: bool
@@ -150,6 +160,11 @@ def words_for(language: Language) -> Words:
         greetings=phrases("greetings"),
         not_greeting=single("not_greeting"),
         manners=single("manners"),
+        screens=single("screens"),
+        adverbs=single("adverbs"),
+        subordinating=single("subordinating"),
+        never_first=single("never_first"),
+        how=re.compile(data.get("how", r"(?!)")),
         back=phrases("back"),
         clauses=bool(data.get("clauses", False)),
     )
@@ -222,10 +237,22 @@ class Judge:
         for at in range(start, end):
             if any(tuple(self.norms(at, at + len(way))) == way for way in self.words.back):
                 return doubt(at, "said_or_done")
+        if node.means == "show":
+            for at in range(start + 1, end):
+                if self.tokens[at].norm in self.words.screens:
+                    return doubt(at, "not_understood")
+        if not spoken and node.means not in REQUESTED:
+            for at in range(start, end):
+                if self.words.how.match(" ".join(self.norms(at, end))):
+                    return doubt(at, "not_understood")
         if node.means in ANSWERS:
             return self.answer(start, end, doubt)
         announced = start > 0 and self.tokens[start - 1].norm == COLON
-        if not spoken or clause or announced or self.is_clause(start, end):
+        if not spoken or clause or announced:
+            return None
+        if self.tokens[start].norm in self.words.never_first:
+            return doubt(start, "cannot_say")
+        if self.is_clause(start, end):
             return None
         if self.asks(start, end):
             return doubt(start, "cannot_say")
@@ -335,6 +362,8 @@ class Judge:
             return False
         for at in range(start + 1, end):
             norm = self.tokens[at].norm
+            if norm in words.subordinating:
+                return False
             if norm == "'s":
                 after = self.tokens[at + 1].norm if at + 1 < end else ""
                 if after in self.language.closed or re.search(r"ing$|ed$|^ready$", after):
@@ -343,7 +372,8 @@ class Judge:
             if norm in words.finite or words.finite_pattern.search(norm):
                 return True
             before = self.tokens[at - 1]
-            after_noun = before.kind == "word" and before.norm not in words.objects | self.joins
+            after_noun = before.kind == "word" and before.value is None
+            after_noun = after_noun and before.norm not in words.objects | self.joins
             if before.norm in words.subjects and norm in words.verb_forms:
                 return True
             if after_noun and norm in words.verb_forms - words.nouns_too:

@@ -3,6 +3,7 @@ and `no_things` in a language's data."""
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence, Set
 from typing import Final
 
@@ -22,10 +23,9 @@ def forbidden(tokens: Sequence[Token], language: Language) -> str | None:
     """The phrase for a sentence that is refused however well it was understood: words that stand
     for harm or for the computer wherever they are said, other than in quotation marks."""
     words = [token.norm for token in tokens]
-    for phrase, signs in language.speech.get("forbidden", {}).items():
-        for sign in map(language.tokens_of, signs):
-            if any(tuple(words[at : at + len(sign)]) == sign for at in range(len(words))):
-                return str(phrase)
+    for sign, phrase in _signs(language, "forbidden").items():
+        if any(tuple(words[at : at + len(sign)]) == sign for at in range(len(words))):
+            return phrase
     return None
 
 
@@ -65,17 +65,23 @@ def why_not(tokens: Sequence[Token], language: Language, names: Set[str]) -> str
     """The phrase for a sentence of which nothing was understood: why it is none of its business.
     Words of names say nothing about that: who goes to the blood lab gives no blood."""
     words = {token.norm for token in tokens if token.norm not in names}
-    for phrase, signs in language.speech.get("refusals", {}).items():
-        if any(words.issuperset(language.tokens_of(sign)) for sign in signs):
-            return str(phrase)
+    for sign, phrase in _signs(language, "refusals").items():
+        if words.issuperset(sign):
+            return phrase
     return "not_understood_at_all"
 
 
+@functools.cache
 def signs(language: Language) -> frozenset[str]:
     """All words that give a refusal away; they are never misspellings of other words."""
-    return frozenset(
-        word
-        for each in language.speech.get("refusals", {}).values()
-        for sign in each
-        for word in language.tokens_of(sign)
-    )
+    return frozenset(word for sign in _signs(language, "refusals") for word in sign)
+
+
+@functools.cache
+def _signs(language: Language, name: str) -> dict[tuple[str, ...], str]:
+    """The words that a phrase goes with, in the order of the data."""
+    found: dict[tuple[str, ...], str] = {}
+    for phrase, listed in language.speech.get(name, {}).items():
+        for sign in map(language.tokens_of, listed):
+            found.setdefault(sign, str(phrase))
+    return found

@@ -25,6 +25,8 @@ REST_WORD: Final = 0.2
 """Cost of a word of what is read once more by itself."""
 SWALLOWED_COMMAND: Final = 40.0
 """Cost of a text that goes on over what begins like another command."""
+ASKED_IN_TEXT: Final = 12.0
+"""Cost of a text that begins as a question put to the robot does: "who is there"."""
 UNKNOWN_NAME: Final = 30.0
 """Cost of reading words as the name of something that is not known."""
 SPACED: Final = 0.5
@@ -357,7 +359,8 @@ class Slots:
     def _word(self, at: int) -> list[Match]:
         """One word that is no article and no pronoun: a verb."""
         if at < len(self.tokens) and self.tokens[at].kind == "word":
-            if self.tokens[at].norm in self._judge.words.objects:
+            words = self._judge.words
+            if self.tokens[at].norm in words.objects | words.adverbs:
                 return []
             return [(at + 1, FREE_WORD, self.tokens[at].norm)]
         return []
@@ -383,7 +386,7 @@ class Slots:
     def _text(self, at: int) -> list[Match]:
         """Free text of any length; it costs more where it goes on over another command."""
         matches: list[Match] = []
-        cost = 0.0
+        cost = ASKED_IN_TEXT if self._judge.asks(at, len(self.tokens)) else 0.0
         for position in range(at, len(self.tokens)):
             token = self.tokens[position]
             if token.kind == "mark":

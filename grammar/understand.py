@@ -10,6 +10,7 @@ would be.
 from __future__ import annotations
 
 import functools
+import logging
 from dataclasses import dataclass, field, replace
 from typing import Final, Literal
 
@@ -29,6 +30,8 @@ from grammar.slips import mended
 from grammar.slots import Names, Slots, command_words, names_of
 from grammar.tidy import Unbound, returning, scoped, without_unused
 from grammar.tokens import COMMA, Token, tokenise
+
+_log: Final = logging.getLogger(__name__)
 
 LONGEST_TEXT: Final = 2000
 """Characters."""
@@ -202,6 +205,10 @@ class Reader:
             return self._refused(reason)
         except Ambiguous as which:
             return self._ask_back(which)
+        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
+            # A meaning that stumbles is a mistake of ours; the person gets an answer all the same.
+            _log.exception("Nothing could be made of %r", self.text)
+            return rejected(self.text, self.language.phrase("too_complicated"), self.context)
         if not steps:
             return self._not_understood(chart)
         try:
@@ -214,15 +221,15 @@ class Reader:
             )
         except Unbound:
             return rejected(self.text, self.language.phrase("too_complicated"), self.context)
+        doubt = doubtful(tree, self.tokens, self.language)
+        if doubt is not None:
+            return self._doubted(doubt)
         lost = left_out(tree, self.tokens, plan, self.language, self.lexicon)
         lost += unspoken(tree, self.tokens, plan, self.language)
         if lost:
             words = " ".join(lost)
             message = self.language.phrase("not_understood", part=words)
             return replace(rejected(self.text, message, self.context), unclear=words)
-        doubt = doubtful(tree, self.tokens, self.language)
-        if doubt is not None:
-            return self._doubted(doubt)
         impossible = no_thing(plan, self.lexicon, self.language)
         if impossible is not None:
             phrase, thing = impossible
@@ -336,11 +343,17 @@ class Reader:
     def _corrections(self) -> dict[int, tuple[str, ...]]:
         """What unknown words may be misspellings of."""
         corrections: dict[int, tuple[str, ...]] = {}
-        known = self.language.words | self.names.words | self.language.closed
-        known |= words_for(self.language).verbs  # what the robot cannot do is no slip
-        known |= signs(self.language)
+        known = (
+            self.language.words,
+            self.names.words,
+            self.language.closed,
+            signs(self.language),
+            words_for(self.language).verbs,  # what the robot cannot do is no slip
+        )
         for at, token in enumerate(self.tokens):
-            if token.kind != "word" or token.norm in known or len(token.norm) < SHORTEST_CORRECTED:
+            if token.kind != "word" or len(token.norm) < SHORTEST_CORRECTED:
+                continue
+            if any(token.norm in words for words in known):
                 continue
             found = _misspelt(token.norm, self.language, self.lexicon)
             if found:

@@ -1,7 +1,25 @@
 """What holds for all tests."""
 
+import logging
+from collections.abc import Iterator
+
+import pytest
 from hypothesis import settings
 
 # A busy machine with two cores takes its time; how fast things are is measured, not tested.
 settings.register_profile("nl2robot", deadline=None)
 settings.load_profile("nl2robot")
+
+
+class _Stumbled(logging.Handler):
+    def emit(self, record: logging.LogRecord) -> None:
+        raise AssertionError(record.getMessage()) from (record.exc_info or (None, None))[1]
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _no_meaning_stumbles() -> Iterator[None]:
+    """A person gets an answer though a meaning stumbles over their sentence; a test does not."""
+    handler = _Stumbled()
+    logging.getLogger("grammar.understand").addHandler(handler)
+    yield
+    logging.getLogger("grammar.understand").removeHandler(handler)

@@ -170,7 +170,7 @@ def _each_of_them(d: Discourse, node: Node, people: tuple[Value, ...], search: b
             person = replace(person, place=spot.place, furniture=spot.furniture)
         found.append(is_there(d, person, search))
     d.met = None
-    part = node.parts["person_ref"]
+    part = node.parts.get("person_ref") or node.parts["thing"]
     either = node.production.fixed.get("any") or set(d.language.speech.get("or", ())) & set(
         d.norms(part.start, part.end)
     )

@@ -40,7 +40,9 @@ def go(d: Discourse, place: Value) -> Steps:
 
 def noun_of(d: Discourse, node: Node) -> Thing:
     """The thing or person of a command."""
-    thing: Thing | None = d.get(node, "thing")
+    thing: Thing | list[Thing] | None = d.get(node, "thing")
+    if isinstance(thing, list):  # "a cup and a plate", of which a condition is true
+        thing = replace(together(thing), person=False)
     if thing is None:
         person: Thing = d.build(node.parts["person_ref"])
         thing = Thing(Text(ANYONE), person=True, here=True) if is_me(person) else person
