@@ -80,11 +80,11 @@ def test_what_spoils_a_command_is_not_passed_over(language: str, data: st.DataOb
     sentence, before = draw(data, language)
     spoilt = f"{sentence} {data.draw(st.sampled_from(SPOILT[language]))}"
     understood = understand(spoilt, hospital(language), language)
-    if understood.plan is None:
-        return
+    if understood.plan is None or understood.plan.background:
+        return  # what is said besides is shown
     after = program(understood.plan)
     assert after != before, f"{spoilt}: {after}"
-    assert understood.plan.background or ends_in_text(sentence, language), f"{spoilt}: {after}"
+    assert ends_in_text(sentence, language), f"{spoilt}: {after}"
 
 
 @pytest.mark.parametrize("language", languages())
