@@ -22,6 +22,8 @@ START: Final = "start"
 """The variable that holds the place where the command was given."""
 SETTING: Final = "setting"
 """The part of a command that says where or when it is to be done."""
+COMMANDS: Final = frozenset({"command", "place_corrected"})
+"""Rules whose noun phrases may speak of several."""
 ANYONE: Final = "person"
 """What the robot looks for when it is anybody's turn."""
 
@@ -270,7 +272,7 @@ class Discourse:
         if SETTING in part.parts:
             return distributed(self, part, lambda: MEANINGS[SETTING](self, part))
         meaning = MEANINGS.get(part.means)
-        if part.production.rule == "command" and (meaning or part.means in METHODS):
+        if part.production.rule in COMMANDS and (meaning or part.means in METHODS):
             return distributed(self, part, lambda: self._command(part))
         if meaning is not None:
             return meaning(self, part)

@@ -103,7 +103,9 @@ def setting_of(node: Node) -> Node | None:
 def phrases(node: Node) -> Iterator[Node]:
     """The noun phrases of a command, the inner ones first: "every ward" of "everybody in every
     ward"."""
-    for part in node.parts.values():
+    for name, part in node.parts.items():
+        if name == "wrong":  # taken back
+            continue
         if isinstance(part, Node) and part.production.rule not in CLAUSES:
             yield from phrases(part)
             if part.means in OVER and part.production.rule not in LIST_PARTS:
