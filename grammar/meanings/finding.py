@@ -40,9 +40,10 @@ def go(d: Discourse, place: Value) -> Steps:
 
 def noun_of(d: Discourse, node: Node) -> Thing:
     """The thing or person of a command."""
-    thing: Thing | list[Thing] | None = d.get(node, "thing")
+    part = node.parts.get("thing")
+    thing: Thing | list[Thing] | None = d.build(part) if part is not None else None
     if isinstance(thing, list):  # "a cup and a plate", of which a condition is true
-        thing = replace(together(thing), person=False)
+        thing = together(thing)
     if thing is None:
         person: Thing = d.build(node.parts["person_ref"])
         thing = Thing(Text(ANYONE), person=True, here=True) if is_me(person) else person
@@ -52,10 +53,11 @@ def noun_of(d: Discourse, node: Node) -> Thing:
     return thing
 
 
-def together(people: list[Thing]) -> Thing:
-    """Several people as one group."""
-    names = Items(tuple(person.value for person in people))
-    return Thing(Text(ANYONE), person=True, plural=True, known=True, group=names)
+def together(several: list[Thing]) -> Thing:
+    """Several people or things as one group."""
+    names = Items(tuple(each.value for each in several))
+    people = all(each.person for each in several)
+    return Thing(Text(ANYONE), person=people, plural=True, known=True, group=names)
 
 
 def found(d: Discourse, thing: Thing) -> Call:

@@ -71,7 +71,8 @@ def remark_where(d: Discourse, node: Node) -> Steps:
     spot: Where = d.get(node, "where")
     place = spot.place
     thing: Thing | None = d.get(node, "thing")
-    person: Thing | list[Thing] | None = d.get(node, "person_ref")
+    who_is = node.parts.get("person_ref")
+    person: Thing | list[Thing] | None = d.build(who_is) if who_is is not None else None
     if isinstance(person, list):  # "Alice or Bob is in the lobby": nobody knows which
         return aside(d, node)
     who = person or (d.person if thing is None and not node.production.fixed.get("it") else None)
