@@ -246,7 +246,7 @@ class Judge:
                 if self.words.how.match(" ".join(self.norms(at, end))):
                     return doubt(at, "not_understood")
         if node.means in ANSWERS:
-            return self.answer(start, end, doubt)
+            return self.answer(start, end, doubt, predicate=node.means == "said_so")
         announced = start > 0 and self.tokens[start - 1].norm == COLON
         if not spoken or clause or announced:
             return None
@@ -278,13 +278,16 @@ class Judge:
             return doubt(start, "cannot_say")
         return None
 
-    def answer(self, start: int, end: int, doubt: Doubting) -> Doubt | None:
-        """An answer that somebody gave: "yes", "coffee"; not "yes and what share that is"."""
+    def answer(
+        self, start: int, end: int, doubt: Doubting, *, predicate: bool
+    ) -> Doubt | None:
+        """An answer that somebody gave: "yes", "coffee"; not "yes and what share that is". Or what
+        is true of somebody: "would like some water"."""
         words = self.words
         others = self.joins | words.asking | words.manners
         if self.tokens[start].norm in words.settled and end > start + 1:
             return doubt(start + 1, "not_understood")
-        for at in range(start, end):
+        for at in range(start, end if not predicate else start):
             if self.tokens[at].norm in others:
                 return doubt(at, "not_understood")
         return None

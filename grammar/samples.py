@@ -176,7 +176,6 @@ class _Sampler:
             "zu_infinitive": ["anzurufen"],
             "remark": ["lunch is ready"],
             "unknown": ["pharmacy"],
-            "place_short": ["pharmacy"],
             "stranger": ["Zorro"],
         }
         return self.chance.choice(names or plain.get(name) or self.known(name) or ["robot"])
