@@ -278,9 +278,7 @@ class Judge:
             return doubt(start, "cannot_say")
         return None
 
-    def answer(
-        self, start: int, end: int, doubt: Doubting, *, predicate: bool
-    ) -> Doubt | None:
+    def answer(self, start: int, end: int, doubt: Doubting, *, predicate: bool) -> Doubt | None:
         """An answer that somebody gave: "yes", "coffee"; not "yes and what share that is". Or what
         is true of somebody: "would like some water"."""
         words = self.words
