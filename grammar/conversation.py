@@ -14,9 +14,9 @@ from typing import Final
 
 from grammar.accounts import TEXTS
 from grammar.answers import Answer, answer_to
-from grammar.chart import Leaf, Node, TooMuch
+from grammar.chart import TooMuch
 from grammar.discourse import Discourse
-from grammar.edits import Edit, Sentence, is_pieces, same_word
+from grammar.edits import Edit, Sentence, is_pieces, leaves, same_word
 from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.plan import Call, Plan, Text, calls
@@ -73,7 +73,7 @@ class _Turn:
             if narrowed is not None:
                 return narrowed
         if plain.status != "rejected":
-            return self._in_that_manner(plain) or plain
+            return self._in_that_manner(plain) or self._after_this(plain)
         if question is not None:
             answered = self._answered(answer_to(self.text, question, self.language, loosely=True))
             if answered is not None:
@@ -81,9 +81,26 @@ class _Turn:
         gone_on = self._gone_on()
         if gone_on is not None:
             return gone_on
+        if edit is not None and edit.kind in ("same", "add") and self.context.earlier is not None:
+            earlier = replace(self.context.earlier, carried_out=True)
+            result = understood(self.text, self.lexicon, self.language, earlier)
+            if result.status != "rejected":
+                return result
         if edit is not None and edit.kind in ("correct", "instead", "drop", "drop step"):
             return self._unclear(edit)
         return plain
+
+    def _after_this(self, plain: Understanding) -> Understanding:
+        """A command of its own, after which the one before can still be spoken of."""
+        if not self.context.text:
+            return plain
+        return replace(plain, context=replace(plain.context, earlier=self._forgetting()))
+
+    def _forgetting(self) -> Context:
+        earlier = self.context.earlier
+        if earlier is not None and earlier.earlier is not None:
+            earlier = replace(earlier, earlier=None)
+        return replace(self.context, earlier=earlier)
 
     # --- trying sentences
 
@@ -201,7 +218,8 @@ class _Turn:
         yield from before.corrected(new)
         if self._commands(said):
             yield before.with_clause(new)
-            yield said
+            if not is_pieces(new):  # "only the kitchen" stands for a part, not for all
+                yield said
         yield from before.corrected(new, everywhere=True)
         if self._goes_on(new):
             yield self._going_on(self._joined(said))
@@ -254,6 +272,8 @@ class _Turn:
             assert plan is not None
             context = replace(self.context, carried_out=False)
             return Understanding(self.text, "ok", plan, 1.0, context=context)
+        if self._commands(said) and not is_pieces(self._reader(said, Context())):
+            return self._read(said, self.context.referents())
         return self._first_read(self._same(said))
 
     def _same(self, said: str) -> Iterator[str | None]:
@@ -284,6 +304,8 @@ class _Turn:
         for piece in before.pieces():
             if _has(before.reader.content(piece.start, piece.end), words):
                 yield from before.without_words(piece)
+        if is_pieces(what):
+            yield from before.except_for(what.words(0, what.last_word))
         named = [
             clause
             for clause in before.clauses()
@@ -408,7 +430,7 @@ class _Turn:
             return [(0, len(text))]
         return [
             (reader.tokens[leaf.start].start, reader.tokens[leaf.end - 1].end)
-            for leaf in _leaves_in(tree)
+            for leaf in leaves(tree)
             if leaf.slot in OPEN and leaf.start < leaf.end
         ]
 
@@ -418,14 +440,6 @@ class _Turn:
         part = edit.new or edit.old or self.text
         message = self.language.phrase(name, part=part)
         return replace(rejected(self.text, message, self.context), unclear=part)
-
-
-def _leaves_in(node: Node) -> Iterator[Leaf]:
-    for part in node.parts.values():
-        if isinstance(part, Node):
-            yield from _leaves_in(part)
-        else:
-            yield part
 
 
 def _has(words: set[str], sought: set[str]) -> bool:

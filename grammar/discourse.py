@@ -182,6 +182,8 @@ class Discourse:
     holding: Value | None = None
     origin: str | None = None
     """Where it was before the command before this was carried out."""
+    source: Value | None = None
+    """Where a thing was taken from in the command before: "put it back"."""
     delivered: Value | None = None
     """A thing that was brought to the speaker without their saying where to."""
     at_pick_up: Value | None = None

@@ -43,6 +43,8 @@ CORRECTABLE: Final = (
 NOUNS: Final = frozenset({"place_ref", "person_ref", "thing"})
 """Those of them that may stand for each other: "go to Alice" - "no, the kitchen"."""
 PRONOUNS: Final = frozenset({"person_pronoun", "person_me", "thing_it", "place_there"})
+UNHEARD: Final = frozenset({"noun", "unknown", "text", "word"})
+"""Slots for words that nobody knows."""
 MOST_ENDING: Final = 3
 """Letters that an adjective may be longer than another of its forms."""
 SAME_LETTERS: Final = 4
@@ -70,6 +72,8 @@ class Piece:
     start: int
     end: int
     means: str = ""
+    known: bool = True
+    """Whether it is more than a noun that nobody has heard of."""
 
 
 class Sentence:
@@ -327,6 +331,15 @@ class Sentence:
                     + self.text[self.tokens[last].start :]
                 )
 
+    def except_for(self, words: str) -> Iterator[str]:
+        """The sentence with an exception where it speaks of all of a kind."""
+        word = self.reader.language.speech["except"]
+        if self.tree is not None:
+            for leaf in leaves(self.tree):
+                if leaf.slot in ("kinds", "kind"):
+                    end = self._tail(leaf.end)
+                    yield f"{self.text[:end]} {word} {words}{self.text[end:]}"
+
     def _tail(self, end: int) -> int:
         return self.tokens[end - 1].end
 
@@ -350,6 +363,15 @@ def _looks(language: Language, lexicon: Lexicon) -> frozenset[str]:
     return frozenset({each for each in said if len(each) > 2} | (known if not looks else set()))
 
 
+def leaves(node: Node) -> Iterator[Leaf]:
+    """All that slots have matched in a reading."""
+    for part in node.parts.values():
+        if isinstance(part, Node):
+            yield from leaves(part)
+        else:
+            yield part
+
+
 def same_word(one: str, other: str) -> bool:
     """Whether two words are forms of one."""
     if one == other:
@@ -362,8 +384,9 @@ def same_word(one: str, other: str) -> bool:
 
 
 def is_pieces(reader: Reader) -> bool:
-    """Whether words are nothing but parts that could be put into a sentence: "in ward b"."""
-    return next(_pieces_of(reader), None) is not None
+    """Whether words are nothing but parts that could be put into a sentence, and known ones: "in
+    ward b"."""
+    return any(all(piece.known for piece in row) for row in _pieces_of(reader))
 
 
 def _pieces_of(reader: Reader) -> Iterator[list[Piece]]:
@@ -425,7 +448,8 @@ def _pieces_at(reader: Reader, start: int) -> Iterator[Piece]:
         if rule in reader.language.rules:
             node = reader.chart().longest(rule, start)
             if node is not None and node.cost < UNKNOWN_NAME:
-                yield Piece(rule, node.start, node.end, node.means)
+                known = all(leaf.slot not in UNHEARD for leaf in leaves(node))
+                yield Piece(rule, node.start, node.end, node.means, known)
         else:
             for end, _, _ in reader.slots[f"{{{rule}}}"](start):
                 yield Piece(rule, start, end)

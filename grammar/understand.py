@@ -57,6 +57,8 @@ class Context:
     person: Thing | None = None
     place: Value | None = None
     """What was spoken of last: "it", "her", "there"."""
+    source: Value | None = None
+    """Where the thing was taken from."""
     question: Clarification | None = None
     """The question that waits for an answer."""
     before: Context | None = None
@@ -65,13 +67,15 @@ class Context:
     """Whether the last plan has been carried out, so that what comes is not a part of it."""
     origin: str | None = None
     """The place where the robot was before that."""
+    earlier: Context | None = None
+    """As it was before the last sentence, for what is said of the one before that."""
 
     def referents(self) -> Context:
         """Only what was spoken of last."""
         person = self.person
         if person is not None and not self.carried_out:
             person = replace(person, here=False)  # nobody has gone there yet
-        return Context(thing=self.thing, person=person, place=self.place)
+        return Context(thing=self.thing, person=person, place=self.place, source=self.source)
 
 
 @dataclass(frozen=True)
@@ -187,6 +191,7 @@ class Reader:
             person=self.context.person,
             place=self.context.place,
             origin=self.context.origin,
+            source=self.context.source,
         )
         if "request" in tree.parts:
             asked: Request = discourse.build(tree.parts["request"])
@@ -247,6 +252,7 @@ class Reader:
                 thing=discourse.thing,
                 person=discourse.person,
                 place=discourse.place if isinstance(discourse.place, Text) else None,
+                source=_source(discourse),
                 before=self.context.referents(),
             ),
         )
@@ -496,6 +502,12 @@ class Reader:
 
     def words(self, start: int, end: int) -> str:
         return self.text[self.tokens[start].start : self.tokens[end - 1].end] if end > start else ""
+
+
+def _source(discourse: Discourse) -> Value | None:
+    """Where the thing spoken of was taken from, as far as that is a place by name."""
+    places = (discourse.thing.place if discourse.thing else None, discourse.at_pick_up)
+    return next((place for place in places if isinstance(place, Text)), None)
 
 
 @functools.cache

@@ -85,6 +85,9 @@ def put(d: Discourse, node: Node) -> Steps:
         d.done.pop()  # "carry it to the ward and put it on the table": put down once
         d.holding = thing.value
     take_back_delivery(d, thing)
+    if node.production.fixed.get("back") and thing.pronoun and spot == Where():
+        spot = Where(d.source or d.at_pick_up or thing.place)
+        thing = replace(thing, place=None, here=True)
     if d.holding != thing.value and spot == Where():
         return [Call("put", {"thing": thing.value})]
     return deliver(d, thing, None, spot)

@@ -93,3 +93,11 @@ def test_a_run_that_fails_says_why(operator) -> None:
     assert nurse.has_done("put down the cup") == "failed"
     assert nurse.hears("what happened?").startswith("I could not finish “put down the cup”.")
     assert nurse.hears("are you done?").startswith("I could not finish")
+
+
+def test_a_thing_is_put_back_where_it_was_taken_from(operator) -> None:
+    nurse = Nurse(operator)
+    assert nurse.has_done("take the red cup from ward a to ward b") == "done"
+    back = nurse.says("put it back").program
+    assert back == 'robot.grab("red cup")\nrobot.goto("ward a")\nrobot.put("red cup")\n'
+    assert nurse.has_done("put it back") == "done"
