@@ -506,7 +506,8 @@ class Reader:
 
 def _source(discourse: Discourse) -> Value | None:
     """Where the thing spoken of was taken from, as far as that is a place by name."""
-    places = (discourse.thing.place if discourse.thing else None, discourse.at_pick_up)
+    thing = discourse.thing
+    places = (thing.place if thing else None, discourse.at_pick_up, discourse.source)
     return next((place for place in places if isinstance(place, Text)), None)
 
 

@@ -184,6 +184,8 @@ def _replied(
             return Reply("ok", pack.phrase("dropped"))
         case "undo":
             return Reply("rejected", pack.phrase("nothing_to_undo"))
+        case "pace":
+            return Reply("rejected", pack.phrase("one_pace"))
         case "planned":
             if talk.last is None or talk.carried_out(record):
                 return Reply("rejected", pack.phrase("nothing_planned"))
