@@ -177,7 +177,12 @@ class _Turn:
         return edit
 
     def _before(self) -> Sentence:
-        return Sentence(self._reader(self.context.text, self.base))
+        """The command before; of a routine that was called by its name, its sentence."""
+        before = Sentence(self._reader(self.context.text, self.base))
+        routine = before.routine()
+        if routine is None:
+            return before
+        return Sentence(self._reader(routine.sentence, self.base))
 
     def _changed(self, edit: Edit) -> Understanding | None:
         """The command before with a change; None if that makes no sense."""

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final, Literal
 
 from grammar.chart import Leaf, Node, TooMuch
 from grammar.language import Language
-from grammar.lexicon import Lexicon
+from grammar.lexicon import Lexicon, Routine
 from grammar.readings import SEQUENCE
 from grammar.slots import UNKNOWN_NAME
 from grammar.tokens import Token
@@ -106,6 +106,15 @@ class Sentence:
         if self.tree is not None:
             visit(self.tree)
         return sorted(found, key=lambda piece: (piece.start, -piece.end))
+
+    def routine(self) -> Routine | None:
+        """The routine that it calls for, if that is all."""
+        if self.tree is None or self.first_meaning() != "routine" or len(self.clauses()) > 1:
+            return None
+        found: Routine | None = next(
+            (leaf.value[0] for leaf in leaves(self.tree) if leaf.slot == "routine"), None
+        )
+        return found
 
     def clauses(self) -> list[tuple[int, int]]:
         """The tokens of each clause, the outer before the inner."""

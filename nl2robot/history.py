@@ -17,9 +17,8 @@ from grammar.lexicon import Lexicon
 from grammar.naming import Naming, joined_up, naming, place_called
 from grammar.requests import Request
 from nl2robot.runlog import LoggedCall, Run
+from sim.world import World
 
-NEAR: Final = 1.0
-"""Metres from a place's own spot within which the robot counts as there."""
 ASKING: Final = frozenset({"ask", "listen", "touch"})
 FINDING: Final = frozenset({"find", "sees", "wait_for"})
 MOVING: Final = frozenset({"goto", "guide", "follow", "find", "move", "drive", "dock"})
@@ -54,17 +53,13 @@ class Record:
     def failed(self) -> bool:
         return not self.running and self.run.status != "done"
 
-    def origin(self, places: Iterable[Any]) -> str | None:
+    def origin(self, world: World) -> str | None:
         """The name of the place where it began, if that is known and the robot left it."""
         if self.run.start is None or not self.moved:
             return None
         start = json.loads(self.run.start)
-        for place in places:
-            pose = place.pose
-            if pose is not None and abs(complex(pose.x - start["x"], pose.y - start["y"])) < NEAR:
-                name: str = place.name
-                return name
-        return None
+        place = world.place_at(start["x"], start["y"])
+        return place.name if place is not None else None
 
 
 class History(Protocol):

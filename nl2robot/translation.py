@@ -124,7 +124,7 @@ def translate(
         record = history.last() if history is not None else None
         if talk.context is not None and talk.carried_out(record):
             assert record is not None
-            origin = record.origin(knowledge.world.places)
+            origin = record.origin(knowledge.world)
             talk.context = replace(talk.context, carried_out=True, origin=origin)
         understood = understand(utterance, lexicon, language, talk.context)
     except UnknownLanguage as error:
