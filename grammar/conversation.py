@@ -59,7 +59,7 @@ class _Turn:
         plain = reader.understand()
         if plain.request is not None:
             return plain
-        edit = self._edit(reader)
+        edit = self._edit()
         if edit is not None and edit.kind == "correct" and question is not None:
             answered = self._answered(Answer((question.completed(edit.new),), certain=False))
             if answered is not None:
@@ -70,8 +70,7 @@ class _Turn:
                 return changed
         if edit is not None and reader.tokens[0].norm in self.language.speech["only"]:
             narrowed = self._gone_on()  # "only if she is there"
-            if narrowed is not None:
-                return narrowed
+            return narrowed or self._unclear(edit)
         if plain.status != "rejected":
             return self._in_that_manner(plain) or self._after_this(plain)
         if question is not None:
@@ -86,7 +85,7 @@ class _Turn:
             result = understood(self.text, self.lexicon, self.language, earlier)
             if result.status != "rejected":
                 return result
-        if edit is not None and edit.kind in ("correct", "instead", "drop", "drop step"):
+        if edit is not None and edit.kind in ("correct", "instead", "drop", "drop step", "manner"):
             return self._unclear(edit)
         return plain
 
@@ -163,10 +162,11 @@ class _Turn:
 
     # --- changes to the command before
 
-    def _edit(self, reader: Reader) -> Edit | None:
+    def _edit(self) -> Edit | None:
         """The change to the command before that a sentence asks for, if it reads as one."""
         if not self.context.text and self.question is None:
             return None
+        reader = self._reader(self.text.rstrip(" .!?…"), self.context)
         try:
             tree = reader.chart().best("edit")
         except (TooMuch, RecursionError):

@@ -42,6 +42,8 @@ CORRECTABLE: Final = (
 """Rules and slots whose words can be put in the place of others."""
 NOUNS: Final = frozenset({"place_ref", "person_ref", "thing"})
 """Those of them that may stand for each other: "go to Alice" - "no, the kitchen"."""
+NAMED: Final = {"person": "person_ref"}
+"""Slots for names, and the rule that they count as where none of it is around them."""
 PRONOUNS: Final = frozenset({"person_pronoun", "person_me", "thing_it", "place_there"})
 UNHEARD: Final = frozenset({"noun", "unknown", "text", "word"})
 """Slots for words that nobody knows."""
@@ -94,14 +96,16 @@ class Sentence:
         """All parts that another of its kind could take the place of, in their order."""
         found: list[Piece] = []
 
-        def visit(node: Node) -> None:
+        def visit(node: Node, inside: bool = False) -> None:
             for part in node.parts.values():
                 name = part.slot if isinstance(part, Leaf) else part.production.rule
                 means = part.means if isinstance(part, Node) else ""
+                if name in NAMED and not inside:
+                    found.append(Piece(NAMED[name], part.start, part.end, means))
                 if name in CORRECTABLE:
                     found.append(Piece(name, part.start, part.end, means))
                 if isinstance(part, Node):
-                    visit(part)
+                    visit(part, inside or name in NOUNS)
 
         if self.tree is not None:
             visit(self.tree)
@@ -321,11 +325,14 @@ class Sentence:
 
     def without_words(self, piece: Piece) -> Iterator[str]:
         """The sentence without a name in a list of several."""
+        joins = self.reader.language.speech["joins"]
         first = piece.start
         while first > 0 and (
             self.tokens[first - 1].kind == "mark" or self.reader.is_little(range(first - 1, first))
         ):
             first -= 1
+            if self.tokens[first].kind != "mark" and self.tokens[first].norm not in joins:
+                continue
             yield (
                 self.text[: self.tokens[first].start].rstrip() + self.text[self._tail(piece.end) :]
             )
@@ -334,7 +341,8 @@ class Sentence:
             self.tokens[last].kind == "mark" or self.reader.is_little(range(last, last + 1))
         ):
             last += 1
-            if last < len(self.tokens):
+            joint = self.tokens[last - 1]
+            if last < len(self.tokens) and (joint.kind == "mark" or joint.norm in joins):
                 yield (
                     self.text[: self.tokens[piece.start].start]
                     + self.text[self.tokens[last].start :]

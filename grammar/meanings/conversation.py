@@ -15,9 +15,9 @@ def edit(d: Discourse, node: Node, kind: EditKind) -> Edit:
         part = node.parts.get(name)
         return d.words(part.start, part.end) if part is not None else ""
 
-    return Edit(
-        kind, said("new"), said("old") or said("what"), int(node.production.fixed.get("which", -1))
-    )
+    more = said("more")
+    new = f"{said('new')}, {more}" if more else said("new")
+    return Edit(kind, new, said("old") or said("what"), int(node.production.fixed.get("which", -1)))
 
 
 @meaning("edit_cancel")
