@@ -16,6 +16,7 @@ from grammar.plan import (
     Forever,
     If,
     Increase,
+    Items,
     Node,
     Number,
     Plan,
@@ -28,6 +29,7 @@ from grammar.plan import (
     Value,
     While,
 )
+from robot_api.methods import METHODS
 
 BODIES: Final = ("steps", "then", "otherwise")
 """Parts of a step that are steps themselves."""
@@ -190,6 +192,24 @@ def _leaves(steps: tuple[Step, ...]) -> bool:
     last = steps[-1] if steps else None
     comes_back = isinstance(last, Call) and last.method in ("goto", "dock")
     return bool(waits and called and not comes_back)
+
+
+def is_one_of_each(plan: Plan) -> bool:
+    """Whether no call is given a whole list, such as all the labs, where it takes one thing."""
+    for node in nodes(plan.steps):
+        if isinstance(node, Call | Ask):
+            single = [value for name, value in node.arguments.items() if name != "options"]
+            if any(map(_is_list, single)):
+                return False
+        if isinstance(node, Items) and any(map(_is_list, node.items)):
+            return False
+    return True
+
+
+def _is_list(value: Value) -> bool:
+    if not isinstance(value, Ask) or value.method not in METHODS:
+        return False
+    return METHODS[value.method].returns.schema.get("type") == "array"
 
 
 def without_unused(plan: Plan) -> Plan:

@@ -28,7 +28,7 @@ from grammar.refusals import forbidden, no_thing, signs, why_not
 from grammar.requests import Request
 from grammar.slips import mended
 from grammar.slots import Names, Slots, command_words, names_of
-from grammar.tidy import Unbound, returning, scoped, without_unused
+from grammar.tidy import Unbound, is_one_of_each, returning, scoped, without_unused
 from grammar.tokens import COMMA, Token, tokenise
 
 _log: Final = logging.getLogger(__name__)
@@ -225,6 +225,8 @@ class Reader:
                 )
             )
         except Unbound:
+            return rejected(self.text, self.language.phrase("too_complicated"), self.context)
+        if not is_one_of_each(plan):
             return rejected(self.text, self.language.phrase("too_complicated"), self.context)
         doubt = doubtful(tree, self.tokens, self.language)
         if doubt is not None:
