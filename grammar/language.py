@@ -153,14 +153,26 @@ class Compiled(msgspec.Struct, frozen=True):
 
 
 def _read(path: Path, source: bytes) -> dict[str, Any]:
-    loaded = yaml.load(source, Loader=_Loader)
+    try:
+        loaded = yaml.load(source, Loader=_Loader)
+    except RuleError as error:
+        raise RuleError(f"{path.name}: {error}") from error
     if not isinstance(loaded, dict):
         raise RuleError(f"{path.name} is not a mapping of rules, lists and the like")
     return loaded
 
 
 class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
-    """YAML in which "no", "yes", "on" and "off" are words, as they are in any language."""
+    """YAML in which "no", "yes", "on" and "off" are words, as they are in any language. Nothing in
+    it may be named twice: the second would silently take the place of the first."""
+
+    def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
+        keys = [key.value for key, _ in node.value]
+        twice = next((key for key in keys if keys.count(key) > 1), None)
+        if twice is not None:
+            raise RuleError(f"{twice!r} stands twice in line {node.start_mark.line + 1} and below")
+        mapping: dict[Any, Any] = super().construct_mapping(node, deep)
+        return mapping
 
 
 _Loader.yaml_implicit_resolvers = {
