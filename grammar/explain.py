@@ -1,6 +1,6 @@
 """From a plan to plain words that a nurse can agree with.
 
-    "I will note where I am. Then, three times, I will wait for a person, ask “...”, ..."
+    "I will remember where I am. Then, three times, I will wait for a person, ask “...”, ..."
 
 `explain_steps` gives a line for each step, indented as the steps are nested; `explain` makes
 sentences of them. The words come from the language's data file (`grammar.speech`); the order of
@@ -284,7 +284,24 @@ class _Teller:
                 item = self.words.values.get(f"item {sort}", self.words.values["item"])
                 yield fill(item, {"name": readable})
             case _:
-                yield self.named(readable)
+                kept = self.kept(name, step)
+                yield kept[1] if kept else self.named(readable)
+
+    def kept(self, name: str, step: p.Step) -> tuple[str, str] | None:
+        """What a step starts to count or to list, and what the number or the list is called."""
+        match step:
+            case p.Remember(value=p.Number(value=0)):
+                known = self.words.counts
+            case p.Remember(value=p.Items(items=())):
+                known = self.words.lists
+            case _:
+                return None
+        readable = name.rstrip("0123456789").replace("_", " ").strip()
+        for each in known:
+            what, value = each.phrase(each.what, readable), each.phrase(each.value, readable)
+            if what is not None and value is not None:
+                return what, value
+        return None
 
     def quoted_code(self, source: str) -> str:
         return fill(self.words.values["code"], {"code": " ".join(source.split())})
@@ -304,6 +321,9 @@ class _Teller:
         match step := _as_call(step):
             case p.Call():
                 yield Told(self.call(step))
+            case p.Remember() if (kept := self.started(step)) is not None:
+                pattern = say["count" if isinstance(step.value, p.Number) else "list"]
+                yield Told(fill(pattern, {"what": kept}))
             case p.Remember(value=p.Items(items=())):
                 yield Told(fill(say["empty"], {"name": self.recall(step.name)}))
             case p.Remember():
@@ -346,6 +366,12 @@ class _Teller:
                     self.forget(step.otherwise)
             case _:
                 assert_never(step)
+
+    def started(self, step: p.Remember) -> str | None:
+        """What is counted or listed from here on, if its name says so and is that of nothing
+        else."""
+        kept = self.kept(step.name, step)
+        return kept[0] if kept and self.results[step.name] == kept[1] else None
 
     def branches(self, step: p.If) -> Iterator[Told]:
         """If, otherwise if, otherwise: one after the other."""
@@ -499,7 +525,8 @@ class _Teller:
             case p.Length():
                 if self.types.of(value.of) == "int":
                     return self.value(value.of)
-                return fill(say["length"], {"value": self.value(value.of)})
+                entries = "entries" if isinstance(value.of, p.Recall) else "length"
+                return fill(say[entries], {"value": self.value(value.of)})
             case p.Share():
                 values = {"part": self.value(value.part), "whole": self.value(value.whole)}
                 return fill(say["share"], values)
@@ -595,6 +622,11 @@ class _Teller:
                 patterns = self.words.methods[method].compared.get(part, {})
                 if operator in patterns:
                     return fill(patterns[operator], {"right": text})
+            case p.Compare(left=p.Length(of=p.Recall() as names), right=p.Number(value=0)):
+                known = {"==": "empty", "!=": "not empty", ">": "not empty"}
+                if operator in known and self.types.of(names) != "int":
+                    values = {"value": self.value(names)}
+                    return fill(self.words.conditions[known[operator]], values)
         values = {"left": self.value(compare.left), "right": self.value(compare.right)}
         if operator == "in":
             is_list = self.types.of(compare.right).startswith("list[")

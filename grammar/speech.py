@@ -50,6 +50,9 @@ class Nouns(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     vowels: str
     plural: tuple[tuple[str, str], ...]
     singular: tuple[tuple[str, str], ...]
+    tail: str = "$^"
+    """Where what is said about a noun begins, which stays as it is when there are several: "box on
+    the middle shelf"."""
     articles: tuple[tuple[str, str, str], ...] = ()
     """Where nouns differ in gender: (nouns, with their definite, their indefinite article); the
     first that fits stands in the place of `place` and `thing`."""
@@ -79,11 +82,28 @@ class Nouns(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return pattern
 
     def many(self, noun: str) -> str:
+        said = re.search(self.tail, noun)
+        head, tail = (noun[: said.start()], said[0]) if said else (noun, "")
         for pattern, replacement in self.plural:
-            changed, times = re.subn(pattern, replacement, noun, count=1)
+            changed, times = re.subn(pattern, replacement, head, count=1)
             if times:
-                return changed
+                return changed + tail
         return noun
+
+
+class Kept(msgspec.Struct, frozen=True, forbid_unknown_fields=True, array_like=True):
+    """What the robot keeps count or a list of, by the name that the program has for it."""
+
+    name: str
+    """A pattern for the name; what its group takes may stand in the phrases as ``\\1``."""
+    what: str
+    """Those who are counted or listed: "the people who say yes"."""
+    value: str
+    """The number or the list itself: "the number of people who said yes"."""
+
+    def phrase(self, pattern: str, name: str) -> str | None:
+        found = re.fullmatch(self.name, name)
+        return found.expand(pattern) if found else None
 
 
 class Speech(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -98,6 +118,8 @@ class Speech(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     nouns: Nouns
     conditions: dict[str, str]
     methods: dict[str, Words]
+    counts: tuple[Kept, ...] = ()
+    lists: tuple[Kept, ...] = ()
     joined: tuple[tuple[str, str], ...] = ()
     """Little words that run together ("à le" -> "au"), as patterns and what stands for them."""
 

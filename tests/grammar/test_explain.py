@@ -54,7 +54,7 @@ def test_the_visitors_of_the_design() -> None:
         ),
         say("Three visitors have been shown the way."),
     ) == (
-        "I will note where I am. "
+        "I will remember where I am. "
         "Then, three times, I will wait for a person, ask “Where to?” and take one of the answers "
         "“radiology” or “pharmacy”, take the person to the place named in the answer, and then go "
         "to where I started. "
@@ -208,7 +208,7 @@ def test_a_value_that_was_remembered_is_called_as_a_result_is() -> None:
         p.If(p.Holds(p.Recall("seen")), (say("Somebody."),)),
     )
     assert told == (
-        "I will note where I am, look whether I see a person, and then go to where I started. "
+        "I will remember where I am, look whether I see a person, and then go to where I started. "
         "Then, if I saw a person, I will say “Somebody.”"
     )
 
@@ -223,6 +223,44 @@ def test_the_time_of_day() -> None:
     noon = p.Compare(p.Ask("clock", field="time"), ">=", text("12:00"))
     assert explained(p.If(noon, (call("dock"),))).startswith("If it is 12:00 or later, I will")
     assert explained(p.If(p.Not(noon), (call("dock"),))).startswith("If it is before 12:00, I")
+
+
+def test_counting_is_told_as_counting() -> None:
+    """The names that programs have for a number or a list say what it is of."""
+    told = explained(
+        p.Remember("asked", p.Number(0)),
+        p.Remember("said_yes", p.Items(())),
+        p.Remember("x", p.Number(0)),
+        p.Increase("asked"),
+        p.Increase("x"),
+        p.If(
+            p.Compare(p.Length(p.Recall("said_yes")), "==", p.Number(0)),
+            (call("say", text=p.Sentence((p.Recall("asked"), text(" asked")))),),
+        ),
+    )
+    assert told == (
+        "I will keep count of the people I ask, start an empty list for the answer yes, "
+        "start “x” at 0, add one to the number of people I asked, and then add one to “x”. "
+        "Then, if the list for the answer yes is empty, I will say “[the number of people I "
+        "asked] asked”."
+    )
+
+
+def test_two_counts_of_the_same_are_told_apart() -> None:
+    told = explained(
+        *(p.Remember(name, p.Number(0)) for name in ("asked", "asked2")), p.Increase("asked2")
+    )
+    assert told.endswith("add one to the number of people I asked (“asked2”).")
+
+
+def test_several_of_what_is_somewhere() -> None:
+    for language, name, several in (
+        ("en", "box on the middle shelf", "boxes on the middle shelf"),
+        ("en", "woman in the corner", "women in the corner"),
+        ("de", "Stuhl auf dem Flur", "Stühle auf dem Flur"),
+        ("fr", "tasse sur la table", "tasses sur la table"),
+    ):
+        assert speech(language).nouns.many(name) == several
 
 
 def test_nothing_to_do() -> None:
@@ -317,7 +355,7 @@ def test_an_edited_program_is_explained_line_by_line() -> None:
         "greet(desk)\n"
     )
     assert [(told.line, told.depth, told.text) for told in explain_program(source)] == [
-        (1, 0, "note where I am"),
+        (1, 0, "remember where I am"),
         (2, 0, "say “Coffee?”"),
         (3, 0, "three times:"),
         (4, 1, "go to the pharmacy"),
