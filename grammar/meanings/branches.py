@@ -54,12 +54,12 @@ def if_(d: Discourse, node: Node) -> Steps:
     asked = d.answer is not None and d.answer != known
     denied = node.parts.get("otherwise_denied")
     part = node.parts.get("otherwise") or node.parts.get("otherwise_not") or denied
-    if asked and part is not None and "otherwise" not in node.parts:
+    if asked and denied is not None:
         # "if Bob is there, ask him whether he has time. If he does not, ...": that is his answer.
         scene = d.scene()
         d.set_scene(after)
         said_no = said_so(d, no=True)
-        then = [*then, If(said_no, tuple(branch(d, part, None, None)))]
+        then = [*then, If(said_no, tuple(branch(d, denied, None, None)))]
         d.set_scene(scene)
     otherwise: Steps = []
     if part is not None and not (asked and part is denied):
@@ -144,7 +144,7 @@ def meet_there(d: Discourse, met: Meeting | None) -> None:
     if met is None:
         return
     thing = replace(met.thing, here=met.holds, pronoun=False)
-    d.missing = None if met.holds else met.thing
+    d.missing = None if met.holds else replace(met.thing, place=met.thing.place or d.at)
     if thing.place is not None:  # it was looked for there
         d.went(thing.place)
     if not met.holds:

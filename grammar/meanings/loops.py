@@ -105,7 +105,11 @@ def at_intervals(d: Discourse, node: Node) -> Steps:
 def loop(d: Discourse, node: Node) -> Steps:
     """Steps and how often they are done: "every ten minutes until five", "three times"."""
     part = node.parts["steps"]
-    return looped(d, d.get(node, "loop"), lambda: d.build(part))
+    often: Node = d.get(node, "loop")
+    ending: Node | None = d.get(node, "ending")
+    if ending is not None:  # "every ten minutes ..., until five": that is no end of one round
+        often = replace(often, parts={**often.parts, **ending.parts})
+    return looped(d, often, lambda: d.build(part))
 
 
 @meaning("loop_that")

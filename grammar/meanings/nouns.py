@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any, Final
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import ANYONE, Discourse, NotUnderstood, Thing, Where, as_value
+from grammar.discourse import ANYONE, START, Discourse, NotUnderstood, Thing, Where, as_value
 from grammar.lexicon import Name
 from grammar.meanings.registry import meaning
 from grammar.plan import Ask, Call, Items, Number, Recall, Remember, Text, Value
@@ -109,7 +109,25 @@ def place_own(d: Discourse, node: Node) -> Value:
 def place_there(d: Discourse, node: Node) -> Value:
     if d.place is None:
         raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
+    if d.delivered is not None and d.place == Recall(START):
+        d.place = before_fetching(d, node)
     return d.place
+
+
+def before_fetching(d: Discourse, node: Node) -> Value:
+    """ "If there is none in the lab, get one from the store and bring it there": to where it was
+    looked for in vain, or where the robot was sent, not to whoever speaks."""
+    if d.missing is not None and d.missing.place is not None:
+        return d.missing.place
+    sent = [
+        step.arguments["place"]
+        for step in d.done
+        if isinstance(step, Call) and step.method == "goto" and "place" in step.arguments
+    ]
+    places = [place for place in sent if place not in (d.at_pick_up, Recall(START))]
+    if not places:
+        raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
+    return places[-1]
 
 
 @meaning("place_here")

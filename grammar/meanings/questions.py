@@ -13,7 +13,20 @@ from grammar.meanings.nouns import described, is_me, known_by_name
 from grammar.meanings.options import MOST_OPTIONS, numbers_offered, options_of, without_little_words
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import Survey
-from grammar.plan import Ask, Call, ForEach, Forever, Items, Number, Recall, Repeat, Text, Value
+from grammar.plan import (
+    Ask,
+    Call,
+    ForEach,
+    Forever,
+    Holds,
+    If,
+    Items,
+    Number,
+    Recall,
+    Repeat,
+    Text,
+    Value,
+)
 from grammar.tidy import nodes
 from grammar.wordforms import singular
 from grammar.wordorder import parted
@@ -91,7 +104,12 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
         return [*steps, ForEach(variable, person.group, tuple(if_found(d, who, [asking])))]
     known = person.value if person is not None and person.known else None
     who_else = d.place if d.in_loop and isinstance(d.place, Recall) and d.place == d.at else None
-    return [*steps, asked(d, Call("ask", arguments, save_as=name), options, known or who_else)]
+    asking = asked(d, Call("ask", arguments, save_as=name), options, known or who_else)
+    here = person is None or is_me(person) or d.with_person is not None
+    if known is None and who_else is not None and person is not None and not here:
+        # A round comes to places where nobody is.
+        return [*steps, If(Holds(Ask("sees", {"thing": person.value})), (asking,))]
+    return [*steps, asking]
 
 
 def ask_everybody_here(d: Discourse, start: int, end: int) -> Steps:

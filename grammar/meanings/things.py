@@ -7,7 +7,7 @@ from dataclasses import replace
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
 from grammar.meanings.finding import found, go, if_missing, look_for, meet, noun_of, where_sent
-from grammar.meanings.nouns import described, is_me, kind_places, sought, thing_it
+from grammar.meanings.nouns import described, is_me, kind_places, place_there, sought, thing_it
 from grammar.meanings.registry import meaning
 from grammar.meanings.remarks import known_to_be
 from grammar.meanings.reports import Report
@@ -24,7 +24,8 @@ def find(d: Discourse, node: Node) -> Steps:
         return [ForEach(who.name, thing.group, tuple(if_missing(d, who)))]
     if d.found_already:
         return []
-    if thing.place is None and d.at is not None:
+    everywhere = node.production.fixed.get("everywhere", False)
+    if thing.place is None and d.at is not None and not everywhere:
         thing = replace(thing, place=d.at)  # "go to the kitchen and find the cup"
     return look_for(d, thing)
 
@@ -80,6 +81,8 @@ def put(d: Discourse, node: Node) -> Steps:
     if source is not None:
         thing = replace(thing, place=source.place, furniture=source.furniture)
     spot: Where = d.get(node, "where") or Where()
+    if node.production.fixed.get("there") and d.place is not None:
+        spot = Where(place_there(d, node))
     last = d.done[-1] if d.done else None
     if isinstance(last, Call) and last == Call("put", {"thing": thing.value}):
         d.done.pop()  # "carry it to the ward and put it on the table": put down once
