@@ -19,7 +19,7 @@ from typing import Any, Final
 
 from grammar.chart import Leaf, Node
 from grammar.language import Language
-from grammar.tokens import COLON, Token
+from grammar.tokens import COLON, STOP, Token
 
 SPOKEN: Final = frozenset({"say", "say_that"})
 REQUESTED: Final = frozenset({"ask_to"})
@@ -105,6 +105,8 @@ class Words:
     """Pronouns that no statement begins with: "me"."""
     how: re.Pattern[str]
     """Ways to do something that no question is about: "without shouting"."""
+    goes_on: frozenset[str]
+    """Words that no text ends with: "except", "because"."""
     back: tuple[tuple[str, ...], ...]
     """Speaking of the robot's return: "when you are back"."""
     clauses: bool
@@ -160,6 +162,7 @@ def words_for(language: Language) -> Words:
         greetings=phrases("greetings"),
         not_greeting=single("not_greeting"),
         manners=single("manners"),
+        goes_on=single("goes_on"),
         screens=single("screens"),
         adverbs=single("adverbs"),
         subordinating=single("subordinating"),
@@ -222,6 +225,12 @@ class Judge:
 
         if self.tokens[start].kind == "quote":
             return doubt(start + 1, "said_or_done") if end > start + 1 else None
+        if not spoken and STOP in self.norms(start, end):  # a question ends where its sentence does
+            stop = start + self.norms(start, end).index(STOP)
+            return doubt(min(stop + 1, end - 1), "not_understood")
+        last = self.tokens[end - 1].norm
+        if last in self.joins | self.words.goes_on:
+            return doubt(end - 1, "not_understood")  # "..., except"
         greeting = self.greeting(start) if spoken else 0
         for at in range(start + 1, end):
             if not self.joined(at, start):

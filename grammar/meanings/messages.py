@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import Discourse, Steps, Thing
+from grammar.discourse import Discourse, Steps, Thing, capital
 from grammar.meanings.finding import speak_to
 from grammar.meanings.nouns import person_me
 from grammar.meanings.questions import base_form, turn_to_you
@@ -19,7 +19,7 @@ from grammar.meanings.registry import meaning
 from grammar.meanings.speaking import sentence_form
 from grammar.plan import Call, Text
 from grammar.slots import names_of
-from grammar.tokens import COMMA, Token
+from grammar.tokens import COMMA, STOP, Token
 from grammar.wordorder import direct_clause
 
 CHANGED: Final = "\0"
@@ -88,7 +88,10 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
             if you and not impersonal and not another:
                 changed[number] = data["possessives"][word] if possessed else you
                 subject = subject or word in data["subjects"]
-        pieces.append(space + (original if changed == tokens else CHANGED + " ".join(changed)))
+        words = " ".join(changed)
+        if begins_sentence(d, start, at):
+            words = capital(words)
+        pieces.append(space + (original if changed == tokens else CHANGED + words))
     return _joined("".join(pieces), data)
 
 
@@ -132,6 +135,11 @@ def turned(d: Discourse, start: int, end: int, person: Thing | None) -> dict[int
         if at == start and word in data["subjects"]:
             changed[last - 1] = base_form(d, d.words(last - 1, last))
     return changed
+
+
+def begins_sentence(d: Discourse, start: int, at: int) -> bool:
+    """Whether a sentence of a message begins with this token."""
+    return at > start and d.tokens[at - 1].norm == STOP
 
 
 def _written(d: Discourse, start: int, end: int) -> list[tuple[int, str, str]]:

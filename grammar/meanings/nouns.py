@@ -481,7 +481,8 @@ def thing(d: Discourse, node: Node) -> Thing:
     if isinstance(head, Leaf):
         words = d.noun_words(head.start, head.end)
         name = head.value[0] if isinstance(head.value, tuple) else words
-        one = singular(name, d.language)
+        called = d.tokens[head.end - 1].capital and not d.language.speech.get("capital_nouns")
+        one = name if called else singular(name, d.language)  # Jonas is no plural
         known = head.slot in ("object", "furniture")
         one = name if known else one
         many = words not in (one, name) or one != name

@@ -42,3 +42,15 @@ def test_others_are_not(sentence: str, said: str) -> None:
     plan = understand(sentence, WARD).plan
     assert plan is not None
     assert said in write_program(plan)
+
+
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        "ask Bob whether he wants coffee or tea. Frobnicate what he wants from the kitchen",
+        "ask everyone in the lobby if they need a blanket. For everyone who says yes, zorple one",
+        "tell everybody that there is cake in the kitchen, except if it is raining cats",
+    ],
+)
+def test_no_text_goes_on_into_the_next_sentence_or_ends_half_way(sentence: str) -> None:
+    assert understand(sentence, WARD).plan is None
