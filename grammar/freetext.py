@@ -103,6 +103,8 @@ class Words:
     """Words that begin a clause which is no statement: "as Bob does"."""
     never_first: frozenset[str]
     """Pronouns that no statement begins with: "me"."""
+    datives: frozenset[str]
+    """Pronouns that a statement begins with only as its subject, right before a verb: "ihr"."""
     how: re.Pattern[str]
     """Ways to do something that no question is about: "without shouting"."""
     goes_on: frozenset[str]
@@ -167,6 +169,7 @@ def words_for(language: Language) -> Words:
         adverbs=single("adverbs"),
         subordinating=single("subordinating"),
         never_first=single("never_first"),
+        datives=single("datives"),
         how=re.compile(data.get("how", r"(?!)")),
         back=phrases("back"),
         clauses=bool(data.get("clauses", False)),
@@ -259,13 +262,21 @@ class Judge:
         announced = start > 0 and self.tokens[start - 1].norm == COLON
         if not spoken or clause or announced:
             return None
-        if self.tokens[start].norm in self.words.never_first:
+        if self.tokens[start].norm in self.words.never_first or self.given_to(start):
             return doubt(start, "cannot_say")
         if self.is_clause(start, end):
             return None
         if self.asks(start, end):
             return doubt(start, "cannot_say")
         return self.fragment(node, start, end, doubt)
+
+    def given_to(self, start: int) -> bool:
+        """Whether a pronoun stands here that something is given to, and not the subject of a text:
+        "ihr einen Witz", but not "ihr seid toll"."""
+        if self.tokens[start].norm not in self.words.datives or start + 1 >= len(self.tokens):
+            return False
+        after = self.tokens[start + 1].norm
+        return after in self.words.definite | self.words.asking or self.greeting(start + 1) > 0
 
     def fragment(self, node: Node, start: int, end: int, doubt: Doubting) -> Doubt | None:
         """What is to be said and is no sentence: "good morning", "the total", "hello backwards"."""

@@ -27,6 +27,8 @@ SWALLOWED_COMMAND: Final = 40.0
 """Cost of a text that goes on over what begins like another command."""
 ASKED_IN_TEXT: Final = 12.0
 """Cost of a text that begins as a question put to the robot does: "who is there"."""
+RECEIVER_IN_TEXT: Final = 4.0
+"""Cost of a text that begins with the one it is told to: "ihr ihre Proben sind fertig"."""
 UNKNOWN_NAME: Final = 30.0
 """Cost of reading words as the name of something that is not known."""
 SPACED: Final = 0.5
@@ -199,6 +201,11 @@ class Slots:
         self._noun_joins = frozenset(self.language.speech.get("noun_joins", ()))
         self._spoken_fillers = frozenset(self.language.speech.get("spoken_fillers", ()))
         self._fillers = {word for filler in self.language.fillers for word in filler}
+        self._noun_fillers = frozenset(self.language.speech.get("noun_fillers", ()))
+        self._time_fillers = frozenset(self.language.speech.get("time_fillers", ()))
+        self._filler_words = self._inside_fillers()
+        self._unfinished = frozenset(self.language.speech.get("unfinished", ()))
+        self._not_kept = self._joins.union(self.language.speech.get("text_ends", ()))
         clause = self.language.speech.get("clause", {})
         no_verbs = ("pronouns", "determiners", "prepositions", "and", "subordinating", "reflexive")
         self._no_verbs = self._fillers.union(*(clause.get(each, ()) for each in no_verbs))
@@ -387,6 +394,8 @@ class Slots:
         """Free text of any length; it costs more where it goes on over another command."""
         matches: list[Match] = []
         cost = ASKED_IN_TEXT if self._judge.asks(at, len(self.tokens)) else 0.0
+        if self._judge.given_to(at):
+            cost += RECEIVER_IN_TEXT
         for position in range(at, len(self.tokens)):
             token = self.tokens[position]
             if token.kind == "mark":
@@ -403,13 +412,42 @@ class Slots:
                 break
             if position > at and (self._begins_command(position) or self._condition(position)):
                 cost += SWALLOWED_COMMAND
+            if token.norm in self._unfinished:
+                cost += FREE_WORD
+                continue
             if token.norm in self._fillers:  # part of the text only if more text follows
                 ends = 0.0 if token.norm in self._spoken_fillers else 0.3
+                if self._keeps_filler(at, position):
+                    ends, matches = 0.0, [match for match in matches if match[0] != position]
                 matches.append((position + 1, cost + ends, None))
                 continue
             cost += 0.0 if token.kind == "quote" else FREE_WORD
             matches.append((position + 1, cost, None))
         return matches
+
+    def _inside_fillers(self) -> frozenset[int]:
+        """The tokens that belong to whole fillers: "tout" in "tout de suite", not in "tout va"."""
+        norms = tuple(token.norm for token in self.tokens)
+        return frozenset(
+            at + more
+            for at in range(len(norms))
+            for filler in self.language.fillers
+            if norms[at] == filler[0] and norms[at : at + len(filler)] == filler
+            for more in range(len(filler))
+        )
+
+    def _keeps_filler(self, at: int, position: int) -> bool:
+        """Whether a filler is part of the text that it ends: "the new robot", "dinner is ready
+        right now", and anything after a colon ("show: back right now")."""
+        norm = self.tokens[position].norm
+        if position == at or norm in self._not_kept or position not in self._filler_words:
+            return False
+        if self.tokens[at - 1].norm == COLON:
+            return True
+        if norm in self._time_fillers and self._judge.is_clause(at, position):
+            return True
+        before = {token.norm for token in self.tokens[max(at, position - 2) : position]}
+        return norm in self._noun_fillers and not before.isdisjoint(self._judge.words.definite)
 
     def _remark(self, at: int) -> list[Match]:
         """Words up to the end of a clause: no punctuation, and nothing that is to be done."""

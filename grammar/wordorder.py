@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from grammar.discourse import Discourse
-from grammar.tokens import COMMA
+from grammar.tokens import COLON, COMMA
 
 SHORTEST_VERB: Final = 4
 """Letters that are left of a verb when its particle is taken off."""
@@ -42,7 +42,8 @@ def direct_clause(
     d: Discourse, start: int, end: int, instead: Mapping[int, str] | None = None
 ) -> str:
     """The words of a reported clause, in the order of a direct one; `instead` has what some of its
-    tokens are written as."""
+    tokens are written as. Behind a mere comma or colon it is a direct one already: "sag ihr, ihre
+    Tochter wartet unten"."""
     rules = d.language.speech.get("clause")
     if rules is None:
         return d.words(start, end)
@@ -51,6 +52,8 @@ def direct_clause(
     groups = _groups(d, start, end)
     if instead:
         groups = [replace(group, spelled=instead.get(group.at, group.spelled)) for group in groups]
+    if start and d.tokens[start - 1].norm in (COMMA, COLON):
+        return _written([group.spelled for group in groups])
     for position, group in enumerate(groups):
         ended = bool(clauses[-1]) and clauses[-1][-1].norm in rules["finite"]
         begins = groups[position + 1 : position + 2]
@@ -107,6 +110,8 @@ def _verb_second(rules: Any, d: Discourse, groups: Sequence[Group]) -> str:
     words = [group.spelled for group in groups]
     if len(groups) < 2:
         return _written(words)
+    if groups[-1].norm in rules["particles"]:
+        return _written(words)  # "die Besprechung fällt aus": the verb stands second already
     moved: list[Group] = []
     if groups[0].norm in rules["reflexive"]:  # "sich der Arzt verspätet"
         moved, groups = [groups[0]], groups[1:]
