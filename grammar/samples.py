@@ -19,6 +19,8 @@ from grammar.templates import Choice, Part, Sequence, Template, Word
 from grammar.wordforms import kind_words
 
 _SLOT: Final = re.compile(r"\{(\w+)(!the)?\}")
+ALIKE: Final = 86
+"""From where on, of 100, two words are the same but for an ending: "tie" is not "time"."""
 SHORTER_FROM: Final = 2
 QUICKEST_FROM: Final = 6
 """How deep in the rules a random sentence is to come to an end soon, and as fast as it can."""
@@ -83,8 +85,8 @@ def _names(slot: str, lexicon: Lexicon) -> list[str]:
 
 
 def nearest_phrases(text: str, lexicon: Lexicon, language: Language) -> list[str]:
-    """Up to three example phrases like a text, the nearest first: those that at least half of
-    their own words are in."""
+    """Up to three example phrases like a text, the nearest first: those that share at least half
+    of their own words with it, and half of its words."""
     from rapidfuzz import fuzz, process
 
     said = _telling_words(text, language)
@@ -92,10 +94,11 @@ def nearest_phrases(text: str, lexicon: Lexicon, language: Language) -> list[str
     for phrase in (phrase for each in _samples(lexicon, language).values() for phrase in each):
         words = _telling_words(phrase, language)
         shared = [
-            process.extractOne(word, said, scorer=fuzz.ratio, score_cutoff=80) for word in words
+            process.extractOne(word, said, scorer=fuzz.ratio, score_cutoff=ALIKE) for word in words
         ]
-        part = sum(found is not None for found in shared) / max(1, len(words))
-        if part >= 0.5:
+        found = {each[0] for each in shared if each is not None}
+        part = sum(each is not None for each in shared) / max(1, len(words))
+        if part >= 0.5 and 2 * len(found) >= len(set(said)):
             near.append((part + fuzz.token_sort_ratio(text.lower(), phrase) / 1000, phrase))
     return [phrase for _, phrase in sorted(near, key=lambda each: -each[0])[:3]]
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import functools
 import logging
+from collections import Counter
 from dataclasses import dataclass, field, replace
 from typing import Final, Literal
 
@@ -463,8 +464,11 @@ class Reader:
 
         begun = self._begun(chart)
         part = self._ununderstood_part(begun)
-        suggestions = nearest_phrases(part or self.text, self.lexicon, self.language)
         message = self._why_not(part)
+        unclear = part or self.text
+        # Who was told why not needs no other sentence with a word of theirs in it.
+        mine = part or message == self.language.phrase("not_understood_at_all")
+        suggestions = nearest_phrases(unclear, self.lexicon, self.language) if mine else []
         if suggestions:
             examples = self._listed([f"“{each}”" for each in suggestions])
             message = f"{message} {self.language.phrase('try_this', examples=examples)}"
@@ -497,10 +501,21 @@ class Reader:
             first += 1
         if first == 0 or first >= len(self.tokens):
             return ""
+        # An unknown verb may have passed for a part of the noun before it: "the cup and lick | it".
+        joins = {COMMA, *self.language.speech.get("joins", ())}
+        start = first
+        while start and self._is_unknown(self.tokens[start - 1]):
+            start -= 1
+        if start and self.tokens[start - 1].norm in joins:
+            first = start
         last = first
         while last < len(self.tokens) and self.tokens[last].kind != "mark":
             last += 1
         return self.text[self.tokens[first].start : self.tokens[last - 1].end]
+
+    def _is_unknown(self, token: Token) -> bool:
+        known = (self.language.words, self.language.closed, self.names.words)
+        return token.kind == "word" and not any(token.norm in words for words in known)
 
     def words(self, start: int, end: int) -> str:
         return self.text[self.tokens[start].start : self.tokens[end - 1].end] if end > start else ""
@@ -524,7 +539,7 @@ def _fillers_by_first(language: Language) -> dict[str, list[tuple[str, ...]]]:
 @functools.lru_cache(maxsize=2048)
 def _misspelt(word: str, language: Language, lexicon: Lexicon) -> tuple[str, ...]:
     """Known words that are one small slip away: a letter left out, doubled, added or swapped with
-    its neighbour; in longer words also a wrong letter, in long ones two slips."""
+    its neighbour; in longer words also one wrong letter, in long ones two slips."""
     from rapidfuzz.distance import OSA
     from rapidfuzz.process import extract
 
@@ -539,8 +554,8 @@ def _misspelt(word: str, language: Language, lexicon: Lexicon) -> tuple[str, ...
     for other, distance, _ in found:
         if found and distance > found[0][1]:
             break
-        wrong_letter = len(other) == len(word) and sorted(other) != sorted(word)
-        if len(word) < 6 and wrong_letter:
+        wrong = (Counter(word) - Counter(other)).total() if len(other) == len(word) else 0
+        if wrong > (0 if len(word) < 6 else 1):  # a ballroom is no bathroom
             continue
         near.append(other)
     return tuple(near[:3])

@@ -208,7 +208,7 @@ def counted(d: Discourse, node: Node) -> Condition:
 def cannot_check(d: Discourse, node: Node) -> Condition:
     """Something that is neither seen nor heard nor known: "the patient feels better"."""
     words = d.words(node.start, node.end)
-    raise NotUnderstood(d.language.phrase("cannot_check", what=words), span=(node.start, node.end))
+    raise NotUnderstood(d.language.phrase("cannot_check", what=words), gap=(node.start, node.end))
 
 
 # --- the battery, the time

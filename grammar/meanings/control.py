@@ -154,4 +154,4 @@ def refused_part(d: Discourse, node: Node) -> Steps:
     """A clause that no program can do as it was meant: refused with its words."""
     words = d.words(node.start, node.end)
     phrase = str(node.production.fixed["phrase"])
-    raise NotUnderstood(d.language.phrase(phrase, part=words), span=(node.start, node.end))
+    raise NotUnderstood(d.language.phrase(phrase, part=words), gap=(node.start, node.end))

@@ -177,7 +177,7 @@ def _lasting(d: Discourse, often: Node, make: Callable[[], Steps]) -> Steps:
         part = often.parts["lasting"]
         words = d.words(part.start, part.end)
         raise NotUnderstood(
-            d.language.phrase("cannot_time", time=words), span=(part.start, part.end)
+            d.language.phrase("cannot_time", time=words), gap=(part.start, part.end)
         )
     return [*held(body), Call("wait", {"seconds": as_value(lasting)})]
 

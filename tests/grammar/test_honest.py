@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from grammar.accounts import NAMES, TEXTS, left_out
 from grammar.chart import Node
 from grammar.language import languages, load_language
+from grammar.lexicon import Lexicon, Name
 from grammar.program import write_program
 from grammar.samples import random_sentence
 from grammar.understand import Context, Reader, understand
@@ -184,3 +185,37 @@ def test_what_is_none_of_its_business_gets_a_fitting_answer(sentence: str, word:
     assert understood.message is not None
     assert word in understood.message
     assert not understood.suggestions
+
+
+@pytest.mark.parametrize(
+    ("sentence", "named"),
+    [
+        ("find the red cup and lick it", "“lick it”"),
+        ("scan the code and burn the label", "“burn the label”"),
+        ("go to the kitchen and wibble the cups", "“and wibble the cups”"),
+    ],
+)
+def test_an_unknown_verb_is_named_with_what_it_is_about(sentence: str, named: str) -> None:
+    assert named in understand(sentence, WARD).message
+
+
+@pytest.mark.parametrize(
+    "sentence", ["if it rains go to the lobby", "bring Bob the cup without looking around"]
+)
+def test_only_who_named_a_place_is_told_to_ask_for_places(sentence: str) -> None:
+    refused = understand(sentence, WARD)
+    assert refused.status == "rejected"
+    assert load_language("en").phrase("ask_for_names") not in refused.message
+
+
+@pytest.mark.parametrize("sentence", ["hit Alice", "steal the keys from Alice"])
+def test_who_is_told_why_not_gets_no_other_sentence_instead(sentence: str) -> None:
+    refused = understand(sentence, WARD)
+    assert refused.status == "rejected"
+    assert not refused.suggestions
+
+
+def test_two_wrong_letters_are_another_word() -> None:
+    places = Lexicon(places=(Name("bathroom"),))
+    assert understand("go to the bahtroom", places).status == "ok"
+    assert understand("go to the ballroom", places).status == "rejected"
