@@ -52,7 +52,7 @@ def direct_clause(
     groups = _groups(d, start, end)
     if instead:
         groups = [replace(group, spelled=instead.get(group.at, group.spelled)) for group in groups]
-    if start and d.tokens[start - 1].norm in (COMMA, COLON):
+    if is_direct(d, start):
         return _written([group.spelled for group in groups])
     for position, group in enumerate(groups):
         ended = bool(clauses[-1]) and clauses[-1][-1].norm in rules["finite"]
@@ -67,6 +67,11 @@ def direct_clause(
         else:
             clauses[-1].append(group)
     return _joined(rules, d, clauses, joints)
+
+
+def is_direct(d: Discourse, start: int) -> bool:
+    """Whether a clause that begins here is one to be said as it is: its verb stands second."""
+    return start > 0 and d.tokens[start - 1].norm in (COMMA, COLON)
 
 
 def _joined(

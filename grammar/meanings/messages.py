@@ -20,7 +20,7 @@ from grammar.meanings.speaking import sentence_form
 from grammar.plan import Call, Text
 from grammar.slots import names_of
 from grammar.tokens import COMMA, STOP, Token
-from grammar.wordorder import direct_clause
+from grammar.wordorder import direct_clause, is_direct
 
 CHANGED: Final = "\0"
 """Marks a word of a message that stands in the place of another, until the words are joined."""
@@ -133,7 +133,8 @@ def turned(d: Discourse, start: int, end: int, person: Thing | None) -> dict[int
         owned = word in data["possessives"] and at + 1 < last and d.tokens[at + 1].capital
         changed[at] = data["possessives" if owned else "you"][word]
         if at == start and word in data["subjects"]:
-            changed[last - 1] = base_form(d, d.words(last - 1, last))
+            verb = min(start + 1, last - 1) if is_direct(d, start) else last - 1
+            changed[verb] = base_form(d, d.words(verb, verb + 1))
     return changed
 
 

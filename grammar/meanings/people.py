@@ -18,6 +18,7 @@ from grammar.discourse import (
 from grammar.meanings.finding import look_for, meet, named, speak_to, where_sent
 from grammar.meanings.nouns import is_me, kind_places
 from grammar.meanings.registry import meaning
+from grammar.meanings.speaking import spoken
 from grammar.meanings.things import deliver
 from grammar.naming import place_called
 from grammar.plan import Call, Forever, Items, Recall, Text, Value
@@ -178,5 +179,7 @@ def group_of(d: Discourse) -> tuple[Value, ...]:
 
 @meaning("greet_all")
 def greet_all(d: Discourse, node: Node) -> Steps:
-    """ "greet everybody who comes in": again and again."""
-    return [Forever((Call("wait_for", {"thing": Text(ANYONE)}), d.say("hello")))]
+    """ "greet everybody who comes in": again and again; maybe with words of one's own."""
+    worded = "quote" in node.parts or "text" in node.parts
+    greeting = Call("say", {"text": spoken(d, node)}) if worded else d.say("hello")
+    return [Forever((Call("wait_for", {"thing": Text(ANYONE)}), greeting))]
