@@ -241,7 +241,7 @@ class Reader:
         impossible = no_thing(plan, self.lexicon, self.language)
         if impossible is not None:
             phrase, thing = impossible
-            message = self.language.phrase(phrase, thing=thing)
+            message = self.language.phrase(phrase, thing=thing, name=thing)
             return replace(rejected(self.text, message, self.context), unclear=thing)
         plan = returning(without_unused(plan))
         return Understanding(

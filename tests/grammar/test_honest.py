@@ -219,3 +219,18 @@ def test_two_wrong_letters_are_another_word() -> None:
     places = Lexicon(places=(Name("bathroom"),))
     assert understand("go to the bahtroom", places).status == "ok"
     assert understand("go to the ballroom", places).status == "rejected"
+
+
+@pytest.mark.parametrize(
+    ("language", "sentence"),
+    [
+        ("en", "take Mrs Jones to radiology"),
+        ("en", "fetch Mr Smith"),
+        ("de", "bring Frau Meisterhans zur Radiologie"),
+        ("fr", "emmène Madame Dupont à la radiologie"),
+    ],
+)
+def test_nobody_is_taken_in_the_hand(language: str, sentence: str) -> None:
+    refused = understand(sentence, hospital(language), language)
+    assert refused.status == "rejected"
+    assert refused.message == load_language(language).phrase("unknown_person", name=refused.unclear)
