@@ -107,7 +107,7 @@ def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
         return steps
     person = where_sent(d, person)
     if is_here(d, person):
-        return steps
+        return if_met(d, person, steps)
     if not person.known and person.place is not None and (person.plural or person.text == ANYONE):
         return [*go(d, person.place), *steps]
     d.at = person.place
@@ -128,6 +128,20 @@ def if_found(d: Discourse, who: Value, steps: Steps) -> Steps:
     """Steps for which somebody has to be found first."""
     found = Holds(Ask("find", {"thing": who}))
     return [If(found, tuple(steps), (d.say("not_found", thing=who),))]
+
+
+def if_met(d: Discourse, person: Thing, steps: Steps) -> Steps:
+    """Steps with somebody who was looked for just before, if they were found: "tell Bob that lunch
+    is ready and ask him ..."."""
+    last = d.done[-1] if d.done else None
+    if person.value != d.with_person or not isinstance(last, If):
+        return steps
+    sought_before = last.condition.value if isinstance(last.condition, Holds) else None
+    looked = isinstance(sought_before, Ask) and sought_before.method == "find"
+    if not looked or last.otherwise != (not_found(d, person),):
+        return steps
+    d.done.pop()
+    return [If(last.condition, (*last.then, *steps), last.otherwise)]
 
 
 def if_missing(d: Discourse, who: Value) -> Steps:

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where, capital
-from grammar.meanings.finding import go, if_found, meet, speak_to, where_sent
+from grammar.meanings.finding import go, if_found, if_met, meet, speak_to, where_sent
 from grammar.meanings.nouns import described, is_me, known_by_name
 from grammar.meanings.options import MOST_OPTIONS, numbers_offered, options_of, without_little_words
 from grammar.meanings.registry import meaning
@@ -109,6 +109,8 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
     if known is None and who_else is not None and person is not None and not here:
         # A round comes to places where nobody is.
         return [*steps, If(Holds(Ask("sees", {"thing": person.value})), (asking,))]
+    if person is not None and not steps:
+        return if_met(d, person, [asking])
     return [*steps, asking]
 
 

@@ -22,6 +22,10 @@ def find(d: Discourse, node: Node) -> Steps:
         who = Recall(d.variable("person"))
         d.at = d.with_person = None
         return [ForEach(who.name, thing.group, tuple(if_missing(d, who)))]
+    if thing.several and not (thing.person and thing.every):  # a search ends with the first one
+        part = node.parts.get("thing") or node.parts.get("person_ref") or node
+        words = d.words(part.start, part.end)
+        raise NotUnderstood(d.language.phrase("find_one", things=words), span=(part.start, part.end))
     if d.found_already:
         return []
     everywhere = node.production.fixed.get("everywhere", False)
