@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import Final
 
@@ -261,10 +262,31 @@ def answered(d: Discourse, node: Node) -> Condition:
             wanted = value.value
         else:
             wanted = str(d.get(node, "text"))
+    if says_the_same(d, wanted):
+        return same_answers(d, node)
     for option in d.answer_options:
         if option.lower() == wanted.lower():
             return Compare(Recall(d.answer), "==", Text(option))
     return Compare(Text(wanted), "in", Recall(d.answer))
+
+
+def says_the_same(d: Discourse, words: str) -> bool:
+    """Whether words mean what somebody else has said: "the same one"."""
+    low = words.lower()
+    return any(
+        re.search(rf"\b{re.escape(each)}\b", low) is not None
+        for each in d.language.speech.get("the_same", ())
+    )
+
+
+def same_answers(d: Discourse, node: Node) -> Condition:
+    """ "if they want the same one", of two who were asked one after the other."""
+    names = [each.call.save_as for each in d.surveys if each.call.save_as is not None]
+    alone = all(not isinstance(each.who, Recall) for each in d.surveys[-2:])
+    if len(d.surveys) != 2 or len(set(names)) != 2 or not alone:
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("not_understood", part=words))
+    return Compare(Recall(names[0]), "==", Recall(names[1]))
 
 
 def said_so(d: Discourse, no: bool) -> Condition:

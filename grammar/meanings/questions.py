@@ -8,6 +8,7 @@ from typing import Any, Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where, capital
+from grammar.meanings.conditions import says_the_same
 from grammar.meanings.finding import go, if_found, if_met, meet, speak_to, where_sent
 from grammar.meanings.nouns import described, is_me, known_by_name
 from grammar.meanings.options import MOST_OPTIONS, numbers_offered, options_of, without_little_words
@@ -234,6 +235,9 @@ def question(d: Discourse, node: Node) -> str:
     for pattern, instead in d.language.speech.get("question_joined", ()):
         text = re.sub(pattern, instead, text)  # "Est-ce que Alice" -> "Est-ce qu'Alice"
     mark = d.language.speech.get("question_mark", "?")
+    if d.surveys and says_the_same(d, text):  # whoever is asked does not know as what
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("not_understood", part=words))
     return capital(text.replace(" ?", mark).replace(" ,", ",").replace(" .", "."))
 
 

@@ -25,7 +25,9 @@ def find(d: Discourse, node: Node) -> Steps:
     if thing.several and not (thing.person and thing.every):  # a search ends with the first one
         part = node.parts.get("thing") or node.parts.get("person_ref") or node
         words = d.words(part.start, part.end)
-        raise NotUnderstood(d.language.phrase("find_one", things=words), span=(part.start, part.end))
+        raise NotUnderstood(
+            d.language.phrase("find_one", things=words), span=(part.start, part.end)
+        )
     if d.found_already:
         return []
     everywhere = node.production.fixed.get("everywhere", False)

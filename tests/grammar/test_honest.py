@@ -161,6 +161,20 @@ def test_what_hangs_on_something_is_done_only_where_that_is_so(sentence: str, me
     assert program(understood.plan) == meaning
 
 
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        "find three cups",
+        "find all the cups in the house",
+        "get a chair from the kitchen and bring it there",
+        "ask Bob and Alice what they want; if they want the same one, bring it",
+        "ask Bob if he wants tea or coffee, then ask Alice if she wants the same one",
+    ],
+)
+def test_what_would_be_done_by_half_is_refused(sentence: str) -> None:
+    assert understand(sentence, WARD).plan is None
+
+
 def test_a_word_that_no_meaning_used_is_named() -> None:
     understood = understand("give the cup to Alice at the counter on the side", WARD)
     assert understood.status == "rejected"
