@@ -7,6 +7,7 @@ none: its slots are the parameters.
 
 from __future__ import annotations
 
+import grammar.meanings.amounts
 import grammar.meanings.answers
 import grammar.meanings.body
 import grammar.meanings.branches
@@ -21,6 +22,7 @@ import grammar.meanings.messages
 import grammar.meanings.news
 import grammar.meanings.nouns
 import grammar.meanings.people
+import grammar.meanings.places
 import grammar.meanings.questions
 import grammar.meanings.remarks
 import grammar.meanings.reports

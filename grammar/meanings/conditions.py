@@ -20,7 +20,7 @@ from grammar.discourse import (
 from grammar.meanings.answers import wanted as wanted_answer
 from grammar.meanings.finding import noun_of
 from grammar.meanings.news import counted as counted_answers
-from grammar.meanings.nouns import sought
+from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import Survey, asked_before, in_loop
 from grammar.plan import (

@@ -7,7 +7,8 @@ from dataclasses import replace
 from grammar.chart import Leaf, Node
 from grammar.discourse import SETTING, Discourse, NotUnderstood, Steps, Thing, Where, as_value
 from grammar.meanings.finding import go, look_for, noun_of, where_sent
-from grammar.meanings.nouns import is_me, sought
+from grammar.meanings.nouns import is_me
+from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.waiting import wait_until
 from grammar.plan import Ask, Both, Call, Either, Holds, Items, Number, Repeat, Text, Value

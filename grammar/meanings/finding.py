@@ -7,7 +7,8 @@ from typing import Final
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
-from grammar.meanings.nouns import is_me, sought
+from grammar.meanings.nouns import is_me
+from grammar.meanings.places import sought
 from grammar.naming import the
 from grammar.plan import (
     Ask,

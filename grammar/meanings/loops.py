@@ -13,7 +13,7 @@ from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, as
 from grammar.meanings.branches import meet_there
 from grammar.meanings.conditions import condition_of
 from grammar.meanings.control import guard_finds
-from grammar.meanings.nouns import kind_places
+from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import until_answered
 from grammar.meanings.waiting import at_least, wait_until

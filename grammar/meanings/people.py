@@ -16,7 +16,8 @@ from grammar.discourse import (
     as_value,
 )
 from grammar.meanings.finding import look_for, meet, named, speak_to, where_sent
-from grammar.meanings.nouns import is_me, kind_places
+from grammar.meanings.nouns import is_me
+from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.speaking import spoken
 from grammar.meanings.things import deliver

@@ -22,7 +22,8 @@ from grammar.discourse import (
 )
 from grammar.meanings import news
 from grammar.meanings.finding import is_here, look_for, meet, not_found, speak_to
-from grammar.meanings.nouns import described, is_me, kind_places, sought
+from grammar.meanings.nouns import described, is_me
+from grammar.meanings.places import kind_places, sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import in_loop, moved
 from grammar.naming import place_called, some, the

@@ -12,7 +12,8 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
 from grammar.meanings.finding import speak_to
 from grammar.meanings.news import News, Told, go_back, take_back
-from grammar.meanings.nouns import is_me, kind_places, sought, thing_it
+from grammar.meanings.nouns import is_me, thing_it
+from grammar.meanings.places import kind_places, sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import note, replacing
 from grammar.meanings.things import deliver

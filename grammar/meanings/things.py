@@ -7,7 +7,8 @@ from dataclasses import replace
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
 from grammar.meanings.finding import found, go, if_missing, look_for, meet, noun_of, where_sent
-from grammar.meanings.nouns import described, is_me, kind_places, place_there, sought, thing_it
+from grammar.meanings.nouns import described, is_me, thing_it
+from grammar.meanings.places import kind_places, place_there, sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.remarks import known_to_be
 from grammar.meanings.reports import Report
