@@ -317,7 +317,7 @@ def whether_seen(d: Discourse, node: Node) -> Report:
         Ask("sees", {"thing": sought(d, thing)}),
         thing.place,
         (("thing", named),),
-        otherwise="no_seen",
+        otherwise="nobody_seen" if named == d.language.phrase("somebody") else "no_seen",
         name="seen",
     )
 
