@@ -15,6 +15,7 @@ import grammar.meanings.conditions
 import grammar.meanings.control
 import grammar.meanings.conversation
 import grammar.meanings.driving
+import grammar.meanings.facts
 import grammar.meanings.hosting
 import grammar.meanings.inquiries
 import grammar.meanings.loops
@@ -28,6 +29,7 @@ import grammar.meanings.remarks
 import grammar.meanings.reports
 import grammar.meanings.requests
 import grammar.meanings.rounds
+import grammar.meanings.sights
 import grammar.meanings.speaking
 import grammar.meanings.surveys
 import grammar.meanings.things

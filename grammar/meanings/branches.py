@@ -16,7 +16,8 @@ from grammar.meanings.finding import not_found, speak_to
 from grammar.meanings.news import polled
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
-from grammar.meanings.reports import known_words, named_some, tell_speaker
+from grammar.meanings.reports import known_words, tell_speaker
+from grammar.meanings.sights import named_some
 from grammar.meanings.speaking import sentence_form
 from grammar.plan import (
     Ask,

@@ -1,4 +1,4 @@
-"""Telling what the robot finds out: the time, the place, what it sees, how many there are.
+"""Telling what the robot finds out, to whoever is to know it, and telling it again to others.
 
 What is to be told is a `Report`: how to find it out and the phrase it is told with. A report about
 somewhere else that is for the speaker is brought back to them.
@@ -8,43 +8,32 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from grammar.chart import Leaf, Node
+from grammar.chart import Node
 from grammar.discourse import (
-    ANYONE,
     START,
-    Ambiguous,
     Discourse,
     NotUnderstood,
     Steps,
     Thing,
-    Where,
-    as_value,
 )
 from grammar.meanings import news
-from grammar.meanings.finding import is_here, look_for, meet, not_found, speak_to
-from grammar.meanings.nouns import described, is_me
-from grammar.meanings.places import kind_places, sought
+from grammar.meanings.finding import is_here, speak_to
+from grammar.meanings.nouns import is_me
+from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import in_loop, moved
-from grammar.naming import place_called, some, the
 from grammar.plan import (
     Ask,
     Call,
-    Choice,
-    Compare,
     Holds,
     If,
-    Items,
-    Number,
     Recall,
     Remember,
     Step,
-    Text,
     Truth,
     Value,
 )
 from grammar.tidy import nodes
-from grammar.wordforms import plural, singular
 
 
 @dataclass(frozen=True)
@@ -70,8 +59,6 @@ class Report:
 
 @meaning("report")
 def report(d: Discourse, node: Node) -> Steps:
-    if node.production.fixed.get("joke"):
-        return told(d, joke(d), d.get(node, "person_ref"))
     person: Thing | None = d.get(node, "person_ref")
     found: Report | Steps = d.get(node, "info")
     if isinstance(found, list):
@@ -130,227 +117,6 @@ def _saying(d: Discourse, found: Report) -> Call | If:
     if found.value is not None:
         values["value"] = found.value
     return d.say(found.phrase, **values)
-
-
-# --- about the robot
-
-
-@meaning("about_robot")
-def about_robot(d: Discourse, node: Node) -> Report:
-    fixed = node.production.fixed
-    value = Ask(str(fixed["method"]), {}, fixed.get("field"))
-    return Report(str(fixed["phrase"]), value, about_here=False)
-
-
-@meaning("fixed_phrase")
-def fixed_phrase(d: Discourse, node: Node) -> Report:
-    return Report(str(node.production.fixed["phrase"]), about_here=False)
-
-
-@meaning("some_joke")
-def some_joke(d: Discourse, node: Node) -> Report:
-    return joke(d)
-
-
-def joke(d: Discourse) -> Report:
-    jokes = [text for name, text in d.language.phrases.items() if name.startswith("joke_")]
-    return Report(
-        "only", Choice(Items(tuple(Text(each) for each in jokes))), name="joke", about_here=False
-    )
-
-
-@meaning("known_places")
-def known_places(d: Discourse, node: Node) -> Report:
-    return Report("places_are", kind_places(d, d.get(node, "kind")), about_here=False)
-
-
-@meaning("last_log")
-def last_log(d: Discourse, node: Node) -> Report:
-    lines = d.get(node, "lines")
-    arguments: dict[str, Value] = {} if lines is None else {"lines": as_value(lines)}
-    return Report("log_says", Ask("log", arguments), about_here=False)
-
-
-# --- about what is seen
-
-
-@meaning("names_here")
-def names_here(d: Discourse, node: Node) -> Report:
-    """ "who is in the lobby?", "the name of the person in the kitchen"."""
-    person: Thing | None = d.get(node, "person_ref")
-    if person is None:
-        person = described(d, ANYONE, node)
-        d.person = Thing(Text(ANYONE), person.place, person=True, here=True)
-    return Report("people_seen", Ask("people"), person.place, name="names")
-
-
-@meaning("seen_here")
-def seen_here(d: Discourse, node: Node) -> Report:
-    place = described(d, "", node)
-    if place.furniture:
-        return things_on(d, place)
-    return Report("objects_seen", Ask("objects"), place.place, name="things")
-
-
-def things_on(d: Discourse, place: Thing) -> Report:
-    """ "what is on the bed?": all that is on it, or that there is nothing."""
-    thing = replace(place, value=Text(d.language.phrase("objects")))
-    all_of_it = replace(place, value=Text(d.language.phrase("all_objects")))
-    one, everything = sought(d, thing), sought(d, all_of_it)
-    assert isinstance(one, Text)
-    where = d.called(one.value.removeprefix(thing.text).strip())
-    words = d.variable("description")
-    look = Remember(words, Ask("describe", {"thing": everything}))
-    before = (
-        Remember(words, d.sentence("nothing_there", where=where)),
-        If(Holds(Ask("sees", {"thing": one})), (look,)),
-    )
-    return Report("only", Recall(words), place.place, before=before)
-
-
-@meaning("kind_seen")
-def kind_seen(d: Discourse, node: Node) -> Report:
-    """ "which cups are on the table?": all of them in a sentence, or that there are none."""
-    head = node.parts["head"]
-    assert isinstance(head, Leaf)
-    name = str(head.value[0]) if head.value else d.noun_words(head.start, head.end)
-    thing = described(d, singular(name, d.language), node, lies_about=True)
-    words = d.variable("description")
-    several = replace(thing, value=Text(plural(thing.text, d.language)))
-    look = Remember(words, Ask("describe", {"thing": sought(d, several)}))
-    none = d.sentence("none_seen", things=d.called(several.text))
-    seen = Holds(Ask("sees", {"thing": sought(d, thing)}))
-    before = (Remember(words, none), If(seen, (look,)))
-    return Report("only", Recall(words), thing.place, before=before)
-
-
-@meaning("looks_of")
-def looks_of(d: Discourse, node: Node) -> Report:
-    """How something looks; a description says it all."""
-    thing: Thing = (
-        d.get(node, "thing")
-        or d.get(node, "person_ref")
-        or Thing(Text(ANYONE), person=True, here=True)
-    )
-    extra = described(d, "", node)
-    place = thing.place or extra.place
-    return Report("only", Ask("describe", {"thing": sought(d, thing)}), place, name="description")
-
-
-@meaning("best_of")
-def best_of(d: Discourse, node: Node) -> Report:
-    """ "what is the biggest thing on the table?"."""
-    thing: Thing | None = d.get(node, "thing")
-    if thing is None:
-        thing = _best(d, node)
-    else:
-        more = described(d, thing.text, node)
-        thing = replace(
-            thing, place=thing.place or more.place, furniture=thing.furniture or more.furniture
-        )
-    value = sought(d, thing)
-    d.thing, d.thing_last = replace(thing, here=True), True
-    return Report("only", Ask("describe", {"thing": value}), thing.place, name="description")
-
-
-def _best(d: Discourse, node: Node) -> Thing:
-    head = node.parts.get("head")
-    noun = "object"
-    if isinstance(head, Leaf):
-        said = str(head.value[0]) if head.value else d.noun_words(head.start, head.end)
-        noun = singular(said, d.language)
-    return described(d, noun, node)
-
-
-@meaning("counted_info")
-def counted_info(d: Discourse, node: Node) -> Report:
-    """ "how many cups are in the kitchen?"."""
-    thing: Thing = d.get(node, "thing")
-    more = described(d, thing.text, node)
-    first: Where | None = d.get(node, "spot_first")
-    thing = replace(
-        thing,
-        value=more.value,
-        place=thing.place or more.place or (first.place if first else None),
-        furniture=thing.furniture or more.furniture or (first.furniture if first else None),
-    )
-    d.last_counted = thing
-    return count_report(d, thing)
-
-
-def count_report(d: Discourse, thing: Thing) -> Report:
-    phrase_words = d.called(thing.text)
-    spot = _spot_words(d, thing)
-    noun, _, rest = phrase_words.partition(" ") if thing.person else (phrase_words, "", "")
-    things = f"{plural(noun, d.language)} {rest}".strip()
-    looked_for = sought(d, thing)
-    count = Ask("count", {"thing": looked_for})
-    if thing.furniture and isinstance(looked_for, Text):  # "cups on the table"
-        things, spot = f"{things} {d.called(looked_for.value.removeprefix(thing.text).strip())}", ""
-    phrase = "counted_at" if spot and "counted_at" in d.language.phrases else "counted"
-    words = (
-        (("things", things), ("place", spot)) if phrase == "counted_at" else (("things", things),)
-    )
-    return Report(phrase, count, thing.place, words, name="count")
-
-
-def _spot_words(d: Discourse, thing: Thing) -> str:
-    """Where things were counted, as a name."""
-    if thing.furniture:
-        return place_called(thing.furniture, d.lexicon, d.language)
-    place = thing.place or d.at
-    return place_called(place.value, d.lexicon, d.language) if isinstance(place, Text) else ""
-
-
-@meaning("whether_seen")
-def whether_seen(d: Discourse, node: Node) -> Report:
-    """ "is there anybody in the waiting room?", "has Bob got a cup on his desk?"."""
-    d.get(node, "holder")  # whose desk "his desk" is
-    thing: Thing = d.get(node, "thing") or d.get(node, "person_ref")
-    more = described(d, thing.text, node)
-    thing = replace(
-        thing, place=thing.place or more.place, furniture=thing.furniture or more.furniture
-    )
-    named = named_some(d, thing)
-    return Report(
-        "yes_seen",
-        Ask("sees", {"thing": sought(d, thing)}),
-        thing.place,
-        (("thing", named),),
-        otherwise="nobody_seen" if named == d.language.phrase("somebody") else "no_seen",
-        name="seen",
-    )
-
-
-def named_some(d: Discourse, thing: Thing) -> str:
-    """A thing as one speaks of it for the first time: "somebody", "a cup"."""
-    if thing.person and thing.text == ANYONE:
-        return d.language.phrase("somebody")
-    called = d.called(thing.text)
-    return called if thing.known and thing.person else some(called, d.language)
-
-
-@meaning("where_found")
-def where_found(d: Discourse, node: Node) -> Steps:
-    """ "where is the stapler?": look for it, come back and say where it is."""
-    thing: Thing = d.get(node, "thing") or d.get(node, "person_ref")
-    called = d.called(thing.text)
-    known = called if thing.known and thing.person else the(called, d.language)
-    arguments: dict[str, Value] = {"thing": sought(d, thing)}
-    if thing.place is not None:
-        arguments["place"] = thing.place
-    name = d.variable("place")
-    start = d.start()
-    back = Call("goto", {"place": start})
-    told = d.say("it_is_at", thing=known, place=Recall(name))
-    d.went(start)
-    return [
-        If(
-            Holds(Ask("find", arguments)),
-            (Remember(name, Ask("location")), back, told),
-            (back, not_found(d, thing)),
-        )
-    ]
 
 
 def kept(d: Discourse) -> str | None:
@@ -431,16 +197,6 @@ def told_report(d: Discourse, found: Report) -> news.Told:
         first.append(Remember(name, found.value))
         found = replace(found, value=Recall(name))
     return news.Told([_saying(d, found)], first)
-
-
-@meaning("counted_too")
-def counted_too(d: Discourse, node: Node) -> news.Told:
-    """ "how many people are in the kitchen and how many in the lobby"."""
-    if d.last_counted is None:
-        raise NotUnderstood(d.language.phrase("count_what"))
-    spot: Where = d.get(node, "spot")
-    thing = replace(d.last_counted, place=spot.place, furniture=spot.furniture)
-    return told_report(d, count_report(d, thing))
 
 
 @meaning("whether_told")
@@ -592,47 +348,3 @@ def tell_speaker(d: Discourse) -> Steps:
     if isinstance(last, Call) and last.method == "say":
         return []  # it is told already
     raise NotUnderstood(d.language.phrase("say_what"))
-
-
-@meaning("scan")
-def scan(d: Discourse, node: Node) -> Steps:
-    """Scan a code, of a thing or on a person that is looked for first if it is not here; where
-    nothing is done with the code, it is read out."""
-    steps: Steps = []
-    person: Thing | None = d.get(node, "person_ref")
-    thing: Thing | None = d.get(node, "thing")
-    if person is not None:
-        steps = meet(d, person)
-    elif thing is not None and not thing.here and not thing.pronoun:
-        steps = look_for(d, thing)
-    d.code = d.variable("code")
-    d.answer = d.report = None
-    return [*steps, Call("scan", {}, save_as=d.code)]
-
-
-@meaning("tell")
-def tell(d: Discourse, node: Node) -> Steps:
-    """Say a phrase with the result of a robot method in it."""
-    fixed = node.production.fixed
-    selector = d.get(node, "selector")
-    value = Ask(str(fixed["method"]), {"selector": as_value(selector)} if selector else {})
-    return speak_to(d, d.get(node, "person_ref"), [d.say(str(fixed["phrase"]), value=value)])
-
-
-@meaning("battery_low")
-def battery_low(d: Discourse, node: Node) -> object:
-
-    fixed = node.production.fixed
-    return Compare(Ask("battery"), str(fixed["operator"]), Number(int(fixed["percent"])))
-
-
-@meaning("offer_guide")
-def offer_guide(d: Discourse, node: Node) -> Steps:
-    """ "where is the lift?": the robot can show the way, if that is wanted."""
-    place = d.get(node, "place")
-    if not isinstance(place, Text):
-        raise NotUnderstood(d.language.phrase("where_is_there"))
-    name = place_called(place.value, d.lexicon, d.language)
-    question = d.language.phrase("offer_guide", place=name)
-    yes = d.language.phrase("take_me_to", place=name)
-    raise Ambiguous(question, 0, len(d.tokens), (yes,))

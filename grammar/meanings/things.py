@@ -227,3 +227,19 @@ def statement(d: Discourse, node: Node) -> Steps:
     said = sentence_form(d.words(node.start, node.end))
     d.report, d.report_step = Report("only", Text(said), about_here=False), None
     return []
+
+
+@meaning("scan")
+def scan(d: Discourse, node: Node) -> Steps:
+    """Scan a code, of a thing or on a person that is looked for first if it is not here; where
+    nothing is done with the code, it is read out."""
+    steps: Steps = []
+    person: Thing | None = d.get(node, "person_ref")
+    thing: Thing | None = d.get(node, "thing")
+    if person is not None:
+        steps = meet(d, person)
+    elif thing is not None and not thing.here and not thing.pronoun:
+        steps = look_for(d, thing)
+    d.code = d.variable("code")
+    d.answer = d.report = None
+    return [*steps, Call("scan", {}, save_as=d.code)]

@@ -1,0 +1,81 @@
+"""What the robot knows of itself and its house, to tell: the time, the battery, a joke."""
+
+from __future__ import annotations
+
+from grammar.chart import Node
+from grammar.discourse import Ambiguous, Discourse, NotUnderstood, Steps, as_value
+from grammar.meanings.finding import speak_to
+from grammar.meanings.places import kind_places
+from grammar.meanings.registry import meaning
+from grammar.meanings.reports import Report, told
+from grammar.naming import place_called
+from grammar.plan import Ask, Choice, Compare, Items, Number, Text, Value
+
+
+@meaning("about_robot")
+def about_robot(d: Discourse, node: Node) -> Report:
+    fixed = node.production.fixed
+    value = Ask(str(fixed["method"]), {}, fixed.get("field"))
+    return Report(str(fixed["phrase"]), value, about_here=False)
+
+
+@meaning("fixed_phrase")
+def fixed_phrase(d: Discourse, node: Node) -> Report:
+    return Report(str(node.production.fixed["phrase"]), about_here=False)
+
+
+@meaning("some_joke")
+def some_joke(d: Discourse, node: Node) -> Report:
+    return joke(d)
+
+
+@meaning("tell_joke")
+def tell_joke(d: Discourse, node: Node) -> Steps:
+    return told(d, joke(d), d.get(node, "person_ref"))
+
+
+def joke(d: Discourse) -> Report:
+    jokes = [text for name, text in d.language.phrases.items() if name.startswith("joke_")]
+    return Report(
+        "only", Choice(Items(tuple(Text(each) for each in jokes))), name="joke", about_here=False
+    )
+
+
+@meaning("known_places")
+def known_places(d: Discourse, node: Node) -> Report:
+    return Report("places_are", kind_places(d, d.get(node, "kind")), about_here=False)
+
+
+@meaning("last_log")
+def last_log(d: Discourse, node: Node) -> Report:
+    lines = d.get(node, "lines")
+    arguments: dict[str, Value] = {} if lines is None else {"lines": as_value(lines)}
+    return Report("log_says", Ask("log", arguments), about_here=False)
+
+
+@meaning("tell")
+def tell(d: Discourse, node: Node) -> Steps:
+    """Say a phrase with the result of a robot method in it."""
+    fixed = node.production.fixed
+    selector = d.get(node, "selector")
+    value = Ask(str(fixed["method"]), {"selector": as_value(selector)} if selector else {})
+    return speak_to(d, d.get(node, "person_ref"), [d.say(str(fixed["phrase"]), value=value)])
+
+
+@meaning("battery_low")
+def battery_low(d: Discourse, node: Node) -> object:
+
+    fixed = node.production.fixed
+    return Compare(Ask("battery"), str(fixed["operator"]), Number(int(fixed["percent"])))
+
+
+@meaning("offer_guide")
+def offer_guide(d: Discourse, node: Node) -> Steps:
+    """ "where is the lift?": the robot can show the way, if that is wanted."""
+    place = d.get(node, "place")
+    if not isinstance(place, Text):
+        raise NotUnderstood(d.language.phrase("where_is_there"))
+    name = place_called(place.value, d.lexicon, d.language)
+    question = d.language.phrase("offer_guide", place=name)
+    yes = d.language.phrase("take_me_to", place=name)
+    raise Ambiguous(question, 0, len(d.tokens), (yes,))

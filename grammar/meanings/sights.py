@@ -1,0 +1,206 @@
+"""What the robot sees, as something to tell: who is there, what lies there, how many."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from grammar.chart import Leaf, Node
+from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
+from grammar.meanings import news
+from grammar.meanings.finding import not_found
+from grammar.meanings.nouns import described
+from grammar.meanings.places import sought
+from grammar.meanings.registry import meaning
+from grammar.meanings.reports import Report, told_report
+from grammar.naming import place_called, some, the
+from grammar.plan import Ask, Call, Holds, If, Recall, Remember, Text, Value
+from grammar.wordforms import plural, singular
+
+
+@meaning("names_here")
+def names_here(d: Discourse, node: Node) -> Report:
+    """ "who is in the lobby?", "the name of the person in the kitchen"."""
+    person: Thing | None = d.get(node, "person_ref")
+    if person is None:
+        person = described(d, ANYONE, node)
+        d.person = Thing(Text(ANYONE), person.place, person=True, here=True)
+    return Report("people_seen", Ask("people"), person.place, name="names")
+
+
+@meaning("seen_here")
+def seen_here(d: Discourse, node: Node) -> Report:
+    place = described(d, "", node)
+    if place.furniture:
+        return things_on(d, place)
+    return Report("objects_seen", Ask("objects"), place.place, name="things")
+
+
+def things_on(d: Discourse, place: Thing) -> Report:
+    """ "what is on the bed?": all that is on it, or that there is nothing."""
+    thing = replace(place, value=Text(d.language.phrase("objects")))
+    all_of_it = replace(place, value=Text(d.language.phrase("all_objects")))
+    one, everything = sought(d, thing), sought(d, all_of_it)
+    assert isinstance(one, Text)
+    where = d.called(one.value.removeprefix(thing.text).strip())
+    words = d.variable("description")
+    look = Remember(words, Ask("describe", {"thing": everything}))
+    before = (
+        Remember(words, d.sentence("nothing_there", where=where)),
+        If(Holds(Ask("sees", {"thing": one})), (look,)),
+    )
+    return Report("only", Recall(words), place.place, before=before)
+
+
+@meaning("kind_seen")
+def kind_seen(d: Discourse, node: Node) -> Report:
+    """ "which cups are on the table?": all of them in a sentence, or that there are none."""
+    head = node.parts["head"]
+    assert isinstance(head, Leaf)
+    name = str(head.value[0]) if head.value else d.noun_words(head.start, head.end)
+    thing = described(d, singular(name, d.language), node, lies_about=True)
+    words = d.variable("description")
+    several = replace(thing, value=Text(plural(thing.text, d.language)))
+    look = Remember(words, Ask("describe", {"thing": sought(d, several)}))
+    none = d.sentence("none_seen", things=d.called(several.text))
+    seen = Holds(Ask("sees", {"thing": sought(d, thing)}))
+    before = (Remember(words, none), If(seen, (look,)))
+    return Report("only", Recall(words), thing.place, before=before)
+
+
+@meaning("looks_of")
+def looks_of(d: Discourse, node: Node) -> Report:
+    """How something looks; a description says it all."""
+    thing: Thing = (
+        d.get(node, "thing")
+        or d.get(node, "person_ref")
+        or Thing(Text(ANYONE), person=True, here=True)
+    )
+    extra = described(d, "", node)
+    place = thing.place or extra.place
+    return Report("only", Ask("describe", {"thing": sought(d, thing)}), place, name="description")
+
+
+@meaning("best_of")
+def best_of(d: Discourse, node: Node) -> Report:
+    """ "what is the biggest thing on the table?"."""
+    thing: Thing | None = d.get(node, "thing")
+    if thing is None:
+        thing = _best(d, node)
+    else:
+        more = described(d, thing.text, node)
+        thing = replace(
+            thing, place=thing.place or more.place, furniture=thing.furniture or more.furniture
+        )
+    value = sought(d, thing)
+    d.thing, d.thing_last = replace(thing, here=True), True
+    return Report("only", Ask("describe", {"thing": value}), thing.place, name="description")
+
+
+def _best(d: Discourse, node: Node) -> Thing:
+    head = node.parts.get("head")
+    noun = "object"
+    if isinstance(head, Leaf):
+        said = str(head.value[0]) if head.value else d.noun_words(head.start, head.end)
+        noun = singular(said, d.language)
+    return described(d, noun, node)
+
+
+@meaning("counted_info")
+def counted_info(d: Discourse, node: Node) -> Report:
+    """ "how many cups are in the kitchen?"."""
+    thing: Thing = d.get(node, "thing")
+    more = described(d, thing.text, node)
+    first: Where | None = d.get(node, "spot_first")
+    thing = replace(
+        thing,
+        value=more.value,
+        place=thing.place or more.place or (first.place if first else None),
+        furniture=thing.furniture or more.furniture or (first.furniture if first else None),
+    )
+    d.last_counted = thing
+    return count_report(d, thing)
+
+
+def count_report(d: Discourse, thing: Thing) -> Report:
+    phrase_words = d.called(thing.text)
+    spot = _spot_words(d, thing)
+    noun, _, rest = phrase_words.partition(" ") if thing.person else (phrase_words, "", "")
+    things = f"{plural(noun, d.language)} {rest}".strip()
+    looked_for = sought(d, thing)
+    count = Ask("count", {"thing": looked_for})
+    if thing.furniture and isinstance(looked_for, Text):  # "cups on the table"
+        things, spot = f"{things} {d.called(looked_for.value.removeprefix(thing.text).strip())}", ""
+    phrase = "counted_at" if spot and "counted_at" in d.language.phrases else "counted"
+    words = (
+        (("things", things), ("place", spot)) if phrase == "counted_at" else (("things", things),)
+    )
+    return Report(phrase, count, thing.place, words, name="count")
+
+
+def _spot_words(d: Discourse, thing: Thing) -> str:
+    """Where things were counted, as a name."""
+    if thing.furniture:
+        return place_called(thing.furniture, d.lexicon, d.language)
+    place = thing.place or d.at
+    return place_called(place.value, d.lexicon, d.language) if isinstance(place, Text) else ""
+
+
+@meaning("whether_seen")
+def whether_seen(d: Discourse, node: Node) -> Report:
+    """ "is there anybody in the waiting room?", "has Bob got a cup on his desk?"."""
+    d.get(node, "holder")  # whose desk "his desk" is
+    thing: Thing = d.get(node, "thing") or d.get(node, "person_ref")
+    more = described(d, thing.text, node)
+    thing = replace(
+        thing, place=thing.place or more.place, furniture=thing.furniture or more.furniture
+    )
+    named = named_some(d, thing)
+    return Report(
+        "yes_seen",
+        Ask("sees", {"thing": sought(d, thing)}),
+        thing.place,
+        (("thing", named),),
+        otherwise="nobody_seen" if named == d.language.phrase("somebody") else "no_seen",
+        name="seen",
+    )
+
+
+def named_some(d: Discourse, thing: Thing) -> str:
+    """A thing as one speaks of it for the first time: "somebody", "a cup"."""
+    if thing.person and thing.text == ANYONE:
+        return d.language.phrase("somebody")
+    called = d.called(thing.text)
+    return called if thing.known and thing.person else some(called, d.language)
+
+
+@meaning("where_found")
+def where_found(d: Discourse, node: Node) -> Steps:
+    """ "where is the stapler?": look for it, come back and say where it is."""
+    thing: Thing = d.get(node, "thing") or d.get(node, "person_ref")
+    called = d.called(thing.text)
+    known = called if thing.known and thing.person else the(called, d.language)
+    arguments: dict[str, Value] = {"thing": sought(d, thing)}
+    if thing.place is not None:
+        arguments["place"] = thing.place
+    name = d.variable("place")
+    start = d.start()
+    back = Call("goto", {"place": start})
+    told = d.say("it_is_at", thing=known, place=Recall(name))
+    d.went(start)
+    return [
+        If(
+            Holds(Ask("find", arguments)),
+            (Remember(name, Ask("location")), back, told),
+            (back, not_found(d, thing)),
+        )
+    ]
+
+
+@meaning("counted_too")
+def counted_too(d: Discourse, node: Node) -> news.Told:
+    """ "how many people are in the kitchen and how many in the lobby"."""
+    if d.last_counted is None:
+        raise NotUnderstood(d.language.phrase("count_what"))
+    spot: Where = d.get(node, "spot")
+    thing = replace(d.last_counted, place=spot.place, furniture=spot.furniture)
+    return told_report(d, count_report(d, thing))
