@@ -165,7 +165,7 @@ class _Sampler:
         listed = self.language.lists.get(name)
         if listed:
             names = [*names, *(" ".join(way) for ways in listed.values() for way in ways)]
-        plain = {
+        plain: dict[str, list[str]] = {
             "number": ["2", "10", "45"],
             "count": ["2", "3", "5"],
             "clock": ["9:30", "14:05"],
@@ -177,6 +177,7 @@ class _Sampler:
             "word": ["like"],
             "verb": ["kommt"],
             "zu_infinitive": ["anzurufen"],
+            "located": self.language.speech.get("located", {}).get("words", []),
             "remark": ["lunch is ready"],
             "unknown": ["pharmacy"],
             "stranger": ["Zorro"],

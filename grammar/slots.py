@@ -29,6 +29,8 @@ ASKED_IN_TEXT: Final = 12.0
 """Cost of a text that begins as a question put to the robot does: "who is there"."""
 RECEIVER_IN_TEXT: Final = 4.0
 """Cost of a text that begins with the one it is told to: "ihr ihre Proben sind fertig"."""
+WHERE_TO: Final = 2.5
+"""Cost of reading words that tell where something goes as where it is."""
 UNKNOWN_NAME: Final = 30.0
 """Cost of reading words as the name of something that is not known."""
 SPACED: Final = 0.5
@@ -208,7 +210,8 @@ class Slots:
         self._not_kept = self._joins.union(self.language.speech.get("text_ends", ()))
         clause = self.language.speech.get("clause", {})
         no_verbs = ("pronouns", "determiners", "prepositions", "and", "subordinating", "reflexive")
-        self._no_verbs = self._fillers.union(*(clause.get(each, ()) for each in no_verbs))
+        fillers = {filler[0] for filler in self.language.fillers if len(filler) == 1}
+        self._no_verbs = fillers.union(*(clause.get(each, ()) for each in no_verbs))
 
     def all(self) -> dict[str, Slot]:
         slots: dict[str, Slot] = {
@@ -228,6 +231,7 @@ class Slots:
             "{word}": self._word,
             "{verb}": self._verb,
             "{zu_infinitive}": self._zu_infinitive,
+            "{located}": self._located,
             "{remark}": self._remark,
             "{unknown}": self._unknown,
             "{stranger}": self._stranger,
@@ -388,13 +392,22 @@ class Slots:
                 return [(at + 1, FREE_WORD, particle + rest)] if len(rest) > 2 else []
         return []
 
+    def _located(self, at: int) -> list[Match]:
+        """A preposition that tells where something is, in a language that shows by what follows it
+        whether it tells where to instead: "in der Küche", "in die Küche"."""
+        data = self.language.speech.get("located", {})
+        if at >= len(self.tokens) or self.tokens[at].norm not in data.get("words", ()):
+            return []
+        after = self.tokens[at + 1].norm if at + 1 < len(self.tokens) else ""
+        return [(at + 1, WHERE_TO if after in data["not_before"] else 0.0, None)]
+
     # --- open slots
 
     def _text(self, at: int) -> list[Match]:
         """Free text of any length; it costs more where it goes on over another command."""
         matches: list[Match] = []
         cost = ASKED_IN_TEXT if self._judge.asks(at, len(self.tokens)) else 0.0
-        if self._judge.given_to(at):
+        if self._judge.given_to(at) or self._never_first(at):
             cost += RECEIVER_IN_TEXT
         for position in range(at, len(self.tokens)):
             token = self.tokens[position]
@@ -424,6 +437,13 @@ class Slots:
             cost += 0.0 if token.kind == "quote" else FREE_WORD
             matches.append((position + 1, cost, None))
         return matches
+
+    def _never_first(self, at: int) -> bool:
+        """Whether a pronoun stands here that no statement begins with: "mir dann, wer da ist"."""
+        before = self.tokens[at - 1] if at else None
+        told = before is not None and before.kind != "mark"
+        reported = before is not None and before.norm in self._judge.words.that
+        return told and not reported and self.tokens[at].norm in self._judge.words.never_first
 
     def _inside_fillers(self) -> frozenset[int]:
         """The tokens that belong to whole fillers: "tout" in "tout de suite", not in "tout va"."""

@@ -108,8 +108,9 @@ def _is_about(d: Discourse, survey: Survey, norms: Sequence[str]) -> bool:
 
 
 def _silent(d: Discourse) -> set[str]:
-    """Words that name no answer: function words, and verbs such as "agree"."""
-    return {*d.language.closed, *_words(d, "answering"), ",", "."}
+    """Words that name no answer: function words, fillers, and verbs such as "agree"."""
+    fillers = {filler[0] for filler in d.language.fillers if len(filler) == 1}
+    return {*d.language.closed, *fillers, *_words(d, "answering"), ",", "."}
 
 
 def _alike(one: str, other: str) -> bool:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import SETTING, Discourse, NotUnderstood, Steps, Thing, Where, as_value
 from grammar.meanings.finding import go, look_for, noun_of, where_sent
+from grammar.meanings.loops import looped
 from grammar.meanings.nouns import is_me
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
@@ -82,14 +83,37 @@ def in_place(d: Discourse, node: Node) -> Steps:
     return done_there(d, d.get(node, "spot"), node.parts["then"])
 
 
+@dataclass(frozen=True)
+class Settings:
+    """Both how often and where."""
+
+    often: Node
+    where: Node
+
+
+@meaning("settings")
+def settings(d: Discourse, node: Node) -> Settings:
+    """ "alle zehn Minuten im Wartezimmer", between a verb and its object."""
+    often, where = node.parts["often"], node.parts["where"]
+    assert isinstance(often, Node)
+    assert isinstance(where, Node)
+    return Settings(often, where)
+
+
 @meaning("setting")
 def setting(d: Discourse, node: Node) -> Steps:
-    """A command with a part that says where or when: "say in the kitchen that lunch is ready"."""
-    where_or_when: Where | Steps = d.build(node.parts[SETTING])
+    """A command with a part that says where, when or how often: "say in the kitchen that lunch is
+    ready"."""
+    where_or_when: Where | Steps | Node | Settings = d.build(node.parts[SETTING])
     parts = {name: part for name, part in node.parts.items() if name != SETTING}
     bare = replace(node, parts=parts)
     if isinstance(where_or_when, Where):
         return done_there(d, where_or_when, bare)
+    if isinstance(where_or_when, Node):
+        return looped(d, where_or_when, lambda: d.build(bare))
+    if isinstance(where_or_when, Settings):
+        outer = replace(bare, parts={**parts, SETTING: where_or_when.where})
+        return looped(d, where_or_when.often, lambda: setting(d, outer))
     return [*where_or_when, *d.build(bare)]
 
 

@@ -48,10 +48,17 @@ def noun_of(d: Discourse, node: Node) -> Thing:
     if thing is None:
         person: Thing = d.build(node.parts["person_ref"])
         thing = Thing(Text(ANYONE), person=True, here=True) if is_me(person) else person
+    thing = in_state(d, node, thing)
     spot: Where | None = d.get(node, "from")
     if spot is not None:
         return replace(thing, place=spot.place, furniture=spot.furniture)
     return thing
+
+
+def in_state(d: Discourse, node: Node, thing: Thing) -> Thing:
+    """A thing with what is said of it behind its noun: that a bed is free is about a free bed."""
+    state = d.get(node, "state")
+    return thing if state is None else replace(thing, value=Text(f"{state} {thing.text}"))
 
 
 def together(several: list[Thing]) -> Thing:

@@ -71,6 +71,8 @@ def until(d: Discourse, node: Node) -> Steps:
 def done_until(d: Discourse, body: Steps, looking: Steps, condition: Condition) -> Steps:
     """Steps again and again until something is so; what goes on by itself only until then."""
     condition = at_least(condition)
+    if body == wait_until(condition):  # "wait for me until I am back"
+        return [*looking, *body]
     if stays(body):
         return [*held(body), *looking, *wait_until(condition)]
     return until_answered(d, condition, [*body, *looking])

@@ -371,8 +371,10 @@ def sought(d: Discourse, thing: Thing) -> Value:
         thing = replace(thing, value=Text(f"{thing.count} {thing.text}"), count=None)
     named = thing.person and thing.known  # somebody by name is told by nothing else
     if thing.furniture and thing.preposition and isinstance(thing.value, Text) and not named:
-        near = d.language.phrase("the", noun=thing.furniture)
-        return Text(f"{thing.value.value} {thing.preposition} {near}")
+        near = d.language.phrase(
+            "by_furniture", preposition=thing.preposition, furniture=thing.furniture
+        )
+        return Text(f"{thing.value.value} {near}")
     if thing.furniture and isinstance(thing.value, Text) and not thing.person:
         on = d.language.phrase("on_furniture", furniture=thing.furniture)
         return Text(f"{thing.value.value} {on}")

@@ -7,7 +7,7 @@ from dataclasses import replace
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
 from grammar.meanings import news
-from grammar.meanings.finding import not_found
+from grammar.meanings.finding import in_state, not_found
 from grammar.meanings.nouns import described
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
@@ -152,7 +152,9 @@ def whether_seen(d: Discourse, node: Node) -> Report:
     thing: Thing = d.get(node, "thing") or d.get(node, "person_ref")
     more = described(d, thing.text, node)
     thing = replace(
-        thing, place=thing.place or more.place, furniture=thing.furniture or more.furniture
+        in_state(d, node, thing),
+        place=thing.place or more.place,
+        furniture=thing.furniture or more.furniture,
     )
     named = named_some(d, thing)
     return Report(
