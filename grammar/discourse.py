@@ -236,6 +236,8 @@ class Discourse:
     """What was counted last: "how many people are here, and how many in the lobby?"."""
     counted: Any = None
     """The step that counts in the last round, the place it is at, and what is counted."""
+    after_round: tuple[Thing | None] | None = None
+    """Who is told, when a round is done, what was counted at each place; None for the speaker."""
     told: Step | None = None
     """The last step, if it has told the speaker all there is to tell."""
     report_step: Step | None = None

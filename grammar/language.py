@@ -82,6 +82,10 @@ class Language:
         """The normal forms of the words of a text."""
         return _tokens_of(self, text)
 
+    def words_called(self, name: str) -> frozenset[str]:
+        """The normal forms of a list of words in the data on speech."""
+        return _words_called(self, name)
+
     def phrase(self, name: str, /, **values: object) -> str:
         """What the language says by this name, with the values put in."""
         return self.phrases[name].format(**values)
@@ -90,6 +94,12 @@ class Language:
 @functools.lru_cache(maxsize=10_000)  # mostly names and phrases, asked for again and again
 def _tokens_of(language: Language, text: str) -> tuple[str, ...]:
     return words_of(text, language.spelling)
+
+
+@functools.lru_cache(maxsize=1_000)
+def _words_called(language: Language, name: str) -> frozenset[str]:
+    words = map(str, language.speech.get(name, ()))
+    return frozenset(norm for word in words for norm in language.tokens_of(word))
 
 
 def spoken_name(name: str, language: Language) -> str:

@@ -118,4 +118,4 @@ def _alike(one: str, other: str) -> bool:
 
 
 def _words(d: Discourse, name: str) -> set[str]:
-    return set(d.language.speech.get(name, ()))
+    return set(d.language.words_called(name))

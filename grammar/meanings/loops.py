@@ -15,6 +15,7 @@ from grammar.meanings.conditions import condition_of
 from grammar.meanings.control import guard_finds
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
+from grammar.meanings.rounds import told_after_round
 from grammar.meanings.surveys import until_answered
 from grammar.meanings.waiting import at_least, wait_until
 from grammar.plan import (
@@ -306,7 +307,7 @@ def each_place(d: Discourse, items: Value, steps: Leaf | Node | None, goes: bool
         body = [going, *body]
     d.at = None if body else before
     d.with_person = None
-    return [ForEach(variable, items, tuple(body))]
+    return told_after_round(d, ForEach(variable, items, tuple(body)))
 
 
 @meaning("same_at")

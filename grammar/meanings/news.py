@@ -140,6 +140,23 @@ def told_again(d: Discourse, person: Thing | None) -> Steps | None:
     return speak_to(d, person, found.words)
 
 
+def in_round(d: Discourse) -> bool:
+    """Whether the robot is at one of the places that it goes round."""
+    return d.in_loop and isinstance(d.at, Recall) and d.at == d.place
+
+
+def told_at_end(d: Discourse, person: Thing | None) -> bool:
+    """Whether what was just counted is told when the round of places is done, for nobody is told of
+    it at any of them: "go to every ward, count the patients and tell me how many"."""
+    found = d.report
+    if found is None or not in_round(d):
+        return False
+    if found.name != "count" or not any(each is d.report_step for each in nodes(tuple(d.done))):
+        return False
+    d.after_round = (person,)
+    return True
+
+
 def take_back(d: Discourse, found: News) -> None:
     """What was to be told to the speaker, because nobody else was named, is told elsewhere; the way
     back then comes to nothing."""
@@ -195,22 +212,10 @@ def said_in(d: Discourse, node: Node) -> Said | None:
     return said
 
 
-@meaning("survey_report")
-def survey_report(d: Discourse, node: Node) -> Steps:
-    """ "tell me who said yes", "report how many of each", "tell Alice what they said"."""
-    option = d.get(node, "answer")
-    told = polled(d, str(node.production.fixed["kind"]), str(option) if option else None)
-    person: Thing | None = d.get(node, "whom")
-    going = go_back(d, []) if person is None or is_me(person) else []
-    return [*going, *speak_to(d, person, told.words)]
-
-
-def polled(d: Discourse, kind: str, said: Said | str | None) -> Told:
+def polled(d: Discourse, kind: str, said: Said | None) -> Told:
     surveys = asked_before(d)
-    if isinstance(said, Said):
+    if said is not None:
         d.said = wanted(d, surveys[-1], said)
-    elif said is not None:
-        d.said = Wanted((said,))
     answer: Wanted = d.said or yes(d)
     made = {
         "who": _who,

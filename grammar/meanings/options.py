@@ -41,10 +41,11 @@ def options_of(d: Discourse, node: Node) -> tuple[str, ...]:
 
 def numbers_offered(d: Discourse, start: int, end: int) -> tuple[str, ...]:
     """ "from one to five": the numbers, if these words are among some."""
-    for first, between in d.language.speech.get("scales", ()):
+    for scale in d.language.speech.get("scales", ()):
+        words = tuple(norm for word in scale for norm in d.language.tokens_of(word))
         for at in range(start, end - 3):
             low, high = d.tokens[at + 1].value, d.tokens[at + 3].value
-            if (d.tokens[at].norm, d.tokens[at + 2].norm) != (first, between):
+            if (d.tokens[at].norm, d.tokens[at + 2].norm) != words:
                 continue
             if low is not None and high is not None and 0 < high - low < MOST_OPTIONS:
                 return tuple(str(number) for number in range(int(low), int(high) + 1))
@@ -94,7 +95,7 @@ def split_options(d: Discourse, start: int, end: int) -> tuple[str, ...]:
 
 
 def without_little_words(d: Discourse, start: int, end: int) -> tuple[int, int]:
-    kept = d.language.speech.get("negations", ())  # "not at all"
+    kept = d.language.words_called("negations")  # "not at all"
     while start < end - 1 and d.tokens[start].norm in d.language.closed:
         if d.tokens[start].norm in kept:
             break
@@ -104,7 +105,7 @@ def without_little_words(d: Discourse, start: int, end: int) -> tuple[int, int]:
 
 def _without_what_follows(d: Discourse, groups: list[tuple[int, int]]) -> tuple[int, int]:
     """The last choice without what is said of all of them: "pasta or salad for lunch"."""
-    ends = set(d.language.speech.get("after_options", ()))
+    ends = d.language.words_called("after_options")
     start, end = groups[-1]
     if len(groups) < 2 or any(ends & set(d.norms(begin + 1, last)) for begin, last in groups[1:-1]):
         return start, end

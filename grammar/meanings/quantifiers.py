@@ -68,8 +68,8 @@ Make = Callable[[], Steps]
 TOGETHER: Final = frozenset(
     {
         "answer", "answers_reached", "ask", "ask_again", "ask_to", "find", "greet", "phrase",
-        "report", "same_for", "say", "say_it", "say_that", "survey_report", "tell", "tell_joke",
-        "tell_that", "wait_for",
+        "report", "same_for", "say", "say_it", "say_that", "tell", "tell_joke", "tell_that",
+        "wait_for",
     }
 )  # fmt: skip
 """Commands that know themselves what to do with several people."""

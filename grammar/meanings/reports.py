@@ -91,6 +91,10 @@ def report(d: Discourse, node: Node) -> Steps:
         steps.append(Call("goto", {"place": start}))
         d.went(start)
         return [*steps, *told(d, found, None)]
+    if back and asked_by_me and found.name == "count" and news.in_round(d):
+        steps += told(d, found, None)
+        d.after_round = (None,)
+        return steps
     far = person is not None and not is_here(d, person) and found.about_here
     if far and found.value is not None and not isinstance(found.value, Recall):
         name = d.variable(found.name)  # found out here, told there
@@ -152,6 +156,8 @@ def tell_that(d: Discourse, node: Node) -> Steps:
 
 def told_again(d: Discourse, person: Thing | None) -> Steps:
     """Tell somebody what was told or answered last."""
+    if news.told_at_end(d, person):
+        return []
     again = news.told_again(d, person)
     if again is not None:
         return again
@@ -309,6 +315,8 @@ def tell_me_that(d: Discourse, node: Node) -> Steps:
 
 
 def tell_speaker(d: Discourse) -> Steps:
+    if news.told_at_end(d, None):
+        return []
     again = news.told_again(d, None)
     if again is not None:
         return again

@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
 from grammar.meanings.finding import speak_to
-from grammar.meanings.news import News, Told, go_back, take_back
+from grammar.meanings.news import News, Told, go_back, last_found, take_back
 from grammar.meanings.nouns import is_me, thing_it
 from grammar.meanings.places import kind_places, sought
 from grammar.meanings.registry import meaning
@@ -103,19 +103,6 @@ def brought_back(d: Discourse, node: Node, told: Told) -> Steps:
     return [Call("goto", {"place": start}), *told.words]
 
 
-@meaning("round_report")
-def round_report(d: Discourse, node: Node) -> Steps:
-    """ "go to every ward and count the patients, then tell me the total"."""
-    person: Thing | None = d.get(node, "whom")
-    if d.report is not None and not isinstance(d.done[-1] if d.done else None, ForEach):
-        from grammar.meanings.reports import told_again
-
-        return told_again(d, person)
-    told = summed_up(d, str(node.production.fixed["kind"]))
-    going = go_back(d, []) if person is None or is_me(person) else []
-    return [*going, *speak_to(d, person, told.words)]
-
-
 @meaning("round_told")
 def round_told(d: Discourse, node: Node) -> Told:
     """ "the total", "how many cups there are in each", "where most are"."""
@@ -125,6 +112,9 @@ def round_told(d: Discourse, node: Node) -> Told:
     if thing is not None and "kind" in node.parts and nothing_yet:
         # "tell me which ward has the fewest beds": to count them is left to do
         return around(d, kind, thing, kind_places(d, d.get(node, "kind")))
+    counted_here = d.report is not None and d.report.name == "count" and last_round(d) is None
+    if kind in ("total", "each") and d.counted is None and counted_here:
+        return last_found(d)  # "count the patients and tell me the total", in one place
     return summed_up(d, kind, thing)
 
 
@@ -160,6 +150,20 @@ def _counting(d: Discourse, thing: Thing | None) -> tuple[Remember, Recall, str]
             d.done[at] = replace(loop, steps=(*loop.steps, counting))
             return counting, here, things_called(d, thing)
     raise NotUnderstood(d.language.phrase("count_what"))
+
+
+def told_after_round(d: Discourse, loop: ForEach) -> Steps:
+    """A round, and what was found out in it told behind it."""
+    if d.after_round is None:
+        return [loop]
+    (person,), d.after_round = d.after_round, None
+    d.done.append(loop)
+    words = summed_up(d, "each").words
+    done = d.done.pop()
+    d.news, d.told = News(words, person is None), words[-1]
+    if person is None or is_me(person):
+        return [done, *go_back(d, [done]), *words]
+    return [done, *speak_to(d, person, words)]
 
 
 def _holds(step: Step, inner: Step | None) -> bool:
@@ -301,7 +305,7 @@ def for_each_place_such(d: Discourse, node: Node) -> Steps:
 
 STAYS_OUTSIDE: Final = frozenset(
     {
-        *("news", "survey_report", "round_report", "round_count", "round_look", "compared"),
+        *("news", "round_count", "compared"),
         *("come_back", "go", "go_places", "go_person", "go_find", "dock", "stop", "bring_too"),
         *("for_each_place", "for_each_place_such", "for_each_of_them", "check_each_place"),
         *("do_that_times", "do_that_again", "do_that_until", "do_that_while", "do_that_forever"),
@@ -365,20 +369,9 @@ def inside(part: Leaf | Node) -> Iterator[Node]:
             yield from inside(each)
 
 
-@meaning("round_look")
-def round_look(d: Discourse, node: Node) -> Steps:
-    """ "which offices are empty?", "tell me which wards have visitors"."""
-    trait = d.get(node, "place_trait") if "place_trait" in node.parts else trait_seen(d, node)
-    return brought_back(d, node, looked_around(d, node, trait))
-
-
 @meaning("places_told")
 def places_told(d: Discourse, node: Node) -> Told:
     """ "which labs have no stapler", "how many offices are empty", "which of them are"."""
-    return looked_around(d, node, None)
-
-
-def looked_around(d: Discourse, node: Node, trait: Trait | None) -> Told:
     named = any(name in node.parts for name in ("kinds", "place_list"))
     named = named or bool(node.production.fixed.get("all"))
     at = None if named else last_round(d) if last_round(d) is not None else round_of_visits(d)
@@ -386,11 +379,9 @@ def looked_around(d: Discourse, node: Node, trait: Trait | None) -> Told:
         raise NotUnderstood(d.language.phrase("which_places"))
     loop = None if at is None else d.done[at]
     place = loop.variable if isinstance(loop, ForEach) else d.variable("place")
-    if trait is None:
-        before, d.at = d.at, Recall(place)
-        trait = d.get(node, "place_trait")
-        d.at = before
-    assert trait is not None
+    before, d.at = d.at, Recall(place)
+    trait: Trait = d.get(node, "place_trait")
+    d.at = before
     found = d.variable("found")
     noted: Step = If(trait.condition, (Collect(found, Recall(place)),))
     going: Steps = [Remember(found, Items(()))]
