@@ -74,7 +74,7 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
                 turned = data.get("verbs", {}).get(word) or base_form(d, spelled)
                 changed[number] = word if word in data["unchanged"] else turned
                 subject = False
-            clitic = at > start and d.tokens[at - 1].norm in data.get("subjects_before", ())
+            clitic = at > start and _before_verb(d, at, end, data)
             reflexive = data.get("reflexives", {}).get(word) if subject else None
             you = (
                 reflexive
@@ -175,6 +175,19 @@ def _of_another(
         if (boundary or possessed) and _is_somebody(d, token, data):
             return True
     return False
+
+
+def _before_verb(d: Discourse, at: int, end: int, data: Mapping[str, Any]) -> bool:
+    """Whether the word here is an object before its verb, and no article: "Bob la cherche", "le
+    médecin va la recevoir"."""
+    before = d.tokens[at - 1].norm
+    if before in data.get("subjects_before", ()):
+        return True
+    if d.tokens[at].norm not in data.get("objects", {}) or at + 1 >= end:
+        return False
+    if before in data.get("modals", ()):
+        return re.search(data["infinitive"], d.tokens[at + 1].norm) is not None
+    return _is_somebody(d, d.tokens[at - 1], data)
 
 
 def _is_somebody(d: Discourse, token: Token, data: Mapping[str, Any]) -> bool:

@@ -146,12 +146,14 @@ def in_round(d: Discourse) -> bool:
 
 
 def told_at_end(d: Discourse, person: Thing | None) -> bool:
-    """Whether what was just counted is told when the round of places is done, for nobody is told of
-    it at any of them: "go to every ward, count the patients and tell me how many"."""
+    """Whether what was just counted or seen is told when the round of places is done, for nobody is
+    told of it at any of them: "go to every ward, count the patients and tell me how many"."""
     found = d.report
     if found is None or not in_round(d):
         return False
-    if found.name != "count" or not any(each is d.report_step for each in nodes(tuple(d.done))):
+    if not found.about_here or found.value is None:
+        return False
+    if not any(each is d.report_step for each in nodes(tuple(d.done))):
         return False
     d.after_round = (person,)
     return True

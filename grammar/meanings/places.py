@@ -307,6 +307,8 @@ def place_tail(d: Discourse, node: Node) -> Value:
     before = d.place.value if isinstance(d.place, Text) else ""
     kind = next((place.kind for place in d.lexicon.places if place.name == before), None)
     alike = [name.name for name in leaf.value if name.kind == kind and name.name != before]
+    if kind is None and len(leaf.value) == 1:  # "every ward but c"
+        alike = [leaf.value[0].name]
     if len(alike) != 1:
         raise NotUnderstood(
             d.language.phrase("unknown_place", name=d.words(node.start, node.end)),

@@ -91,7 +91,8 @@ def report(d: Discourse, node: Node) -> Steps:
         steps.append(Call("goto", {"place": start}))
         d.went(start)
         return [*steps, *told(d, found, None)]
-    if back and asked_by_me and found.name == "count" and news.in_round(d):
+    seen_here = found.about_here and found.value is not None
+    if back and asked_by_me and seen_here and news.in_round(d):
         steps += told(d, found, None)
         d.after_round = (None,)
         return steps

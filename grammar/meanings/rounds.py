@@ -157,13 +157,30 @@ def told_after_round(d: Discourse, loop: ForEach) -> Steps:
     if d.after_round is None:
         return [loop]
     (person,), d.after_round = d.after_round, None
-    d.done.append(loop)
-    words = summed_up(d, "each").words
-    done = d.done.pop()
-    d.news, d.told = News(words, person is None), words[-1]
+    if d.report.name == "count":
+        d.done.append(loop)
+        words, steps = summed_up(d, "each").words, [d.done.pop()]
+    else:
+        words, steps = _lines(d, loop)
+    d.report, d.news, d.told = None, News(words, person is None), words[-1]
     if person is None or is_me(person):
-        return [done, *go_back(d, [done]), *words]
-    return [done, *speak_to(d, person, words)]
+        return [*steps, *go_back(d, steps), *words]
+    return [*steps, *speak_to(d, person, words)]
+
+
+def _lines(d: Discourse, loop: ForEach) -> tuple[Steps, Steps]:
+    """What was seen at each place of a round: how it is told, and the round with notes of it."""
+    found, here = d.report, Recall(loop.variable)
+    noted = d.variable("found")
+    if found.otherwise is not None:  # "see whether anybody is there": where there is somebody
+        notes: Steps = [If(Holds(found.value), (Collect(noted, here),))]
+        words = _found_places(d, "which", noted)
+    else:
+        seen = d.variable(found.name)
+        line = Sentence((here, Text(": "), Recall(seen)))
+        notes = [Remember(seen, found.value), Collect(noted, line)]
+        words = [d.say(found.phrase, **dict(found.words), value=Recall(noted))]
+    return words, [Remember(noted, Items(())), replacing(loop, d.report_step, notes)]
 
 
 def _holds(step: Step, inner: Step | None) -> bool:

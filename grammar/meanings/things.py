@@ -31,7 +31,8 @@ def find(d: Discourse, node: Node) -> Steps:
         )
     if d.found_already:
         return []
-    everywhere = node.production.fixed.get("everywhere", False)
+    missed = d.missing is not None and (d.missing.value, d.missing.place) == (thing.value, d.at)
+    everywhere = node.production.fixed.get("everywhere", missed)
     if thing.place is None and d.at is not None and not everywhere:
         thing = replace(thing, place=d.at)  # "go to the kitchen and find the cup"
     return look_for(d, thing)
