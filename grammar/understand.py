@@ -24,6 +24,7 @@ from grammar.language import Language, load_language
 from grammar.lexicon import Lexicon
 from grammar.naming import joined_up, place_called
 from grammar.plan import Plan, Text, Value
+from grammar.plausible import implausible
 from grammar.readings import Read, read
 from grammar.refusals import forbidden, no_thing, signs, why_not
 from grammar.requests import Request
@@ -244,6 +245,10 @@ class Reader:
             message = self.language.phrase(phrase, thing=thing, name=thing)
             return replace(rejected(self.text, message, self.context), unclear=thing)
         plan = returning(without_unused(plan))
+        senseless = implausible(plan)
+        if senseless is not None:
+            message = self.language.phrase(senseless.value)
+            return rejected(self.text, message, self.context)
         return Understanding(
             self.text,
             "ok",

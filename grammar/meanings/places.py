@@ -240,10 +240,16 @@ def nearest(words: str, names: tuple[Name, ...]) -> tuple[str, ...]:
     from rapidfuzz import fuzz, process
 
     choices = {text: name.name for name in names for text in (name.name, *name.aliases)}
+    if _is_numbered(words):  # no room without a number is like "room 3"
+        choices = {text: name for text, name in choices.items() if _is_numbered(text)}
     found = process.extract(
         words.lower(), list(choices), scorer=fuzz.ratio, limit=6, score_cutoff=LIKE_ENOUGH
     )
     return tuple(dict.fromkeys(choices[text] for text, _, _ in found))[:3]
+
+
+def _is_numbered(name: str) -> bool:
+    return any(letter.isdigit() for letter in name)
 
 
 @meaning("where")
