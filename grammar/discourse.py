@@ -242,6 +242,8 @@ class Discourse:
     """The last step, if it has told the speaker all there is to tell."""
     report_step: Step | None = None
     """The step that tells it."""
+    report_asked: Any = None
+    """The report as it was asked for, before it was known how it is told."""
     bound: dict[int, Any] = field(default_factory=dict)
     """What noun phrases that speak of several stand for within their loop, by their `id`."""
     taking_apart: bool = False
@@ -252,6 +254,8 @@ class Discourse:
     """Whether the robot is where it is to meet people, so that things need not be there, too."""
     loops: dict[str, Value] = field(default_factory=dict)
     """The places that loops go round, by their variables."""
+    listed_last: Steps = field(default_factory=list)
+    """The last steps that look for several things and tell which there are."""
     collected: Thing | None = None
     """Several things that are to be collected, before it was said where to."""
     delivered_in: Step | None = None

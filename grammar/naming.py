@@ -8,6 +8,7 @@ by their first alias, and by the words that the language lists under `speech: {n
 from __future__ import annotations
 
 import functools
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
@@ -106,9 +107,12 @@ def the(noun: str, language: Language) -> str:
 def some(noun: str, language: Language) -> str:
     """The noun with its indefinite article."""
     words = _words(language)
-    if words is None:
-        return language.phrase("a", noun=noun)
-    return words.joined_up(words.nouns.indefinite(noun))
+    if words is not None:
+        return words.joined_up(words.nouns.indefinite(noun))
+    for pattern, form in language.speech.get("indefinite", ()):
+        if re.match(pattern, noun, re.IGNORECASE):
+            return str(form).format(noun=noun)
+    return language.phrase("a", noun=noun)
 
 
 def place_called(name: str, lexicon: Lexicon, language: Language) -> str:

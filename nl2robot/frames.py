@@ -47,6 +47,9 @@ RELATIONS: Final = {
 SOMEWHERE: Final = re.compile(r" (on|in|at|near|by|under|next to|behind|in front of) the (.*)")
 """How plans say on which furniture a thing is."""
 GENDERS: Final = {"male": "man boy male gentleman", "female": "woman girl female lady"}
+PEOPLE: Final = frozenset(
+    {"person", "child", "visitor", *(noun for nouns in GENDERS.values() for noun in nouns.split())}
+)
 POSES: Final = ("lying", "sitting", "standing")
 GESTURES: Final = ("waving", "raising", "pointing")
 DESCRIBED: Final = frozenset({"pose", "gender"})
@@ -218,11 +221,17 @@ class _Walk:
     results: dict[str, Frame] = field(default_factory=dict)
     spots: set[str] = field(default_factory=set)
     """Variables that keep where the robot was."""
+    sights: set[str] = field(default_factory=set)
+    """Variables that keep what was looked for: telling them is the end of looking."""
+    glance: _Step | None = None
+    """The last step, if it looked at what is there."""
 
     def steps(self, steps: tuple[Any, ...]) -> None:
         for step in steps:
             if isinstance(step, Call):
                 self.call(step.method, step.arguments, step.save_as)
+            elif isinstance(step, If) and self._tells_sights(step):
+                self._arrive()
             elif isinstance(step, If):
                 for ask in _asks(step.condition):
                     self.call(ask.method, ask.arguments, None)
@@ -331,6 +340,35 @@ class _Walk:
     def _ask(self, arguments: dict[str, Value], save_as: str | None) -> None:
         self._speak(Frame("ask"))
 
+    def _tells_sights(self, step: If) -> bool:
+        """Whether it says whether something was seen, and nothing else."""
+        says = (*step.then, *step.otherwise)
+        names = {each.name for each in _inside(step.condition, Recall)}
+        seen = [ask for ask in _asks(step.condition) if ask.method == "sees"]
+        if not step.otherwise or not all(_is_say(each) for each in says):
+            return False
+        for ask in seen:
+            self._sees(ask.arguments, None)
+        return bool(seen) or bool(names & self.sights)
+
+    def _sees(self, arguments: dict[str, Value], save_as: str | None) -> None:
+        """Looking whether something is there is looking for it."""
+        self._look(arguments, save_as)
+
+    def _objects(self, arguments: dict[str, Value], save_as: str | None) -> None:
+        self._look({"thing": Text("object")}, save_as)
+
+    def _look(self, arguments: dict[str, Value], save_as: str | None) -> None:
+        text = _text(arguments["thing"])
+        features = self._noun(text) | ({"at"} if self.at == "at" else set())
+        self._arrive()
+        if self.done and self.done[-1] is self.glance:
+            self.done.pop()  # seen first, and then described
+        self.glance = self._do(_frame("find", (f"thing.{each}" for each in features)))
+        self.looked[text] = self.glance
+        if save_as is not None:
+            self.sights.add(save_as)
+
     def _say(self, arguments: dict[str, Value], save_as: str | None) -> None:
         said = arguments["text"]
         asked = {ask.method: ask for ask in _inside(said, Ask)}
@@ -338,6 +376,9 @@ class _Walk:
         if self.looked and ("location" in asked or self.spots & set(names)):
             self._arrive()
             return  # where it was found
+        if self.sights & set(names):
+            self._arrive()
+            return  # what was seen
         for method in TOLD & asked.keys():
             self.call(method, asked[method].arguments, method)
             names.append(method)
@@ -370,12 +411,16 @@ class _Walk:
     def _describe(self, arguments: dict[str, Value], save_as: str | None) -> None:
         text = _text(arguments["thing"])
         best = any(each.startswith("superlative") for each in self._noun(text))
+        if not best and not (PEOPLE | self.names) & set(text.split()):
+            self._look(arguments, save_as)
+            return
         self._keep(save_as, "say", text, ("what=which" if best else "asked=description",))
 
     def _location(self, arguments: dict[str, Value], save_as: str | None) -> None:
         self.spots |= {save_as} if save_as is not None else set()
 
     def _people(self, arguments: dict[str, Value], save_as: str | None) -> None:
+        self._met()  # the names are those of whoever was looked for there
         self._keep(save_as, "say", "", ("asked=name",))
 
     def _keep(self, save_as: str | None, head: str, text: str, what: Iterable[str]) -> None:
@@ -419,6 +464,10 @@ class _Walk:
 
 def _text(value: Value) -> str:
     return value.value if isinstance(value, Text) else ""
+
+
+def _is_say(step: Any) -> bool:
+    return isinstance(step, Call) and step.method == "say"
 
 
 def _asks(node: Any) -> list[Ask]:

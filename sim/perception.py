@@ -55,6 +55,8 @@ class Phrase:
     """Where it is of that, for who looks: "left", "behind"; None for "on", "near" and the like."""
     rank: int
     """Which one by the superlative, from 1 on: "second biggest"."""
+    number: int | None
+    """How many at most: "3 biggest things"; None where that is not said."""
     whole: str
     """All of it as one name."""
 
@@ -70,6 +72,7 @@ def parse(text: str) -> Phrase:
             head, place, side = before, after, words().sides.get(relation)
     superlatives = words().superlatives
     tokens = _tokens(head)
+    number = int(tokens.pop(0)) if len(tokens) > 1 and tokens[0].isdecimal() else None
     measure = next((superlatives[token] for token in tokens if token in superlatives), None)
     rank = 1
     silent = words().fillers | superlatives.keys()
@@ -77,7 +80,7 @@ def parse(text: str) -> Phrase:
         rank = next((words().ordinals[token] for token in tokens if token in words().ordinals), 1)
         silent |= words().ordinals.keys()
     kept = [token for token in tokens if token not in silent]
-    return Phrase(text, tuple(kept), measure, place, side, rank, whole)
+    return Phrase(text, tuple(kept), measure, place, side, rank, number, whole)
 
 
 def visible(hospital: Hospital, thing: str) -> list[Seen]:
@@ -248,6 +251,8 @@ def spot_of(sight: Sight) -> tuple[float, float]:
 def _is_at(hospital: Hospital, sight: Sight, where: str) -> bool:
     """Whether it is on, in or near the furniture or place of that name."""
     tokens = [token for token in _tokens(where) if token not in words().fillers]
+    if not tokens:  # "on the floor"
+        return True
     if isinstance(sight, Item) and sight.on and _explains(_words_of((sight.on,)), tokens):
         return True
     x, y = spot_of(sight)
@@ -320,17 +325,18 @@ def _is_beside(hospital: Hospital, sight: Sight, side: str, noun: str) -> bool:
 
 
 def pick(hospital: Hospital, thing: str, sights: Sequence[Sight]) -> list[Sight]:
-    """Those of the sights that a superlative leaves; the nearest first."""
+    """Those of the sights that a superlative or a number leaves; the nearest first."""
     robot = hospital.robot.position
     near = sorted(sights, key=lambda sight: math.dist(robot, spot_of(sight)))
-    measure = parse(thing).measure
+    phrase = parse(thing)
+    measure, rank = phrase.measure, phrase.rank
     if measure is None or not near:
-        return near
+        return near[: phrase.number]
     score = _measures(hospital, near)[measure]
     known = [(value, -i) for i, sight in enumerate(near) if (value := score(sight)) is not None]
-    rank = parse(thing).rank
     if len(known) >= rank:
-        return [near[-sorted(known, reverse=True)[rank - 1][1]]]
+        best = sorted(known, reverse=True)[rank - 1 : rank - 1 + (phrase.number or 1)]
+        return [near[-at] for _, at in best]
     return [_by_words(near, measure)] if rank == 1 else []
 
 
@@ -413,7 +419,9 @@ def _seen(hospital: Hospital, sight: Sight) -> Seen:
 
 
 def _is_plural(thing: str, sights: Sequence[Sight]) -> bool:
-    """Whether a phrase asks for all of them: "objects", "red cups"."""
+    """Whether a phrase asks for all or several of them: "objects", "red cups", "2 biggest cups"."""
+    if (parse(thing).number or 1) > 1:
+        return True
     known = frozenset().union(*(_vocabulary(sight) for sight in sights))
     return any(token in words().several or token not in known for token in parse(thing).words)
 

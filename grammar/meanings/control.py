@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from grammar.chart import Node
+from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, NotUnderstood, Steps, Thing
 from grammar.meanings.branches import exclusive
 from grammar.meanings.finding import go, not_found
@@ -103,7 +103,27 @@ def found_thing(d: Discourse, step: Call) -> Thing:
 @meaning("reversed")
 def reversed_(d: Discourse, node: Node) -> Steps:
     """ "before you go, say goodbye" and "go after you have said goodbye"."""
-    return [*d.build(node.parts["earlier"]), *d.build(node.parts["later"])]
+    earlier, later = node.parts["earlier"], node.parts["later"]
+    if later.start < earlier.start and d.thing is None:  # "put the cup here after you wash it"
+        before = d.scene()
+        d.sequence(lambda: d.done.extend(d.build(later)))
+        thing, thing_last = d.thing, d.thing_last
+        d.set_scene(before)
+        d.thing, d.thing_last = thing, thing_last
+    at = len(d.done)
+    d.done.extend(d.build(earlier))
+    for part in clauses(later):  # each may take back what was done before it
+        d.done.extend(d.build(part))
+    result = d.done[at:]
+    del d.done[at:]
+    return result
+
+
+def clauses(part: Leaf | Node) -> list[Leaf | Node]:
+    """The first clause of several, and the rest."""
+    if not isinstance(part, Node) or part.means != "steps":
+        return [part]
+    return [part.parts[name] for name in ("first", "rest") if name in part.parts]
 
 
 @meaning("corrected")

@@ -8,6 +8,7 @@ from typing import Final
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Thing, Where
 from grammar.meanings.places import (
+    home_of,
     listed,
     nearest,
     only_taken_apart,
@@ -30,6 +31,8 @@ def mods(d: Discourse, node: Node) -> list[Where | str]:
     says_nothing = isinstance(part, Node) and not part.parts and part.production.means is None
     first = None if says_nothing else d.build(part)  # "the bottle you can find"
     found = [first] if isinstance(first, Where) or (isinstance(first, str) and first) else []
+    if isinstance(first, list):
+        found = first
     words = d.norms(node.parts["first"].start, node.parts["first"].end)
     if words[-1] in d.language.speech.get("pointing", ()):
         found = []  # "the woman there": nothing that tells her from others
@@ -88,6 +91,12 @@ def superlative_after(d: Discourse, node: Node) -> str:
     return f"{SUPERLATIVE}{d.get(node, 'superlative')}"
 
 
+@meaning("side_of")
+def side_of(d: Discourse, node: Node) -> list[Where | str]:
+    """ "on the left side of the shelf": the leftmost of what is there."""
+    return [descriptor_fixed(d, node), d.get(node, "spot")]
+
+
 @meaning("relation")
 def relation(d: Discourse, node: Node) -> Where | str:
     """ "behind the cup": a descriptor; with its place if the other thing has one."""
@@ -97,7 +106,8 @@ def relation(d: Discourse, node: Node) -> Where | str:
     words = f"{node.production.fixed['relation']} {other.text}"
     if other.place is not None or other.furniture is not None:
         return Where(other.place, other.furniture, words)
-    return words
+    home = home_of(d, other.text)  # "behind the sofa"
+    return words if home is None else Where(home, None, words)
 
 
 SUPERLATIVE = "\0"
@@ -357,8 +367,6 @@ def by_furniture(d: Discourse, person: Thing) -> Thing:
         return person
     if person.preposition:
         return replace(person, value=sought(d, person), furniture=None)
-    if person.place is not None:
-        return person
     at = d.language.phrase("at_furniture", furniture=person.furniture)
     return replace(person, value=Text(f"{person.text} {at}"), furniture=None)
 

@@ -20,7 +20,7 @@ from grammar.meanings.nouns import is_me
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.speaking import spoken
-from grammar.meanings.things import deliver
+from grammar.meanings.things import deliver, given_last
 from grammar.naming import place_called
 from grammar.plan import Call, Forever, Items, Recall, Text, Value
 
@@ -74,6 +74,9 @@ def guide_back(d: Discourse, node: Node) -> Steps:
 @meaning("fetch_person")
 def fetch_person(d: Discourse, node: Node) -> Steps:
     """ "fetch Dr Weber": bring them here; "..., and take them to radiology" is straight there."""
+    pronoun = node.parts.get("person_ref")
+    if pronoun is not None and d.thing_last and speaks_of_things(d, pronoun):
+        return fetch_it(d)
     thing = led(d, node)
     source: Where | None = d.get(node, "source")
     if source is not None and source.place is not None:
@@ -112,6 +115,14 @@ def carry_it(d: Discourse, node: Node) -> Steps:
     assert d.thing is not None
     spot: Where = d.get(node, "spot") or Where(d.get(node, "place"))
     return deliver(d, replace(d.thing, pronoun=True), None, spot)
+
+
+def fetch_it(d: Discourse) -> Steps:
+    """ "I want the cups from the kitchen, can you get them?": for the speaker, once."""
+    assert d.thing is not None
+    if d.delivered is not None and given_last(d):
+        return []
+    return deliver(d, replace(d.thing, pronoun=True), None, None)
 
 
 @meaning("guide_list")

@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any, Final
 
-from grammar.chart import Node
+from grammar.chart import Leaf, Node
 from grammar.discourse import (
     ANYONE,
     SETTING,
@@ -144,12 +144,24 @@ def all_of(d: Discourse, part: Node) -> bool:
     if d.tokens[part.start].norm not in d.language.speech.get("definite", ()) or head is None:
         return False
     last = d.tokens[head.end - 1].norm
+    if isinstance(head, Leaf) and head.slot == "object" and said_as_named(d, head):
+        return False  # "the chips"
     if "superlative" in part.parts or singular(last, d.language) == last:
         return False
     before = d.thing, d.thing_last
     thing: Thing = d.build(part)
     d.thing, d.thing_last = before
     return not thing.here and (thing.place is not None or bool(thing.furniture))
+
+
+def said_as_named(d: Discourse, head: Leaf) -> bool:
+    """Whether a thing is called just what the world calls it, and not by the plural of that."""
+    said = tuple(d.norms(head.start, head.end))
+    return any(
+        said == d.language.tokens_of(name)
+        for each in d.lexicon.objects
+        for name in (each.name, *each.aliases)
+    )
 
 
 def over(d: Discourse, several: list[Node], make: Make) -> Steps:
@@ -439,6 +451,9 @@ def take_back(d: Discourse, thing: Thing) -> None:
     if d.done and d.done[-1] is d.delivered_in:
         d.done.pop()
         d.delivered_in = d.delivered = None
+    if d.listed_last and d.done[-len(d.listed_last) :] == d.listed_last:
+        del d.done[-len(d.listed_last) :]  # "find three cups in the ward and bring them here"
+        d.listed_last = []
 
 
 def where_from(d: Discourse, node: Node, thing: Thing) -> Ambiguous:

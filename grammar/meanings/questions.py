@@ -361,9 +361,8 @@ def answer(d: Discourse, node: Node) -> Steps:
     if isinstance(known, Leaf):
         arguments["question"] = Text(known.value[0].question)
     steps = [Call("answer", arguments)]
-    if node.production.fixed.get("it") and any(
-        each == steps[0] for each in nodes(tuple(d.done[-1:]))
-    ):
+    bare = node.production.fixed.get("it") or not node.parts
+    if bare and any(each == steps[0] for each in nodes(tuple(d.done[-1:]))):
         return []  # "the girl has a question, answer it"
     spot: Where | None = d.get(node, "from") or d.get(node, "where")
     if person is None and spot is None and known is None and d.person is not None:

@@ -15,6 +15,7 @@ from grammar.discourse import (
     NotUnderstood,
     Steps,
     Thing,
+    Where,
 )
 from grammar.meanings import news
 from grammar.meanings.finding import is_here, speak_to
@@ -60,14 +61,24 @@ class Report:
 @meaning("report")
 def report(d: Discourse, node: Node) -> Steps:
     person: Thing | None = d.get(node, "person_ref")
+    person_at: Where | None = d.get(node, "person_at")
+    if person is not None and person_at is not None:  # "tell Bob the time in the kitchen"
+        person = replace(person, place=person_at.place, here=False)
     found: Report | Steps = d.get(node, "info")
     if isinstance(found, list):
         return speak_to(d, person, found)
-    asked_by_me = person is None or is_me(person)
     fixed = node.production.fixed
     d.report_open = person is None and bool(fixed.get("open", not fixed.get("to_me")))
     d.report_counts = person is None and bool(fixed.get("counted"))
-    back = bool(node.production.fixed.get("to_me")) or is_me(person)
+    return found_out(d, found, person, back=bool(fixed.get("to_me")) or is_me(person))
+
+
+def found_out(d: Discourse, found: Report, person: Thing | None, *, back: bool) -> Steps:
+    """Go where something is to be found out, and tell it to a person, or to the speaker."""
+    asked_by_me = person is None or is_me(person)
+    if asked_by_me and found == d.report_asked and d.done and d.done[-1] == d.report_step:
+        return []  # "check who is there and tell me their names"
+    d.report_asked = found
     steps: Steps = []
     if found.place is not None and found.place != d.at:
         d.start()

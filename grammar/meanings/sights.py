@@ -24,6 +24,12 @@ def names_here(d: Discourse, node: Node) -> Report:
     if person is None:
         person = described(d, ANYONE, node)
         d.person = Thing(Text(ANYONE), person.place, person=True, here=True)
+    elif person.here and isinstance(d.report_asked, Report):
+        if d.report_asked.value == Ask("people"):  # those who were seen
+            return d.report_asked
+        person = replace(person, place=None)
+    elif person.here or d.with_person == person.value:  # wherever that is by now
+        person = replace(person, place=None)
     return Report("people_seen", Ask("people"), person.place, name="names")
 
 
@@ -58,13 +64,28 @@ def kind_seen(d: Discourse, node: Node) -> Report:
     assert isinstance(head, Leaf)
     name = str(head.value[0]) if head.value else d.noun_words(head.start, head.end)
     thing = described(d, singular(name, d.language), node, lies_about=True)
+    return which_there(d, thing)
+
+
+def which_there(d: Discourse, thing: Thing) -> Report:
+    """Which things of a kind are somewhere: all, or as many as are asked for, or that there are
+    none."""
     words = d.variable("description")
-    several = replace(thing, value=Text(plural(thing.text, d.language)))
+    called = plural(thing.text, d.language)
+    number = "" if thing.count is None else f"{thing.count} "
+    several = replace(thing, value=Text(number + called), count=None)
     look = Remember(words, Ask("describe", {"thing": sought(d, several)}))
-    none = d.sentence("none_seen", things=d.called(several.text))
-    seen = Holds(Ask("sees", {"thing": sought(d, thing)}))
+    none = d.sentence("none_seen", things=d.called(called))
+    seen = Holds(Ask("sees", {"thing": sought(d, replace(thing, count=None))}))
     before = (Remember(words, none), If(seen, (look,)))
     return Report("only", Recall(words), thing.place, before=before)
+
+
+def best_there(d: Discourse, thing: Thing) -> Report:
+    """Which thing is the biggest, or which three are."""
+    return Report(
+        "only", Ask("describe", {"thing": sought(d, thing)}), thing.place, name="description"
+    )
 
 
 @meaning("looks_of")
@@ -91,9 +112,9 @@ def best_of(d: Discourse, node: Node) -> Report:
         thing = replace(
             thing, place=thing.place or more.place, furniture=thing.furniture or more.furniture
         )
-    value = sought(d, thing)
+    found = best_there(d, thing)
     d.thing, d.thing_last = replace(thing, here=True), True
-    return Report("only", Ask("describe", {"thing": value}), thing.place, name="description")
+    return found
 
 
 def _best(d: Discourse, node: Node) -> Thing:

@@ -6,12 +6,22 @@ from dataclasses import replace
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
-from grammar.meanings.finding import found, go, if_missing, look_for, meet, noun_of, where_sent
+from grammar.meanings.finding import (
+    found,
+    go,
+    if_missing,
+    look_for,
+    meet,
+    noun_of,
+    speak_to,
+    where_sent,
+)
 from grammar.meanings.nouns import described, is_me, thing_it
-from grammar.meanings.places import kind_places, place_there, sought
+from grammar.meanings.places import home_of, kind_places, place_there, sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.remarks import known_to_be
-from grammar.meanings.reports import Report
+from grammar.meanings.reports import Report, found_out
+from grammar.meanings.sights import best_there, which_there
 from grammar.meanings.speaking import sentence_form
 from grammar.plan import Call, ForEach, Items, Recall, Text, Value
 
@@ -23,12 +33,8 @@ def find(d: Discourse, node: Node) -> Steps:
         who = Recall(d.variable("person"))
         d.at = d.with_person = None
         return [ForEach(who.name, thing.group, tuple(if_missing(d, who)))]
-    if thing.several and not (thing.person and thing.every):  # a search ends with the first one
-        part = node.parts.get("thing") or node.parts.get("person_ref") or node
-        words = d.words(part.start, part.end)
-        raise NotUnderstood(
-            d.language.phrase("find_one", things=words), span=(part.start, part.end)
-        )
+    if thing.several and not (thing.person and thing.every):
+        return find_several(d, node, thing)
     if d.found_already:
         return []
     missed = d.missing is not None and (d.missing.value, d.missing.place) == (thing.value, d.at)
@@ -38,11 +44,31 @@ def find(d: Discourse, node: Node) -> Steps:
     return look_for(d, thing)
 
 
+def find_several(d: Discourse, node: Node, thing: Thing) -> Steps:
+    """ "find three cups in the kitchen": a search ends with the first one, so that what is there is
+    looked at and told. "..., and bring them here" is straight there."""
+    if thing.place is None and not isinstance(d.at, Text):
+        part = node.parts.get("thing") or node.parts.get("person_ref") or node
+        words = d.words(part.start, part.end)
+        raise NotUnderstood(
+            d.language.phrase("find_one", things=words), span=(part.start, part.end)
+        )
+    said = node.parts.get("thing")
+    best = isinstance(said, Node) and "superlative" in said.parts
+    thing = replace(thing, place=thing.place or d.at)
+    steps = found_out(d, best_there(d, thing) if best else which_there(d, thing), None, back=False)
+    d.listed_last = steps
+    if not thing.person:
+        d.thing, d.thing_last = thing, True
+    return steps
+
+
 @meaning("grab")
 def grab(d: Discourse, node: Node) -> Steps:
     thing = noun_of(d, node)
     if thing.place is not None and thing.place != d.at:
-        return pick_up(d, thing)
+        fetched = node.production.fixed.get("fetched")
+        return deliver(d, thing, None, None) if fetched else pick_up(d, thing)
     d.holding = thing.value
     d.thing, d.thing_last = thing, True
     return [Call("grab", {"thing": sought(d, thing)})]
@@ -95,6 +121,8 @@ def put(d: Discourse, node: Node) -> Steps:
     if isinstance(last, Call) and last == Call("put", {"thing": thing.value}):
         d.done.pop()  # "carry it to the ward and put it on the table": put down once
         d.holding = thing.value
+    if node.production.fixed.get("brought") and d.delivered == thing.value and given_last(d):
+        return []  # "get the cup and bring it back": here
     take_back_delivery(d, thing)
     if node.production.fixed.get("back") and thing.pronoun and spot == Where():
         spot = Where(d.source or d.at_pick_up or thing.place)
@@ -102,6 +130,14 @@ def put(d: Discourse, node: Node) -> Steps:
     if d.holding != thing.value and spot == Where():
         return [Call("put", {"thing": thing.value})]
     return deliver(d, thing, None, spot)
+
+
+def given_last(d: Discourse) -> bool:
+    """Whether the last step was to hand something to the speaker, or to do so with several."""
+    last = d.done[-1] if d.done else None
+    return last is not None and (
+        last == d.delivered_in or (isinstance(last, Call) and last.method == "give")
+    )
 
 
 @meaning("bring")
@@ -135,6 +171,29 @@ def handed_there(d: Discourse, thing: Thing, person: Thing) -> Thing:
     d.done.pop()
     d.at = None
     return replace(person, place=place, here=False)
+
+
+@meaning("throw_away")
+def throw_away(d: Discourse, node: Node) -> Steps:
+    """ "throw the sponge away": into the bin that the world has."""
+    words = d.language.lists["furniture"].get("bin", ())
+    for piece in d.lexicon.furniture:
+        if any(d.language.tokens_of(name) in words for name in (piece.name, *piece.aliases)):
+            return deliver(d, d.get(node, "thing"), None, Where(home_of(d, piece.name), piece.name))
+    raise NotUnderstood(d.language.phrase("no_bin"))
+
+
+@meaning("cannot_put")
+def cannot_put(d: Discourse, node: Node) -> Steps:
+    """ "put the bag under the bed": things are put down at a place, or on or in something."""
+    how = d.words(node.parts["how"].start, node.parts["how"].end)
+    raise NotUnderstood(d.language.phrase("cannot_put", how=how))
+
+
+@meaning("find_to_answer")
+def find_to_answer(d: Discourse, node: Node) -> Steps:
+    """ "find somebody in the lobby whose question you will answer"."""
+    return speak_to(d, d.get(node, "person_ref"), [Call("answer", {})])
 
 
 @meaning("bring_too")

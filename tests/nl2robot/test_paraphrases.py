@@ -77,6 +77,10 @@ def test_a_logical_form_becomes_frames(form: str, frame: str) -> None:
         ("what is the lightest box", ["say(thing.superlative=lightest, to.me, what=which)"]),
         ("tell a woman in the study a joke", ["say(to.at, to.gender=female, what=text)"]),
         ("how many apples are on the desk", ["count(thing.at, to.me)"]),
+        ("is there any milk in the kitchen", ["find(thing.at)"]),
+        ("which things are on the desk", ["find(thing.at)"]),
+        ("find two cups in the kitchen", ["find(thing.at, thing.count=2)"]),
+        ("find the man in the study and tell me his name", ["say(asked=name, thing.at, to.me)"]),
     ],
 )  # fmt: skip
 def test_a_plan_becomes_frames(words: str, frame: list[str], lexicon) -> None:
