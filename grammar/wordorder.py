@@ -150,6 +150,9 @@ def _first_part(rules: Any, d: Discourse, groups: Sequence[Group]) -> int:
             return at
         if groups[at].number and at + 1 < len(groups) and _begins_noun(rules, groups[at + 1]):
             return at + 1  # "um drei beginnt die Visite"
+        if groups[at].number and groups[0].norm in rules.get("clock", ()):
+            hours = at + 1 < len(groups) and groups[at + 1].norm in rules["clock"]
+            return at + 1 + hours  # "um zwölf Uhr ist Probealarm"
     named = _named(d, groups, at)
     if named:
         return _noun_end(rules, groups, named - 1)

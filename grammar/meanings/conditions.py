@@ -22,7 +22,7 @@ from grammar.meanings.finding import noun_of
 from grammar.meanings.news import counted as counted_answers
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
-from grammar.meanings.surveys import Survey, asked_before, in_loop
+from grammar.meanings.surveys import Survey, asked_before, in_loop, replacing
 from grammar.plan import (
     Ask,
     Both,
@@ -267,7 +267,28 @@ def answered(d: Discourse, node: Node) -> Condition:
     for option in d.answer_options:
         if option.lower() == wanted.lower():
             return Compare(Recall(d.answer), "==", Text(option))
+    if set(d.answer_options) == {d.language.phrase("yes"), d.language.phrase("no")}:
+        ask_openly(d)
     return Compare(Text(wanted), "in", Recall(d.answer))
+
+
+def ask_openly(d: Discourse) -> None:
+    """The last question without its answers yes and no: "ask if they need anything; if they want
+    water, ..." waits for more than these."""
+    last = next((each for each in reversed(d.surveys) if each.call.save_as == d.answer), None)
+    if last is None or not any(each is last.call for each in nodes(tuple(d.done))):
+        return
+    arguments = {name: each for name, each in last.call.arguments.items() if name != "options"}
+    openly = Call(last.call.method, arguments, save_as=last.call.save_as)
+    d.done[:] = [
+        other
+        for each in d.done
+        for other in ([openly] if each is last.call else [replacing(each, last.call, [openly])])
+    ]
+    d.surveys = [
+        replace(each, call=openly, options=()) if each is last else each for each in d.surveys
+    ]
+    d.answer_options = ()
 
 
 def says_the_same(d: Discourse, words: str) -> bool:
@@ -321,9 +342,14 @@ def so(d: Discourse, node: Node) -> Condition:
 @meaning("answer_counts")
 def answer_counts(d: Discourse, node: Node) -> Condition:
     """ "if it is more than seven": the answer, a number."""
+    number = as_value(d.get(node, "number"))
+    found = d.report
+    counted = found is not None and found.name == "count" and d.answer is None
+    if counted and (isinstance(found.value, Recall) or found.place in (None, d.at)):
+        # "count the people, and if it is more than ten, ...": where they were counted
+        return Compare(found.value, d.get(node, "operator", "=="), number)
     if d.answer is None:
         raise NotUnderstood(d.language.phrase("no_question"))
-    number = as_value(d.get(node, "number"))
     return Compare(Recall(d.answer), d.get(node, "operator", "=="), number)
 
 

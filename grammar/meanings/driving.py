@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from grammar.chart import Leaf, Node
 from grammar.discourse import SETTING, Discourse, NotUnderstood, Steps, Thing, Where, as_value
 from grammar.meanings.finding import go, look_for, noun_of, where_sent
-from grammar.meanings.loops import looped
+from grammar.meanings.loops import for_each_of_them, looped
 from grammar.meanings.nouns import is_me
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
@@ -83,6 +83,12 @@ def in_place(d: Discourse, node: Node) -> Steps:
     return done_there(d, d.get(node, "spot"), node.parts["then"])
 
 
+def bare_of(node: Node) -> Node:
+    """A command without the part that says where or when."""
+    parts = {name: part for name, part in node.parts.items() if name != SETTING}
+    return replace(node, parts=parts)
+
+
 @dataclass(frozen=True)
 class Settings:
     """Both how often and where."""
@@ -104,15 +110,17 @@ def settings(d: Discourse, node: Node) -> Settings:
 def setting(d: Discourse, node: Node) -> Steps:
     """A command with a part that says where, when or how often: "say in the kitchen that lunch is
     ready"."""
-    where_or_when: Where | Steps | Node | Settings = d.build(node.parts[SETTING])
-    parts = {name: part for name, part in node.parts.items() if name != SETTING}
-    bare = replace(node, parts=parts)
+    told = node.parts[SETTING]
+    if isinstance(told, Node) and told.means == "in_each_of_them":
+        return for_each_of_them(d, replace(node, parts={"steps": bare_of(node)}))
+    where_or_when: Where | Steps | Node | Settings = d.build(told)
+    bare = bare_of(node)
     if isinstance(where_or_when, Where):
         return done_there(d, where_or_when, bare)
     if isinstance(where_or_when, Node):
         return looped(d, where_or_when, lambda: d.build(bare))
     if isinstance(where_or_when, Settings):
-        outer = replace(bare, parts={**parts, SETTING: where_or_when.where})
+        outer = replace(bare, parts={**bare.parts, SETTING: where_or_when.where})
         return looped(d, where_or_when.often, lambda: setting(d, outer))
     return [*where_or_when, *d.build(bare)]
 

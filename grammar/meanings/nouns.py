@@ -378,6 +378,10 @@ def person_pronoun(d: Discourse, node: Node) -> Thing:
         several = d.language.speech.get("things_too", ())
         if not set(d.norms(node.start, node.end)) & set(several):
             return d.last_named  # "him", after "Alice and Bob ... tell Dr Weber"
+    everybody = d.person is not None and d.person.every and d.person.group is not None
+    if everybody and not d.is_plural(node):
+        # "ask every visitor ... and send him away": each in his turn
+        raise NotUnderstood(d.language.phrase("one_person"))
     if d.person is not None:
         met = d.person.here or d.with_person == d.person.value
         elsewhere = d.person.place is not None and not met

@@ -33,7 +33,9 @@ def options_of(d: Discourse, node: Node) -> tuple[str, ...]:
         start = rest.start
         if not fixed.get("yes_no") and d.tokens[start - 1].norm != COMMA:
             start = _end_of_question(d, start, rest.end)
-        return split_options(d, start, rest.end)
+        offered = split_options(d, start, rest.end)
+        if len(offered) > 1:
+            return offered  # "ob sie oder Alice Dienst hat" leaves but one
     if fixed.get("yes_no") or (d.asking_each and "each" in fixed):
         return (d.language.phrase("yes"), d.language.phrase("no"))
     return ()

@@ -75,7 +75,8 @@ def remark_where(d: Discourse, node: Node) -> Steps:
     person: Thing | list[Thing] | None = d.build(who_is) if who_is is not None else None
     if isinstance(person, list):  # "Alice or Bob is in the lobby": nobody knows which
         return aside(d, node)
-    who = person or (d.person if thing is None and not node.production.fixed.get("it") else None)
+    it = node.production.fixed.get("it") or (person is None and may_be_it(d, node))
+    who = person or (d.person if thing is None and not it else None)
     if thing is None and who is not None:
         d.person, d.thing_last = replace(who, place=place, furniture=spot.furniture), False
         d.with_person = None
@@ -86,6 +87,13 @@ def remark_where(d: Discourse, node: Node) -> Steps:
             d.thing, d.thing_last = replace(what, place=place, furniture=spot.furniture), True
             known_to_be(d, what.value, place)
     return aside(d, node)
+
+
+def may_be_it(d: Discourse, node: Node) -> bool:
+    """Whether the pronoun here may stand for the thing that was spoken of last: "er liegt auf dem
+    Tisch", said of a scarf."""
+    things = set(d.language.speech.get("things_too", ()))
+    return d.thing_last and bool(things & set(d.norms(node.start, node.start + 2)))
 
 
 def known_to_be(d: Discourse, value: Value, place: Value | None) -> None:

@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
 from grammar.meanings.finding import speak_to
-from grammar.meanings.news import News, Told, go_back, last_found, take_back
+from grammar.meanings.news import News, Told, go_back, last_found, polled, take_back
 from grammar.meanings.nouns import is_me, thing_it
 from grammar.meanings.places import kind_places, sought
 from grammar.meanings.registry import meaning
@@ -120,6 +120,8 @@ def round_told(d: Discourse, node: Node) -> Told:
 
 def summed_up(d: Discourse, kind: str, thing: Thing | None = None) -> Told:
     """What was counted in each place, put together."""
+    if d.counted is None and thing is None and kind == "total" and d.polled_for is not None:
+        return polled(d, "many", None)  # "ask who wants coffee, and tell me how many it is"
     if d.counted is None:
         d.counted = _counting(d, thing)
     elif d.news is not None:

@@ -200,6 +200,8 @@ def named_some(d: Discourse, thing: Thing) -> str:
 def where_found(d: Discourse, node: Node) -> Steps:
     """ "where is the stapler?": look for it, come back and say where it is."""
     thing: Thing = d.get(node, "thing") or d.get(node, "person_ref")
+    if thing.text == ANYONE and (thing.pronoun or thing.here):  # "where is that?", of a place
+        raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
     called = d.called(thing.text)
     known = called if thing.known and thing.person else the(called, d.language)
     arguments: dict[str, Value] = {"thing": sought(d, thing)}
