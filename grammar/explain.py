@@ -248,7 +248,8 @@ class _Teller:
                 ]
         for name, wishes in choices.items():
             self.short[name] = wishes[0]
-            taken = {wish for other, them in choices.items() if other != name for wish in them}
+            rivals = choices.keys() - {name} - self._apart_from(name)
+            taken = {wish for other in rivals for wish in choices[other]}
             free = [wish for wish in wishes if wish not in taken]
             if free:
                 self.results[name] = free[0]
@@ -256,6 +257,19 @@ class _Teller:
                 self.told_apart.add(name)
                 values = {"value": wishes[0], "name": name.replace("_", " ")}
                 self.results[name] = fill(self.words.values["told apart"], values)
+
+    def _apart_from(self, name: str) -> set[str]:
+        """Of what a loop goes over, the items of other loops: two loops one after the other may
+        both speak of "this place", one within the other may not."""
+        loop = self.makers.get(name)
+        if not isinstance(loop, p.ForEach):
+            return set()
+        loops = [each for each in walk(self.plan.steps) if isinstance(each, p.ForEach)]
+        within = [each for each in loops if any(inner is loop for inner in walk(each.steps))]
+        near = {
+            each.variable for each in (*within, *walk(loop.steps)) if isinstance(each, p.ForEach)
+        }
+        return {each.variable for each in loops} - near
 
     def forget(self, steps: Iterable[p.Step]) -> None:
         """After or before steps that may run or not: what they make is no longer just the latest,
@@ -282,7 +296,7 @@ class _Teller:
             case p.ForEach():
                 sort = readable.rstrip("0123456789").strip()
                 item = self.words.values.get(f"item {sort}", self.words.values["item"])
-                yield fill(item, {"name": readable})
+                yield fill(item, {"name": sort})
             case _:
                 kept = self.kept(name, step)
                 yield kept[1] if kept else self.named(readable)
@@ -545,7 +559,8 @@ class _Teller:
                 case p.Sentence():
                     yield from self._within_quotes(part.parts)
                 case _:
-                    yield fill(self.words.values["inserted"], {"value": self.value(part)})
+                    value = self.words.joined_up(self.value(part))
+                    yield fill(self.words.values["inserted"], {"value": value})
 
     def asked(self, ask: p.Ask) -> str:
         words = self.words.methods[ask.method]

@@ -7,11 +7,13 @@ import functools
 from collections.abc import Sequence, Set
 from typing import Final
 
+from grammar.inference import form_for
 from grammar.language import Language
 from grammar.lexicon import Lexicon
-from grammar.plan import Ask, Call, Plan, Text
+from grammar.plan import Ask, Call, Number, Plan, Text
 from grammar.tidy import nodes
 from grammar.tokens import Token
+from robot_api.methods import METHODS
 
 ENDING: Final = 2
 """Letters by which a plural is longer."""
@@ -50,6 +52,24 @@ def no_thing(plan: Plan, lexicon: Lexicon, language: Language) -> tuple[str, str
         for phrase, names in listed.items():
             if any(_headed(words, language.tokens_of(name), language) for name in names):
                 return str(phrase), thing.value
+    return None
+
+
+def out_of_range(plan: Plan, language: Language) -> str | None:
+    """Why a number is too large or too small for what the robot is to do with it, if one is."""
+    for step in nodes(plan.steps):
+        if not isinstance(step, Call | Ask):
+            continue
+        for parameter in form_for(METHODS[step.method], step.arguments) or ():
+            number = step.arguments.get(parameter.name)
+            low = parameter.kind.schema.get("minimum")
+            high = parameter.kind.schema.get("maximum")
+            if not isinstance(number, Number) or low is None or high is None:
+                continue
+            if not low <= number.value <= high:
+                own = f"range_{step.method}_{parameter.name}"
+                phrase = own if own in language.phrases else "out_of_range"
+                return language.phrase(phrase, number=number.value, low=low, high=high)
     return None
 
 

@@ -26,7 +26,7 @@ from grammar.naming import joined_up, place_called
 from grammar.plan import Plan, Text, Value
 from grammar.plausible import implausible
 from grammar.readings import Read, read
-from grammar.refusals import forbidden, no_thing, signs, why_not
+from grammar.refusals import forbidden, no_thing, out_of_range, signs, why_not
 from grammar.requests import Request
 from grammar.slips import mended
 from grammar.slots import Names, Slots, command_words, names_of
@@ -244,6 +244,9 @@ class Reader:
             phrase, thing = impossible
             message = self.language.phrase(phrase, thing=thing, name=thing)
             return replace(rejected(self.text, message, self.context), unclear=thing)
+        beyond = out_of_range(plan, self.language)
+        if beyond is not None:
+            return rejected(self.text, beyond, self.context)
         plan = returning(without_unused(plan))
         senseless = implausible(plan)
         if senseless is not None:

@@ -40,7 +40,8 @@ def measure(part: str) -> Iterator[Figure]:
 
 
 def _translate() -> Iterator[Figure]:
-    from grammar.samples import random_sentence, samples
+    from grammar.sampler import random_sentence
+    from grammar.samples import samples
     from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
     from nl2robot.translation import translate
     from sim.world import load_world

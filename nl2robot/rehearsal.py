@@ -47,6 +47,8 @@ class DryRun(msgspec.Struct, frozen=True, kw_only=True):
     calls: int
     course: tuple[Event, ...] = ()
     """All of it in the order in which it would happen."""
+    error: str | None = None
+    """The name of the error it would end with: a robot's ("NotFound") or Python's ("NameError")."""
 
 
 class Event(msgspec.Struct, frozen=True):
@@ -138,6 +140,7 @@ def rehearse(
         path=tuple((round(sample.x, 2), round(sample.y, 2)) for sample in way),
         calls=calls,
         course=events,
+        error=None if cut_short.is_set() else outcome.error,
     )
 
 

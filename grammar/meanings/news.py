@@ -401,7 +401,10 @@ def _missing(d: Discourse, surveys: list[Survey], answer: Wanted, kind: str) -> 
     found, new = _kept(d, ("missing",), "missing")
     if new:
         calls = {id(survey.call): survey for survey in surveys}
-        d.done[:] = [_noting_missing(each, calls, found) for each in d.done]
+        noted = [_noting_missing(each, calls, found) for each in d.done]
+        if noted == d.done:  # whoever was asked was not looked for by name
+            raise NotUnderstood(d.language.phrase("no_question"))
+        d.done[:] = noted
         _before_all(d, found, Items(()))
     nobody, some = d.say("nobody_missing"), d.say("who_missing", names=found)
     return [If(Compare(Length(found), "==", Number(0)), (nobody,), (some,))]

@@ -218,7 +218,9 @@ def question(d: Discourse, node: Node) -> str:
     for name, part in node.parts.items():
         values[name] = turn_to_you(d, part.start, part.end, you)
     values = {"rest": "", "adverb": "", **values}
-    if "tail" in values:
+    if "tail" not in values:
+        values["tail"] = ""
+    else:
         values["rest"] = f"{values['rest']} {values['tail']}"
     if "verb" in values:
         verb, particle = parted(d, values["verb"])

@@ -17,7 +17,7 @@ from grammar.chart import Node
 from grammar.language import languages, load_language
 from grammar.lexicon import Lexicon, Name
 from grammar.program import write_program
-from grammar.samples import random_sentence
+from grammar.sampler import random_sentence
 from grammar.understand import Context, Reader, understand
 from tests.grammar.hospitals import hospital
 from tests.grammar.ward import WARD, program
