@@ -22,6 +22,8 @@ from grammar.language import Language
 from grammar.tokens import COLON, STOP, Token
 
 SPOKEN: Final = frozenset({"say", "say_that"})
+WRITTEN: Final = frozenset({"show"})
+"""Meanings whose text is shown: doubted where it names something instead: "the lunch menu"."""
 REQUESTED: Final = frozenset({"ask_to"})
 ANSWERS: Final = frozenset({"option_words", "said_so"})
 QUIET: Final = frozenset({"remark", "remark_where", "remark_name", "refused"})
@@ -224,7 +226,10 @@ class Judge:
         clause = start > 0 and self.tokens[start - 1].norm in self.words.that
 
         def doubt(first: int, phrase: str) -> Doubt:
-            return Doubt(first, end, phrase if spoken else "not_understood", spoken, (start, end))
+            settled = spoken or node.means in WRITTEN
+            if not settled or (not spoken and phrase != "cannot_show"):
+                phrase = "not_understood"
+            return Doubt(first, end, phrase, settled, (start, end))
 
         if self.tokens[start].kind == "quote":
             return doubt(start + 1, "said_or_done") if end > start + 1 else None
@@ -260,13 +265,13 @@ class Judge:
         if node.means in ANSWERS:
             return self.answer(start, end, doubt, predicate=node.means == "said_so")
         announced = start > 0 and self.tokens[start - 1].norm == COLON
-        if not spoken or clause or announced:
+        if (not spoken and node.means not in WRITTEN) or clause or announced:
             return None
         if self.tokens[start].norm in self.words.never_first or self.given_to(start):
             return doubt(start, "cannot_say")
         if self.is_clause(start, end):
             return None
-        if self.asks(start, end):
+        if spoken and self.asks(start, end):
             return doubt(start, "cannot_say")
         return self.fragment(node, start, end, doubt)
 
@@ -285,9 +290,13 @@ class Judge:
             return None
         first = self.tokens[start].norm
         if first in words.definite:
-            return doubt(start, "cannot_say")
+            return doubt(start, "cannot_show" if node.means == "show" else "cannot_say")
+        if node.means == "show":
+            return None
         greeting = self.greeting(start)
         behind = start + greeting
+        if greeting and self.wished(start) and not self.complete_greeting(start):
+            return None  # "welcome to our hospital"
         if greeting and behind < end and self.tokens[behind].norm in words.not_greeting:
             return doubt(behind, "said_or_done")
         for at in range(max(behind, start + 1), end):
@@ -315,6 +324,16 @@ class Judge:
         return max(
             (len(each) for each in self.words.greetings if self.is_at(each, start)), default=0
         )
+
+    def complete_greeting(self, start: int) -> int:
+        """How many tokens of a greeting begin here that is said where what follows says: "good
+        night" of "good night in ward b"; 0 if it goes on: "welcome to the ward"."""
+        length = self.greeting(start)
+        behind = self.norms(start + length, start + length + 1)
+        wish = max((len(each) for each in self.words.wishes if self.is_at(each, start)), default=0)
+        if wish > length or not set(behind) & self.words.not_greeting:
+            return 0
+        return length
 
     # --- orders
 

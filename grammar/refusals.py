@@ -4,7 +4,8 @@ and `no_things` in a language's data."""
 from __future__ import annotations
 
 import functools
-from collections.abc import Sequence, Set
+import itertools
+from collections.abc import Callable, Sequence, Set
 from typing import Final
 
 from grammar.inference import form_for
@@ -87,11 +88,30 @@ def _headed(words: tuple[str, ...], name: tuple[str, ...], language: Language) -
 def why_not(tokens: Sequence[Token], language: Language, names: Set[str]) -> str:
     """The phrase for a sentence of which nothing was understood: why it is none of its business.
     Words of names say nothing about that: who goes to the blood lab gives no blood."""
-    words = {token.norm for token in tokens if token.norm not in names}
+    said = [token.norm for token in tokens]
+    words = {word for word in said if word not in names}
     for sign, phrase in _signs(language, "refusals").items():
-        if words.issuperset(sign):
+        if phrase in language.speech.get("refused_as_asked", ()):
+            found = any(tuple(said[at : at + len(sign)]) == sign for at in range(2))
+        elif len(sign) > 1:  # several words are no name by chance: "blood pressure"
+            found = any(tuple(said[at : at + len(sign)]) == sign for at in range(len(said)))
+        else:
+            found = words.issuperset(sign)
+        if found:
             return phrase
     return "not_understood_at_all"
+
+
+def is_half(tokens: Sequence[Token], language: Language) -> bool:
+    """Whether a sentence ends with a word that no sentence ends with: "go to the"."""
+    return bool(tokens) and tokens[-1].norm in language.speech.get("half_ends", ())
+
+
+def strange(tokens: Sequence[Token], known: Callable[[Token], bool]) -> tuple[int, int] | None:
+    """The first words in a row that no rule and no name has."""
+    row = itertools.groupby(range(len(tokens)), lambda at: known(tokens[at]))
+    found = next((list(group) for is_known, group in row if not is_known), None)
+    return None if found is None else (found[0], found[-1] + 1)
 
 
 @functools.cache

@@ -71,12 +71,14 @@ def names_for(slot: str, lexicon: Lexicon) -> list[str]:
     }.get(slot, [])
 
 
-def nearest_phrases(text: str, lexicon: Lexicon, language: Language) -> list[str]:
+def nearest_phrases(text: str, whole: str, lexicon: Lexicon, language: Language) -> list[str]:
     """Up to three example phrases like a text, the nearest first: those that share at least half
-    of their own words with it, and half of its words."""
+    of their own words with it, and half of its words; and what they are about, their first word or
+    two others, with the whole sentence that it is a part of."""
     from rapidfuzz import fuzz, process
 
     said = _telling_words(text, language)
+    in_whole = _telling_words(whole, language)
     near: list[tuple[float, str]] = []
     for phrase in (phrase for each in _samples(lexicon, language).values() for phrase in each):
         words = _telling_words(phrase, language)
@@ -85,9 +87,19 @@ def nearest_phrases(text: str, lexicon: Lexicon, language: Language) -> list[str
         ]
         found = {each[0] for each in shared if each is not None}
         part = sum(each is not None for each in shared) / max(1, len(words))
-        if part >= 0.5 and 2 * len(found) >= len(set(said)):
+        about = len(found) > 1 or fuzzy_in(words[:1], in_whole)
+        if about and part >= 0.5 and 2 * len(found) >= len(set(said)):
             near.append((part + fuzz.token_sort_ratio(text.lower(), phrase) / 1000, phrase))
     return [phrase for _, phrase in sorted(near, key=lambda each: -each[0])[:3]]
+
+
+def fuzzy_in(words: list[str], among: list[str]) -> bool:
+    """Whether all these words are among others, but for a slip."""
+    from rapidfuzz import fuzz, process
+
+    return all(
+        process.extractOne(each, among, scorer=fuzz.ratio, score_cutoff=ALIKE) for each in words
+    )
 
 
 def _telling_words(text: str, language: Language) -> list[str]:

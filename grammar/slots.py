@@ -27,6 +27,8 @@ SWALLOWED_COMMAND: Final = 40.0
 """Cost of a text that goes on over what begins like another command."""
 ASKED_IN_TEXT: Final = 12.0
 """Cost of a text that begins as a question put to the robot does: "who is there"."""
+BEHIND_GREETING: Final = 8.0
+"""Cost of a text that goes on where a greeting ends: "good night in ward b" is said there."""
 RECEIVER_IN_TEXT: Final = 4.0
 """Cost of a text that begins with the one it is told to: "ihr ihre Proben sind fertig"."""
 WHERE_TO: Final = 2.5
@@ -38,6 +40,8 @@ SPACED: Final = 0.5
 SHORTEST_JOINED_NAME: Final = 6
 MISSPELT_NOUN: Final = 3.5
 """Cost of taking for a noun what is nearly a known word: "bigest"."""
+CALLED: Final = frozenset({"person", "place", "object", "furniture", "contact", "routine"})
+"""Slots of names that somebody or something goes by."""
 LONGEST_NOUN: Final = 5
 LONGEST_UNKNOWN: Final = 6
 LONGEST_STRANGER: Final = 2
@@ -64,11 +68,16 @@ class Names:
         self.lexicon = lexicon
         self.tries: dict[str, Trie] = {}
         self.words: set[str] = set()
+        self.called: set[str] = set()
+        """Those of them that people, places and things are called by."""
         self.spelled: set[str] = set()
         """The names as people write and speak them."""
         self._places()
         for name in lexicon.people:
             self._add_name("person", name)
+            for word in (name.kind or "", plural(name.kind or "", language)):
+                if word and word not in language.words:  # "porter" carries things in French
+                    self._add("person_kind", word, name.kind)
             for owner in self.language.speech.get("bare_possessive", ()):
                 for text in (name.name, *name.aliases):
                     self._add_words("owner", language.tokens_of(f"{text}{owner}"), name)
@@ -76,6 +85,9 @@ class Names:
             for text in (thing.name, *thing.aliases):
                 for form in self._forms(text):
                     self._add("object", form, thing.name)
+        for described in (*lexicon.objects, *lexicon.furniture):
+            for attribute in described.attributes:
+                self._add("quality", attribute, attribute)
         for furniture in lexicon.furniture:
             for text in (furniture.name, *furniture.aliases):
                 for variant in self._variants(text):
@@ -174,6 +186,8 @@ class Names:
         if words:
             self.tries.setdefault(slot, Trie()).add(words, value)
             self.words.update(words)
+            if slot in CALLED:
+                self.called.update(words)
 
 
 @functools.lru_cache(maxsize=16)
@@ -409,8 +423,11 @@ class Slots:
         cost = ASKED_IN_TEXT if self._judge.asks(at, len(self.tokens)) else 0.0
         if self._judge.given_to(at) or self._never_first(at):
             cost += RECEIVER_IN_TEXT
+        greeted = at + self._judge.complete_greeting(at)
         for position in range(at, len(self.tokens)):
             token = self.tokens[position]
+            if position == greeted > at:
+                cost += BEHIND_GREETING
             if token.kind == "mark":
                 if position == at:
                     return []
@@ -436,6 +453,8 @@ class Slots:
                 continue
             cost += 0.0 if token.kind == "quote" else FREE_WORD
             matches.append((position + 1, cost, None))
+            if token.kind == "quote" and position == at:
+                break  # what is quoted is the whole text
         return matches
 
     def _never_first(self, at: int) -> bool:

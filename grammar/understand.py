@@ -26,7 +26,15 @@ from grammar.naming import joined_up, place_called
 from grammar.plan import Plan, Text, Value
 from grammar.plausible import implausible
 from grammar.readings import Read, read
-from grammar.refusals import forbidden, no_thing, out_of_range, signs, why_not
+from grammar.refusals import (
+    forbidden,
+    is_half,
+    no_thing,
+    out_of_range,
+    signs,
+    strange,
+    why_not,
+)
 from grammar.requests import Request
 from grammar.slips import mended
 from grammar.slots import Names, Slots, command_words, names_of
@@ -476,7 +484,9 @@ class Reader:
         unclear = part or self.text
         # Who was told why not needs no other sentence with a word of theirs in it.
         mine = part or message == self.language.phrase("not_understood_at_all")
-        suggestions = nearest_phrases(unclear, self.lexicon, self.language) if mine else []
+        suggestions = (
+            nearest_phrases(unclear, self.text, self.lexicon, self.language) if mine else []
+        )
         if suggestions:
             examples = self._listed([f"“{each}”" for each in suggestions])
             message = f"{message} {self.language.phrase('try_this', examples=examples)}"
@@ -494,7 +504,13 @@ class Reader:
         """Which part was not understood; of a sentence that is none of its business, why."""
         if part:
             return self.language.phrase("not_understood", part=part)
-        return self.language.phrase(why_not(self.tokens, self.language, self.names.words))
+        if is_half(self.tokens, self.language):
+            return self.language.phrase("unfinished", part=self.text.strip(" .!?"))
+        phrase = why_not(self.tokens, self.language, self.names.called)
+        words = strange(self.tokens, lambda token: not self._is_unknown(token))
+        if phrase == "not_understood_at_all" and words is not None:
+            return self.language.phrase("unknown_word", part=self.words(*words))
+        return self.language.phrase(phrase)
 
     def _begun(self, chart: Chart) -> Node | None:
         """The longest beginning that is a sentence in itself."""

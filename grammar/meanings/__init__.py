@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import grammar.meanings.amounts
 import grammar.meanings.answers
+import grammar.meanings.best_places
 import grammar.meanings.body
 import grammar.meanings.branches
 import grammar.meanings.conditions

@@ -7,6 +7,7 @@ from grammar.discourse import Discourse, NotUnderstood, Steps, as_value
 from grammar.meanings.finding import speak_to
 from grammar.meanings.news import on_screen
 from grammar.meanings.registry import meaning
+from grammar.meanings.reports import Report
 from grammar.meanings.surveys import each_asked
 from grammar.plan import Call, Items, Recall, Text
 
@@ -24,6 +25,17 @@ def show(d: Discourse, node: Node) -> Steps:
     if part is None:
         return [Call("show", {"text": Recall(found_out(d))})]
     return [Call("show", {"text": Text(str(d.build(part)))})]
+
+
+@meaning("show_fact")
+def show_fact(d: Discourse, node: Node) -> Steps:
+    """ "show the time on the screen": what would be said of it is shown instead."""
+    told = d.get(node, "info")
+    if isinstance(told, Report) and told.value is not None and told.otherwise is None:
+        words = dict(told.words)
+        shown = d.sentence(told.phrase, **words, value=told.value)
+        return [*told.before, Call("show", {"text": shown})]
+    raise NotUnderstood(d.language.phrase("show_what"))
 
 
 def found_out(d: Discourse) -> str:

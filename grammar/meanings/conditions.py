@@ -111,6 +111,9 @@ def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
     if node.production.fixed.get("no"):
         d.met = replace(d.met, holds=False) if d.met is not None else None
         result = Not(result)
+        if "state" in node.parts:  # "the cup is not clean": there is one, but none that is so
+            plain = {name: part for name, part in node.parts.items() if name != "state"}
+            result = Both((is_there(d, noun_of(d, replace(node, parts=plain)), search), result))
     return result
 
 
@@ -208,8 +211,12 @@ def counted(d: Discourse, node: Node) -> Condition:
 @meaning("cannot_check")
 def cannot_check(d: Discourse, node: Node) -> Condition:
     """Something that is neither seen nor heard nor known: "the patient feels better"."""
-    words = d.words(node.start, node.end)
-    raise NotUnderstood(d.language.phrase("cannot_check", what=words), gap=(node.start, node.end))
+    start = node.parts["unknown"].start
+    end = node.end
+    while end < len(d.tokens) and d.tokens[end].kind != "mark":
+        end += 1  # "if the door is | open, go in": the clause goes on to its comma
+    words = d.words(start, end)
+    raise NotUnderstood(d.language.phrase("cannot_check", what=words), gap=(start, end))
 
 
 # --- the battery, the time

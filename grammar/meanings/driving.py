@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import SETTING, Discourse, NotUnderstood, Steps, Thing, Where, as_value
-from grammar.meanings.finding import go, look_for, noun_of, where_sent
+from grammar.meanings.finding import found, go, look_for, noun_of, where_sent
 from grammar.meanings.loops import for_each_of_them, looped
 from grammar.meanings.nouns import is_me
 from grammar.meanings.places import sought
@@ -41,6 +42,12 @@ def find_furniture(d: Discourse, node: Node) -> Steps:
 def look_in(d: Discourse, node: Node) -> Steps:
     """ "look in the kitchen": go there; for what was looked for in vain, where there is such."""
     spot: Where = d.get(node, "spot")
+    last = d.done[-1] if d.done else None
+    if d.missing is None and isinstance(last, Call) and last.method == "find":
+        thing = d.thing if d.thing_last else d.person
+        if thing is not None and thing.place is None and last == found(d, thing):
+            d.done.pop()  # "I can not find my bag, look in the cafeteria": there, not anywhere
+            return look_for(d, replace(thing, place=spot.place, furniture=spot.furniture))
     if d.missing is None or spot.place is None:
         return go_to(d, node)
     return look_for(d, replace(d.missing, place=spot.place, furniture=spot.furniture))
@@ -104,6 +111,28 @@ def settings(d: Discourse, node: Node) -> Settings:
     assert isinstance(often, Node)
     assert isinstance(where, Node)
     return Settings(often, where)
+
+
+ANYWHERE: Final = frozenset(
+    {
+        *("say", "say_that", "said_with", "say_it", "phrase", "greet", "report", "ask", "listen"),
+        *("gesture", "emotion", "emotion_gesture", "skill", "joint_turn", "turn", "wait"),
+        *("show", "touch", "scan", "set_volume", "set_language", "dance"),
+    }
+)
+"""Commands that are done wherever the robot is; others say themselves what a place is to them."""
+
+
+@meaning("done_in_place")
+def done_in_place(d: Discourse, node: Node) -> Steps:
+    """ "wave in the lobby", "say good night in ward b": the place is said last."""
+    command, spot = node.parts["then"], node.parts["spot"]
+    if not isinstance(command, Node) or command.means not in ANYWHERE:
+        words = d.words(spot.start, spot.end)
+        raise NotUnderstood(
+            d.language.phrase("not_understood", part=words), gap=(spot.start, spot.end)
+        )
+    return in_place(d, node)
 
 
 @meaning("setting")

@@ -58,7 +58,10 @@ def noun_of(d: Discourse, node: Node) -> Thing:
 def in_state(d: Discourse, node: Node, thing: Thing) -> Thing:
     """A thing with what is said of it behind its noun: that a bed is free is about a free bed."""
     state = d.get(node, "state")
-    return thing if state is None else replace(thing, value=Text(f"{state} {thing.text}"))
+    if state is None:
+        return thing
+    so = Text(d.language.phrase("in_state", state=state, thing=thing.text))
+    return replace(thing, value=so)
 
 
 def together(several: list[Thing]) -> Thing:

@@ -58,6 +58,14 @@ def all_places(d: Discourse, node: Node) -> Value:
     fixed = node.production.fixed
     but: list[Value | None] = [d.get(node, "but"), *(d.get(node, "place_list") or [])]
     number = d.get(node, "number")
+    skipped = d.get(node, "skipped")
+    if skipped is not None:  # "all labs but the first one"
+        left = list(d.lexicon.place_kinds[str(kind)])
+        position = int(skipped) - 1 if int(skipped) > 0 else int(skipped)
+        if not -len(left) <= position < len(left):
+            raise NotUnderstood(d.language.phrase("which_places"))
+        del left[position]
+        return Items(tuple(Text(each.name) for each in left))
     if but == [None] and number is None and not fixed.get("other"):
         return kind_places(d, kind)
     if fixed.get("other"):

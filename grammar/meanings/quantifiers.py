@@ -27,6 +27,7 @@ from grammar.discourse import (
     Steps,
     Thing,
 )
+from grammar.meanings.best_places import Best, survey
 from grammar.meanings.finding import found, go, look_for, named, not_found
 from grammar.meanings.surveys import each_asked, uses_answer
 from grammar.naming import place_called
@@ -75,8 +76,8 @@ TOGETHER: Final = frozenset(
 """Commands that know themselves what to do with several people."""
 ALWAYS: Final = frozenset(
     {
-        "each_place", "person_either", "place_any", "place_either", "place_where", "thing_either",
-        "things",
+        "each_place", "person_either", "place_any", "place_best", "place_either", "place_where",
+        "thing_either", "things",
     }
 )  # fmt: skip
 """Noun phrases that no command knows itself what to do with."""
@@ -321,6 +322,13 @@ def over_any_place(d: Discourse, node: Node, places: Value, one: One) -> Steps:
     return [Remember(place.name, Choice(places)), *one(place)]
 
 
+def over_place_best(d: Discourse, node: Node, best: Best, one: One) -> Steps:
+    """ "the office with the fewest people": gone round for first."""
+    going, place = survey(d, best)
+    d.place = place
+    return [*going, *one(place)]
+
+
 def over_place_where(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
     """ "where Bob is": he is looked for, and that is the place."""
     searching = look_for(d, thing)
@@ -510,6 +518,7 @@ def first_found(d: Discourse, things: list[Thing], one: One) -> Steps:
 OVER: Final[dict[str, Callable[[Discourse, Node, Any, One], Steps]]] = {
     "each_place": over_places,
     "place_any": over_any_place,
+    "place_best": over_place_best,
     "place_either": over_either_place,
     "place_where": over_place_where,
     "person_coming": over_people,

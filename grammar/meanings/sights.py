@@ -134,7 +134,7 @@ def counted_info(d: Discourse, node: Node) -> Report:
     first: Where | None = d.get(node, "spot_first")
     thing = replace(
         thing,
-        value=more.value,
+        value=in_state(d, node, more).value,
         place=thing.place or more.place or (first.place if first else None),
         furniture=thing.furniture or more.furniture or (first.furniture if first else None),
     )

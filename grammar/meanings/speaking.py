@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from grammar.chart import Node
 from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, capital
+from grammar.freetext import words_for
+from grammar.language import load_language
 from grammar.meanings.finding import speak_to
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
@@ -18,7 +22,43 @@ def say(d: Discourse, node: Node) -> Steps:
     language = d.get(node, "language")
     if language:
         arguments["language"] = Text(language)
+        arguments["text"] = in_language(d, node, text, str(language))
     return speak_to(d, d.get(node, "person_ref"), [Call("say", arguments)])
+
+
+SAYINGS: Final = (
+    *("hello", "good_bye", "thanks", "sorry", "welcome", "please_come_in"),
+    *(
+        "good_morning",
+        "good_day",
+        "good_evening",
+        "good_night",
+        "happy_birthday",
+        "merry_christmas",
+    ),
+)
+"""What every language has ready: "say good morning in German"."""
+
+
+def in_language(d: Discourse, node: Node, text: Value, code: str) -> Value:
+    """The text in another language: what that has ready, else words that are in it already. Nothing
+    is translated, so that words of the own language are refused."""
+    if code == d.language.code or not isinstance(text, Text):
+        return text
+    said = d.language.tokens_of(text.value.rstrip(".!"))
+    for key in SAYINGS:
+        if said == d.language.tokens_of(d.language.phrase(key).rstrip(".!")):
+            return Text(load_language(code).phrase(key))
+    other = load_language(code)
+    own = d.language.words | d.language.closed | words_for(d.language).verb_forms
+    foreign = set(said) - own or set(said) <= other.words | other.closed
+    if "quote" not in node.parts and not foreign:
+        part = node.parts["text"]
+        raise NotUnderstood(
+            d.language.phrase("cannot_translate", what=d.words(part.start, part.end)),
+            gap=(part.start, part.end),
+        )
+    return text
 
 
 def spoken(d: Discourse, node: Node) -> Value:

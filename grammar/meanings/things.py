@@ -115,7 +115,7 @@ def put(d: Discourse, node: Node) -> Steps:
     if source is not None:
         thing = replace(thing, place=source.place, furniture=source.furniture)
     spot: Where = d.get(node, "where") or Where()
-    if node.production.fixed.get("there") and d.place is not None:
+    if node.production.fixed.get("there") and (d.place is not None or not d.done):
         spot = Where(place_there(d, node))
     last = d.done[-1] if d.done else None
     if isinstance(last, Call) and last == Call("put", {"thing": thing.value}):
@@ -260,9 +260,21 @@ def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None
     return [*steps, Call("give", give)]
 
 
+def goes_on(d: Discourse, at: int) -> bool:
+    """Whether the words before a token belong to the same clause: no mark and no "and" parts
+    them."""
+    before = d.tokens[at - 1] if at else None
+    joins = d.language.speech.get("joins", ())
+    return before is not None and before.kind != "mark" and before.norm not in joins
+
+
 @meaning("statement")
 def statement(d: Discourse, node: Node) -> Steps:
     """ "there is a cup on the table": nothing to do, but now it is spoken of."""
+    where_first = node.parts.get("from")
+    if where_first is not None and where_first.start == node.start and goes_on(d, node.start):
+        # "check whether the door | of room 3 is open" is one clause, however its words may part
+        raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
     spoken_of: Thing | list[Thing] | None = d.get(node, "thing") or d.get(node, "person_ref")
     thing = spoken_of[0] if isinstance(spoken_of, list) else spoken_of  # "it" is one of them
     spot: Where | None = d.get(node, "from")

@@ -1,4 +1,5 @@
-"""Noun phrases of English: one command each, with its exact program, or what the robot answers."""
+"""Noun phrases and single commands of English, each with its exact program, or with what the robot
+answers instead."""
 
 from __future__ import annotations
 
@@ -15,10 +16,11 @@ from sandbox.check import check
 from tests.grammar.test_honest import unbound
 from tests.grammar.ward import WARD, program
 
-FILE = Path(__file__).with_name("noun_phrases_en.yaml")
+FILES = [Path(__file__).with_name(f"{name}_en.yaml") for name in ("noun_phrases", "commands")]
 ROWS = [
     (row["say"], row.get("means"), row.get("refused"))
-    for rows in yaml.load(FILE.read_text(encoding="utf-8"), Loader=yaml.BaseLoader).values()
+    for file in FILES
+    for rows in yaml.load(file.read_text(encoding="utf-8"), Loader=yaml.BaseLoader).values()
     for row in rows
 ]
 STUB = stub()

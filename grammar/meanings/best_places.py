@@ -1,0 +1,47 @@
+"""The place that has the most or the fewest of something: "the office with the fewest people"."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from grammar.chart import Node
+from grammar.discourse import Discourse, Steps, Thing
+from grammar.meanings.places import kind_places, only_taken_apart, sought
+from grammar.meanings.registry import meaning
+from grammar.plan import Ask, Compare, Either, If, Number, Recall, Remember, Text, Value
+
+
+@dataclass(frozen=True)
+class Best:
+    """Which place is meant: of these places, the one with the most such things, or the fewest."""
+
+    places: Value
+    thing: Thing
+    most: bool
+
+
+@meaning("place_best")
+def place_best(d: Discourse, node: Node) -> Best:
+    """ "the ward with the most patients": found out by going round."""
+    only_taken_apart(d, node)
+    before = d.person, d.thing, d.thing_last
+    thing: Thing = d.get(node, "thing")
+    d.person, d.thing, d.thing_last = before
+    return Best(kind_places(d, d.get(node, "kind")), thing, not node.production.fixed.get("fewest"))
+
+
+def survey(d: Discourse, best: Best) -> tuple[Steps, Recall]:
+    """The round that finds the place, and its name. Where there are none at all, any is as good."""
+    from grammar.meanings.rounds import round_of
+
+    place, count = d.variable("place"), d.variable("count")
+    kept, most = d.variable("best"), d.variable("most" if best.most else "fewest")
+    better = Compare(Recall(count), ">" if best.most else "<", Recall(most))
+    first = Compare(Recall(kept), "==", Text(""))
+    counting = Remember(count, Ask("count", {"thing": sought(d, best.thing)}))
+    noting = If(
+        Either((first, better)), (Remember(most, Recall(count)), Remember(kept, Recall(place)))
+    )
+    going = round_of(d, best.places, [counting, noting], place)
+    d.at = d.with_person = None
+    return [Remember(most, Number(0)), Remember(kept, Text("")), going], Recall(kept)
