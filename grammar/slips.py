@@ -15,6 +15,10 @@ from grammar.tokens import COMMA, Token
 
 SHORTEST_JOINED: Final = 4
 """Letters of two words that a space is missing between."""
+LONG_ENOUGH: Final = 5
+"""Letters of a word that others may be run into: "laccueil", but "lait" is milk."""
+VOWELS: Final = frozenset("aeiouy")
+"""What a word may begin with that another is elided before."""
 
 
 def mended(
@@ -31,18 +35,29 @@ def mended(
 def _parted(token: Token, language: Language, known: Collection[str]) -> list[Token]:
     """ "tothe" as "to the": two words of which one is a little word of the language."""
     word = token.norm
-    if token.kind != "word" or token.capital or len(word) < SHORTEST_JOINED or word in known:
+    if token.kind != "word" or word in known:
+        return [token]
+    for cut in (len(each) for each in language.speech.get("elided", ()) if word.startswith(each)):
+        rest = word[cut:]
+        if rest[:1] in VOWELS and len(rest) >= LONG_ENOUGH and rest in known:  # "laccueil"
+            return _cut(token, cut)
+    if token.capital or len(word) < SHORTEST_JOINED:
         return [token]
     little = language.speech.get("joined_to", ())
     for cut in range(2, len(word) - 1):
         first, second = word[:cut], word[cut:]
         if first in known and second in known and (first in little or second in little):
-            middle = token.start + cut
-            return [
-                replace(token, norm=first, end=middle),
-                replace(token, norm=second, start=middle),
-            ]
+            return _cut(token, cut)
     return [token]
+
+
+def _cut(token: Token, cut: int) -> list[Token]:
+    """A token as two, the second of which begins after so many letters."""
+    middle = token.start + cut
+    return [
+        replace(token, norm=token.norm[:cut], end=middle),
+        replace(token, norm=token.norm[cut:], start=middle),
+    ]
 
 
 def _plain(tokens: list[Token], language: Language, verbs: Collection[str]) -> Iterator[Token]:

@@ -14,10 +14,12 @@ from grammar.plan import (
     Collect,
     ForEach,
     Forever,
+    Holds,
     If,
     Increase,
     Items,
     Node,
+    Not,
     Number,
     Plan,
     Recall,
@@ -25,6 +27,7 @@ from grammar.plan import (
     Repeat,
     RepeatUntil,
     Step,
+    Text,
     Try,
     Value,
     While,
@@ -59,7 +62,7 @@ def _scoped(steps: tuple[Step, ...], known: frozenset[str]) -> tuple[Step, ...]:
     for step in steps:
         if done and isinstance(done[-1], Forever):
             # What follows a loop without end would never be done: it belongs to each round.
-            done[-1] = msgspec.structs.replace(done[-1], steps=(*done[-1].steps, step))
+            done[-1] = _in_each_round(done[-1], step)
             continue
         done.append(step)
         while (missing := _missing(done[-1], bound[-1])) is not None:
@@ -234,6 +237,37 @@ def nodes(value: Any) -> Iterator[Node]:
     elif isinstance(value, dict):
         for each in value.values():
             yield from nodes(each)
+
+
+def replaced(part: Any, old: Value, new: Value) -> Any:
+    """A part of a plan with one value put in the place of another, in texts too."""
+    if part == old:
+        return new
+    if isinstance(part, tuple):
+        return tuple(replaced(each, old, new) for each in part)
+    if isinstance(part, dict):
+        return {key: replaced(value, old, new) for key, value in part.items()}
+    if isinstance(part, Text) and isinstance(old, Text) and isinstance(new, Text):
+        return Text(part.value.replace(old.value, new.value))
+    if isinstance(part, msgspec.Struct):
+        fields = {name: replaced(getattr(part, name), old, new) for name in part.__struct_fields__}
+        return msgspec.structs.replace(part, **fields)
+    return part
+
+
+def _in_each_round(loop: Forever, step: Step) -> Forever:
+    """A loop without end with one more step: before its pause, and said to somebody who is looked
+    for only if they are found: "every two hours look for Bob and ask him how he is"."""
+    body = list(loop.steps)
+    ending = body[-1:] if isinstance(body[-1], Call) and body[-1].method == "wait" else []
+    body = body[: len(body) - len(ending)]
+    spoken = isinstance(step, Call) and step.method in ("say", "ask")
+    match body[-1:]:
+        case [If(Not(Holds(Ask("find")) as found), missing, ())] if spoken:
+            body[-1] = If(found, (step,), missing)
+        case _:
+            body.append(step)
+    return Forever((*body, *ending))
 
 
 def mentions(steps: Any, value: Node) -> bool:

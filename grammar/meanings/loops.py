@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, Final
-
-import msgspec
+from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, as_value
@@ -37,7 +35,7 @@ from grammar.plan import (
     Value,
     While,
 )
-from grammar.tidy import mentions, nodes
+from grammar.tidy import mentions, nodes, replaced
 
 HOLDS: Final = frozenset({"goto", "dock", "show", "emotion", "wait"})
 """Methods after which something goes on by itself: "stay in the lobby until noon"."""
@@ -258,22 +256,6 @@ def same_for(d: Discourse, node: Node) -> Steps:
     if person.group is not None or not person.known:
         raise NotUnderstood(d.language.phrase("one_person"))
     return [replaced(step, old, person.value) for step in d.done]
-
-
-def replaced(part: Any, old: Value, new: Value) -> Any:
-    """A part of a plan with one value put in the place of another, in texts too."""
-    if part == old:
-        return new
-    if isinstance(part, tuple):
-        return tuple(replaced(each, old, new) for each in part)
-    if isinstance(part, dict):
-        return {key: replaced(value, old, new) for key, value in part.items()}
-    if isinstance(part, Text) and isinstance(old, Text) and isinstance(new, Text):
-        return Text(part.value.replace(old.value, new.value))
-    if isinstance(part, msgspec.Struct):
-        fields = {name: replaced(getattr(part, name), old, new) for name in part.__struct_fields__}
-        return msgspec.structs.replace(part, **fields)
-    return part
 
 
 # --- for each

@@ -45,6 +45,21 @@ def guide(d: Discourse, node: Node) -> Steps:
     return [*steps, *(lead(d, thing, place) for place in (spot.place, *further))]
 
 
+@meaning("guide_where_wanted")
+def guide_where_wanted(d: Discourse, node: Node) -> Steps:
+    """ "take him where he wants to go": where he has answered, else he is asked."""
+    thing = led(d, node)
+    if d.answer is not None and d.place == Recall(d.answer):
+        return [*meet(d, thing), lead(d, thing, d.place)]
+    steps = meet(d, thing)
+    d.answer = d.variable("place")
+    d.answer_options, d.place = (), Recall(d.answer)
+    arguments: dict[str, Value] = {"question": Text(d.language.phrase("where_to"))}
+    if thing.known:
+        arguments["person"] = thing.value
+    return [*steps, Call("ask", arguments, save_as=d.answer), lead(d, thing, d.place)]
+
+
 def led(d: Discourse, node: Node) -> Thing:
     """Who is to be led: "me" is whoever is here."""
     person: Thing | None = d.get(node, "person_ref")

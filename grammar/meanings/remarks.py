@@ -19,6 +19,7 @@ from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report
 from grammar.meanings.speaking import sentence_form
 from grammar.plan import Ask, Call, Text, Value
+from grammar.tidy import replaced
 
 SUBJECTS: Final = ("person_ref", "place", "thing")
 """Parts that a remark can be about."""
@@ -41,7 +42,11 @@ def remark(d: Discourse, node: Node) -> Steps:
 
 
 def aside(d: Discourse, node: Node) -> Steps:
-    """Nothing to do, but something to show."""
+    """Nothing to do, but something to show; what is asked is no remark."""
+    asked = d.text[d.tokens[node.end - 1].end :].lstrip().startswith("?")
+    if asked and not node.production.fixed.get("own"):
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("not_understood", part=words))
     d.background.append(_said(d, node))
     return []
 
@@ -61,7 +66,10 @@ def _said(d: Discourse, node: Node) -> str:
 @meaning("remark_name")
 def remark_name(d: Discourse, node: Node) -> Steps:
     """ "her name is Grace": "her" and "my wife" are Grace from now on."""
-    d.get(node, "person_ref")
+    before = d.person
+    person: Thing = d.get(node, "person_ref")
+    if before is not None and not before.known and person.known:
+        d.done[:] = [replaced(step, before.value, person.value) for step in d.done]
     return aside(d, node)
 
 

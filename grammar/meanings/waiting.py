@@ -13,6 +13,7 @@ from grammar.meanings.finding import speak_to
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import known_words
+from grammar.meanings.rounds import inside
 from grammar.meanings.surveys import moved
 from grammar.plan import Ask, Call, Compare, Condition, Forever, Holds, Number, Text, While
 
@@ -23,11 +24,21 @@ LOOK_EVERY: Final = 10
 @meaning("when")
 def when(d: Discourse, node: Node) -> Steps:
     """ "when somebody comes, ...": wait for it, then do it; "whenever": again and again."""
+    named_before(d, node)
     wait = waiting(d, node)
     body = d.build(node.parts["then"])
     if node.production.fixed.get("always"):
         return [Forever((*wait, *body))]
     return [*wait, *body]
+
+
+def named_before(d: Discourse, node: Node) -> None:
+    """ "give it to Clara when she comes": she is named in what is said first and done later."""
+    then = node.parts["then"]
+    if d.person is None and then.start < node.parts["condition"].start:
+        names = (each for each in inside(then) if each.production.means == "person_name")
+        if name := next(names, None):
+            d.build(name)
 
 
 def waiting(d: Discourse, node: Node) -> Steps:
