@@ -293,6 +293,9 @@ class Judge:
             return doubt(start, "cannot_show" if node.means == "show" else "cannot_say")
         if node.means == "show":
             return None
+        for at in range(start + 1, end):
+            if self.tokens[at].norm in words.that & words.subordinating:
+                return doubt(start, "cannot_say")  # "Emma auf Französisch, dass ..."
         greeting = self.greeting(start)
         behind = start + greeting
         if greeting and self.wished(start) and not self.complete_greeting(start):

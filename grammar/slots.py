@@ -29,6 +29,8 @@ ASKED_IN_TEXT: Final = 12.0
 """Cost of a text that begins as a question put to the robot does: "who is there"."""
 BEHIND_GREETING: Final = 8.0
 """Cost of a text that goes on where a greeting ends: "good night in ward b" is said there."""
+ASKED_ON: Final = 6.0
+"""Cost of a text that goes on over a second question: "... and how much"."""
 RECEIVER_IN_TEXT: Final = 4.0
 """Cost of a text that begins with the one it is told to: "ihr ihre Proben sind fertig"."""
 WHERE_TO: Final = 2.5
@@ -442,6 +444,8 @@ class Slots:
                 break
             if position > at and (self._begins_command(position) or self._condition(position)):
                 cost += SWALLOWED_COMMAND
+            if self._asks_on(at, position):
+                cost += ASKED_ON
             if token.norm in self._unfinished:
                 cost += FREE_WORD
                 continue
@@ -456,6 +460,11 @@ class Slots:
             if token.kind == "quote" and position == at:
                 break  # what is quoted is the whole text
         return matches
+
+    def _asks_on(self, at: int, position: int) -> bool:
+        """Whether a question that begins another goes on here: "... and how much it hurts"."""
+        joined = position > at + 1 and self.tokens[position - 1].norm in self._joins
+        return joined and self.tokens[position].norm in self._judge.words.asking
 
     def _never_first(self, at: int) -> bool:
         """Whether a pronoun stands here that no statement begins with: "mir dann, wer da ist"."""
@@ -559,10 +568,20 @@ class Slots:
             if position > at and self._named("person", position):
                 break
             doubt += MISSPELT_NOUN if position in self.corrections else 0.0
+            if self._is_look(position):
+                continue  # "der blaue oder der rote Hefter": no noun ends with an adjective
             length = position + 1 - at
             matches.append((position + 1, FREE_WORD * length + doubt, None))
         named = {end for slot in ("person", "place") for end in self._named(slot, at)}
         return [match for match in matches if match[0] not in named]  # a name is no thing
+
+    def _is_look(self, position: int) -> bool:
+        """Whether a small letter shows that this is no noun but a word for how things look."""
+        token = self.tokens[position]
+        trie = self.names.tries.get("attribute")
+        written = self.language.speech.get("capital_nouns") and not token.capital
+        branch = trie.branches.get(token.norm) if trie is not None and written else None
+        return branch is not None and bool(branch.values)
 
     def _noun_over(self, at: int, position: int) -> bool:
         """Whether a small letter shows that the noun before is at an end: "Tasse leer"."""

@@ -7,7 +7,7 @@ What follows ">>" stands after a verb that ends its clause: "say: ~report <perso
 "sag mir, wie spät es ist" and "mir zu sagen, wie spät es ist".
 
 `forms` makes the rules `<fetch_1>` (as a command begins), `<fetch_off>` (what a verb that parts
-leaves at the end) and `<fetch_2>` (as a clause ends); `ordered` makes the templates with them. Both
+leaves at the end), `<fetch_2>` (as a clause ends) and `<fetch_done>` (its participle); `ordered` makes the templates with them. Both
 follow patterns in the language's data, so that another language may order its clauses otherwise.
 """
 
@@ -36,6 +36,7 @@ def forms(verbs: Mapping[str, Sequence[str]], conjugation: Mapping[str, Any]) ->
         parting: dict[str, None] = {}
         last: dict[str, None] = {}
         particles: dict[str, None] = {}
+        done: dict[str, None] = {}
         for infinitive in infinitives:
             particle, _, base = infinitive.rpartition(PARTS)
             if particle:
@@ -49,8 +50,12 @@ def forms(verbs: Mapping[str, Sequence[str]], conjugation: Mapping[str, Any]) ->
             else:
                 whole |= begins
             last |= dict.fromkeys(pattern.format(particle=particle, **made) for pattern in patterns)
+            ends = conjugation.get("done", ())
+            done |= dict.fromkeys(pattern.format(particle=particle, **made) for pattern in ends)
         rules[f"{name}_1"] = _rule(first)
         rules[f"{name}_2"] = _rule(last)
+        if done:
+            rules[f"{name}_done"] = _rule(done)
         if particles:
             rules[f"{name}_off"] = _rule(particles)
         if whole and parting:
@@ -68,6 +73,7 @@ def _rule(words: Mapping[str, None]) -> dict[str, Any]:
 def _conjugated(infinitive: str, conjugation: Mapping[str, Any]) -> dict[str, str]:
     """The forms that the patterns name: `infinitive`, `stem`, and those the endings give."""
     made = {"infinitive": infinitive}
+    participle = conjugation.get("participles", {}).get(infinitive)
     changed = conjugation.get("irregular", {}).get(infinitive)
     for name, endings in conjugation["forms"].items():
         start = changed if changed and name in conjugation["changing"] else infinitive
@@ -78,6 +84,8 @@ def _conjugated(infinitive: str, conjugation: Mapping[str, Any]) -> dict[str, st
             for ending, instead in endings
             if re.search(ending, start)
         )
+    if participle is not None:
+        made["participle"] = participle
     return made
 
 

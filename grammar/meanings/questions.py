@@ -318,6 +318,8 @@ def ask_to(d: Discourse, node: Node) -> Steps:
         text = f"{text} {last or turn_to_you(d, verb.start, verb.end)}".strip()
     if "why" in node.parts:
         text += d.words(node.parts["why"].start, node.parts["why"].end)
+    without = d.language.speech.get("please_without", ())
+    text = " ".join(word for word in text.split() if word not in without)
     request = d.sentence("please_do", what=text)
     return speak_to(d, d.get(node, "person_ref"), [Call("say", {"text": request})])
 
@@ -342,6 +344,31 @@ def ask_again(d: Discourse, node: Node) -> Steps:
     name = remember_answer(d, last.options, "answer")
     call = Call("ask", arguments, save_as=name)
     return [*steps, asked(d, call, last.options, person.value if person.known else None)]
+
+
+@meaning("ask_more")
+def ask_more(d: Discourse, node: Node) -> Steps:
+    """ "ask her whether it hurts, and how much": one more question to the same person."""
+    one = d.person is not None and d.person.group is None and not d.person.every
+    if not d.surveys or not one or about_others(d, node.parts["question"]):
+        raise NotUnderstood(d.language.phrase("no_question"))
+    assert d.person is not None
+    return ask_one(d, node, replace(d.person, here=True))
+
+
+def about_others(d: Discourse, question: Leaf | Node) -> bool:
+    """Whether the pronoun of a second question may mean somebody or something of the first:
+    "whether she is in pain, and how strong they are"."""
+    if not isinstance(question, Node) or "asked" not in question.parts:
+        return False
+    before = d.surveys[-1].call.arguments["question"]
+    words = d.language.tokens_of(before.value) if isinstance(before, Text) else ()
+    if any(d.language.tokens_of(each.name)[0] in words for each in d.lexicon.people):
+        return True
+    verb = question.parts.get("verb")
+    said = d.words(verb.start, verb.end) if verb is not None else ""
+    several = base_form(d, said) == said  # "sind", of one who is asked
+    return several and d.person is not None and d.person.known
 
 
 @meaning("ask_in")
