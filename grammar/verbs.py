@@ -7,8 +7,9 @@ What follows ">>" stands after a verb that ends its clause: "say: ~report <perso
 "sag mir, wie spät es ist" and "mir zu sagen, wie spät es ist".
 
 `forms` makes the rules `<fetch_1>` (as a command begins), `<fetch_off>` (what a verb that parts
-leaves at the end), `<fetch_2>` (as a clause ends) and `<fetch_done>` (its participle); `ordered` makes the templates with them. Both
-follow patterns in the language's data, so that another language may order its clauses otherwise.
+leaves at the end), `<fetch_2>` (as a clause ends) and `<fetch_done>` (its participle); `ordered`
+makes the templates with them. Both follow patterns in the language's data, so that another language
+may order its clauses otherwise.
 """
 
 from __future__ import annotations
