@@ -74,16 +74,30 @@ class Lexicon:
         default_factory=dict, init=False, repr=False, compare=False
     )
 
+    _series: frozenset[str] = field(default=frozenset(), init=False, repr=False, compare=False)
+
     def __post_init__(self) -> None:
         for place in self.places:
             kind = kind_of(place)
             if kind:
                 self._kinds[kind] = (*self._kinds.get(kind, ()), place)
+        names = {name.lower() for place in self.places for name in (place.name, *place.aliases)}
+        series: dict[str, tuple[Name, ...]] = {}
+        for place in self.places:
+            for name in {series_of(each) for each in (place.name, *place.aliases)}:
+                if name and name not in names and name not in self._kinds:
+                    series[name] = (*series.get(name, ()), place)
+        self._kinds.update(series)
+        object.__setattr__(self, "_series", frozenset(series))
 
     @property
     def place_kinds(self) -> dict[str, tuple[Name, ...]]:
-        """The places of each kind."""
+        """The places of each kind, and of each series: "conference room" 1, 2 and 3."""
         return self._kinds
+
+    def is_series(self, kind: str) -> bool:
+        """Whether a kind is only what numbered names have in common, which no robot knows of."""
+        return kind in self._series
 
 
 def kind_of(place: Name) -> str | None:
@@ -92,6 +106,13 @@ def kind_of(place: Name) -> str | None:
         return place.kind.lower()
     words = place.name.lower().split()
     return words[-1] if len(words) > 1 and not words[-1].isdigit() else None
+
+
+def series_of(name: str) -> str | None:
+    """What a numbered name counts: "conference room" of "Conference room 2b"."""
+    *words, last = name.lower().split() or [""]
+    numbered = last[:1].isdigit() or len(last) == 1
+    return " ".join(words) if words and numbered else None
 
 
 EMPTY: Final = Lexicon()

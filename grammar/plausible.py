@@ -8,92 +8,104 @@ thing will be there is for the dry run to find out.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
 from grammar.plan import (
     Ask,
     Call,
+    Choice,
     Collect,
     ForEach,
     Forever,
     If,
     Increase,
+    Items,
     Plan,
-    Recall,
     Remember,
     Repeat,
     RepeatUntil,
     Step,
     Text,
     Try,
+    Value,
     While,
 )
 from grammar.tidy import nodes
 
 LETTING_GO: Final = frozenset({"put", "give"})
-FINDING_OUT: Final = frozenset({"ask", "sees", "count", "people", "objects", "describe"})
+FINDING_OUT: Final = frozenset({"ask", "sees", "find", "count", "people", "objects", "describe"})
 """Methods that tell the robot something."""
+WHERE_AND_WHOM: Final = frozenset({"person", "place"})
+"""Parameters of these that the round itself fills in."""
+EVERYWHERE: Final = Ask("places")
 
 
 class Doubt(Enum):
     """What makes no sense in a plan; the value is the name of the phrase that says so."""
 
     EMPTY_HANDED = "empty_handed"
+    FULL_HANDED = "taken_twice"
     TWICE = "found_out_twice"
 
 
 def implausible(plan: Plan) -> Doubt | None:
     """What makes no sense in a plan, if anything does."""
-    if _lets_go_of_nothing(plan):
-        return Doubt.EMPTY_HANDED
-    if _finds_out_twice(plan):
-        return Doubt.TWICE
-    return None
+    return _handled(plan) or (Doubt.TWICE if _finds_out_twice(plan) else None)
 
 
 # --- hands ---------------------------------------------------------------------------------------
 
 
-class Hand(Enum):
+class _Senseless(Exception):
+    def __init__(self, doubt: Doubt) -> None:
+        super().__init__(doubt.value)
+        self.doubt = doubt
+
+
+@dataclass(frozen=True)
+class Hand:
     """What a robot has in its hand at some point of a plan."""
 
-    UNKNOWN = "perhaps something, from before"
-    FULL = "something"
-    EMPTY = "nothing"
+    known: bool
+    """Whether that can be told: at first it may hold what somebody has given it."""
+    thing: Value | None = None
+    """What it has taken last, if it still has it."""
 
 
-class _Nothing(Exception):
-    """Something is let go of that nobody took."""
-
-
-def _lets_go_of_nothing(plan: Plan) -> bool:
-    """Whether something is put or given that was surely never taken."""
+def _handled(plan: Plan) -> Doubt | None:
+    """Whether something is put or given that was surely never taken, or taken when it surely is in
+    the hand already."""
     try:
-        _after(plan.steps, Hand.UNKNOWN)
-    except _Nothing:
-        return True
-    return False
+        _after(plan.steps, Hand(known=False))
+    except _Senseless as senseless:
+        return senseless.doubt
+    return None
 
 
 def _after(steps: tuple[Step, ...], hand: Hand) -> Hand:
     for step in steps:
         match step:
-            case Call(method="grab"):
-                hand = Hand.FULL
-            case Call(method=method, arguments=arguments) if method in LETTING_GO:
+            case Call(method="grab", arguments=arguments):
                 thing = arguments.get("thing")
+                if isinstance(thing, Text) and thing == hand.thing:
+                    raise _Senseless(Doubt.FULL_HANDED)
+                hand = Hand(known=True, thing=thing)
+            case Call(method=method, arguments=arguments) if method in LETTING_GO:
                 # Nobody can have been given in advance what an answer will be.
-                known = isinstance(thing, Text) or hand is Hand.FULL
-                if hand is Hand.EMPTY or not known:
-                    raise _Nothing
-                hand = Hand.EMPTY
+                given = not hand.known and isinstance(arguments.get("thing"), Text)
+                if hand.thing is None and not given:
+                    raise _Senseless(Doubt.EMPTY_HANDED)
+                hand = Hand(known=True)
             case If():
                 hand = _either(_after(step.then, hand), _after(step.otherwise, hand))
             case Try():
                 hand = _either(_after(step.steps, hand), _after(step.otherwise, hand))
             case Repeat() | ForEach() | While() | RepeatUntil() | Forever():
                 once = _after(step.steps, hand)
+                if once.thing is not None:  # in the next round another such thing may be taken
+                    once = Hand(known=True, thing=Choice(Items((once.thing,))))
                 hand = _either(hand, _after(step.steps, once))
             case _:
                 pass
@@ -102,14 +114,19 @@ def _after(steps: tuple[Step, ...], hand: Hand) -> Hand:
 
 def _either(one: Hand, other: Hand) -> Hand:
     """What may be in the hand where two ways meet: only what is so on both is known."""
-    return one if one is other else Hand.UNKNOWN
+    if one == other:
+        return one
+    if one.thing is not None and other.thing is not None:
+        return Hand(known=True, thing=Choice(Items((one.thing, other.thing))))
+    return Hand(known=False)
 
 
 # --- finding out ---------------------------------------------------------------------------------
 
 
 def _finds_out_twice(plan: Plan) -> bool:
-    """Whether two rounds in a row go over the same places or people and find out the same."""
+    """Whether two rounds in a row go over the same places or people, or the second one over all
+    places there are, and find out the same."""
     return any(_repeats(each) for each in _rows(plan.steps))
 
 
@@ -129,7 +146,7 @@ def _repeats(steps: tuple[Step, ...]) -> bool:
     for step in steps:
         if isinstance(step, ForEach):
             asked = _questions(step)
-            if asked and any(items == step.items and asked & before for items, before in done):
+            if any(asked & before and step.items in (items, EVERYWHERE) for items, before in done):
                 return True
             done.append((step.items, asked))
         elif _changes_something(step):
@@ -138,17 +155,15 @@ def _repeats(steps: tuple[Step, ...]) -> bool:
 
 
 def _questions(step: ForEach) -> frozenset[str]:
-    """What a round finds out, each named in one way whatever the round calls its place."""
-    return frozenset(
-        repr(
-            (
-                node.method,
-                [(name, value) for name, value in node.arguments.items() if name != "person"],
-            )
-        ).replace(repr(Recall(step.variable)), "it")
-        for node in nodes(step.steps)
-        if isinstance(node, Call | Ask) and node.method in FINDING_OUT
-    )
+    """What a round finds out, whatever it calls its place: to look for a cup and to see whether
+    there is one is the same."""
+    found: set[str] = set()
+    for node in nodes(step.steps):
+        if isinstance(node, Call | Ask) and node.method in FINDING_OUT:
+            asked = [item for item in node.arguments.items() if item[0] not in WHERE_AND_WHOM]
+            method = "sees" if node.method == "find" else node.method
+            found.add(repr((method, asked)))
+    return frozenset(found)
 
 
 def _changes_something(step: Step) -> bool:

@@ -256,6 +256,20 @@ class Slots:
 
     # --- names
 
+    @functools.cached_property
+    def _inside_names(self) -> frozenset[int]:
+        """The tokens in the middle of the name of a person or a place: nobody who speaks of
+        Professor Lee tells a professor words that begin with "Lee"."""
+        return frozenset(
+            position
+            for slot in ("person", "place")
+            if slot in self.names.tries
+            for at in range(len(self.tokens))
+            for end, cost, _ in self._name(self.names.tries[slot], at)
+            if not cost
+            for position in range(at + 1, end)
+        )
+
     def _name(self, trie: Trie, at: int) -> list[Match]:
         matches: list[Match] = []
         self._walk(trie, at, 0.0, (), matches)
@@ -421,6 +435,8 @@ class Slots:
 
     def _text(self, at: int) -> list[Match]:
         """Free text of any length; it costs more where it goes on over another command."""
+        if at in self._inside_names:
+            return []
         matches: list[Match] = []
         cost = ASKED_IN_TEXT if self._judge.asks(at, len(self.tokens)) else 0.0
         if self._judge.given_to(at) or self._never_first(at):

@@ -334,7 +334,10 @@ def place_tail(d: Discourse, node: Node) -> Value:
 
 
 def kind_places(d: Discourse, kind: str | Value | None) -> Value:
-    """All places of a kind, asked of the robot; those that a noun phrase speaks of as they are."""
+    """All places of a kind, asked of the robot; those of a series by their names, and those that a
+    noun phrase speaks of as they are."""
+    if isinstance(kind, str) and d.lexicon.is_series(kind):
+        return Items(tuple(Text(each.name) for each in d.lexicon.place_kinds[kind]))
     if kind is None or isinstance(kind, str):
         return Ask("places", {"kind": Text(kind)} if kind else {})
     return kind
