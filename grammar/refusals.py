@@ -8,6 +8,7 @@ import itertools
 from collections.abc import Callable, Sequence, Set
 from typing import Final
 
+from grammar.freetext import words_for
 from grammar.inference import form_for
 from grammar.language import Language
 from grammar.lexicon import Lexicon
@@ -92,7 +93,7 @@ def why_not(tokens: Sequence[Token], language: Language, names: Set[str]) -> str
     words = {word for word in said if word not in names}
     for sign, phrase in _signs(language, "refusals").items():
         if phrase in language.speech.get("refused_as_asked", ()):
-            found = any(tuple(said[at : at + len(sign)]) == sign for at in range(2))
+            found = tuple(said[: len(sign)]) == sign
         elif len(sign) > 1:  # several words are no name by chance: "blood pressure"
             found = any(tuple(said[at : at + len(sign)]) == sign for at in range(len(said)))
         else:
@@ -102,9 +103,15 @@ def why_not(tokens: Sequence[Token], language: Language, names: Set[str]) -> str
     return "not_understood_at_all"
 
 
-def is_half(tokens: Sequence[Token], language: Language) -> bool:
-    """Whether a sentence ends with a word that no sentence ends with: "go to the"."""
-    return bool(tokens) and tokens[-1].norm in language.speech.get("half_ends", ())
+def is_half(tokens: Sequence[Token], language: Language, names: Set[str]) -> bool:
+    """Whether a sentence ends with a word that no sentence ends with, "go to the", or is no more
+    than the beginning of one: "tell"."""
+    if not tokens:
+        return False
+    last = tokens[-1].norm
+    begun = len(tokens) == 1 and last in words_for(language).verbs
+    lettered = len(last) == 1 and len(tokens) > 1 and tokens[-2].norm in names  # "ward a"
+    return begun or (not lettered and last in language.speech.get("half_ends", ()))
 
 
 def strange(tokens: Sequence[Token], known: Callable[[Token], bool]) -> tuple[int, int] | None:

@@ -504,9 +504,11 @@ class Reader:
         """Which part was not understood; of a sentence that is none of its business, why."""
         if part:
             return self.language.phrase("not_understood", part=part)
-        if is_half(self.tokens, self.language):
-            return self.language.phrase("unfinished", part=self.text.strip(" .!?"))
         phrase = why_not(self.tokens, self.language, self.names.called)
+        if phrase == "not_understood_at_all" and is_half(
+            self.tokens, self.language, self.names.called
+        ):
+            return self.language.phrase("unfinished", part=self.text.strip(" .!?"))
         words = strange(self.tokens, lambda token: not self._is_unknown(token))
         if phrase == "not_understood_at_all" and words is not None:
             return self.language.phrase("unknown_word", part=self.words(*words))

@@ -1,4 +1,4 @@
-"""The place that has the most or the fewest of something: "the office with the fewest people"."""
+"""Places told by what is found there: "the office with the fewest people", "any empty office"."""
 
 from __future__ import annotations
 
@@ -8,7 +8,20 @@ from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.meanings.places import kind_places, only_taken_apart, sought
 from grammar.meanings.registry import meaning
-from grammar.plan import Ask, Compare, Either, If, Number, Recall, Remember, Text, Value
+from grammar.meanings.rounds import Trait, round_of
+from grammar.plan import (
+    Ask,
+    Compare,
+    Condition,
+    Either,
+    End,
+    If,
+    Number,
+    Recall,
+    Remember,
+    Text,
+    Value,
+)
 
 
 @dataclass(frozen=True)
@@ -30,10 +43,39 @@ def place_best(d: Discourse, node: Node) -> Best:
     return Best(kind_places(d, d.get(node, "kind")), thing, not node.production.fixed.get("fewest"))
 
 
+@dataclass(frozen=True)
+class Such:
+    """Which place is meant: the first of these of which something is true."""
+
+    places: Value
+    variable: str
+    """What the place is called in the round that looks for it."""
+    trait: Trait
+
+
+@meaning("place_such")
+def place_such(d: Discourse, node: Node) -> Such:
+    """ "an empty office", "any lab that has a microscope": the first that is so."""
+    only_taken_apart(d, node)
+    place = d.variable("place")
+    before = d.at, d.person, d.thing, d.thing_last
+    d.at = Recall(place)
+    trait: Trait = d.get(node, "place_trait")
+    d.at, d.person, d.thing, d.thing_last = before
+    return Such(kind_places(d, d.get(node, "kind")), place, trait)
+
+
+def first_such(d: Discourse, such: Such) -> tuple[Steps, Recall, Condition]:
+    """The round that finds the place, its name, and whether there is none."""
+    found = d.variable("found")
+    noting = If(such.trait.condition, (Remember(found, Recall(such.variable)), End()))
+    going = round_of(d, such.places, [*such.trait.first, noting], such.variable)
+    d.at = d.with_person = None
+    return [Remember(found, Text("")), going], Recall(found), Compare(Recall(found), "==", Text(""))
+
+
 def survey(d: Discourse, best: Best) -> tuple[Steps, Recall]:
     """The round that finds the place, and its name. Where there are none at all, any is as good."""
-    from grammar.meanings.rounds import round_of
-
     place, count = d.variable("place"), d.variable("count")
     kept, most = d.variable("best"), d.variable("most" if best.most else "fewest")
     better = Compare(Recall(count), ">" if best.most else "<", Recall(most))

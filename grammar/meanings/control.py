@@ -11,6 +11,7 @@ from grammar.meanings.finding import go, not_found
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import summed_at_end
 from grammar.meanings.rounds import in_round
+from grammar.meanings.things import goes_on
 from grammar.plan import Ask, Call, Holds, If, Not, Recall, Remember, Step, Text, Value
 from grammar.tidy import mentions
 
@@ -32,6 +33,12 @@ def steps(d: Discourse, node: Node) -> Steps:
             before = len(d.done)
             first = each.parts["first"]
             assert isinstance(first, Node)
+            relative = d.tokens[first.start].norm in d.language.speech.get("relative", ())
+            if relative and goes_on(
+                d, first.start
+            ):  # "is anyone there | who needs help": one clause
+                words = d.words(first.start, first.end)
+                raise NotUnderstood(d.language.phrase("not_understood", part=words))
             d.done.extend(in_round(d, first))
             clauses.append((joint, len(d.done) - before))
             joint = str(each.production.fixed.get("joint", "and"))

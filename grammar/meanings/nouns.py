@@ -39,6 +39,14 @@ def mods(d: Discourse, node: Node) -> list[Where | str]:
     return [*found, *(d.get(node, "rest") or [])]
 
 
+@meaning("where_pointed")
+def where_pointed(d: Discourse, node: Node) -> str:
+    """ "in it", "on them": where the robot is by what was said; of nothing spoken of, nowhere."""
+    if not (d.place or d.thing or d.at or d.at_furniture or d.person):
+        raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
+    return ""
+
+
 @meaning("descriptor")
 def descriptor(d: Discourse, node: Node) -> str:
     """What stands after a noun and tells it from others: "waving", "with a red shirt"."""
@@ -263,6 +271,13 @@ def things(d: Discourse, node: Node) -> list[Thing]:
     return listed(d, node)
 
 
+@meaning("thing_rather")
+def thing_rather(d: Discourse, node: Node) -> Thing:
+    """ "the cup on the counter, not the one on the table": the first says enough."""
+    found: Thing = d.get(node, "first")
+    return found
+
+
 @meaning("thing_either")
 def thing_either(d: Discourse, node: Node) -> list[Thing]:
     """ "the red cup, or if there is none the blue one"."""
@@ -444,7 +459,12 @@ def person_count(d: Discourse, node: Node) -> Thing:
     """ "three visitors": one after the other, whoever they are."""
     kind = str(d.get(node, "kind_of_person", ANYONE))
     found = replace(described(d, kind, node), person=True, plural=True)
-    found = replace(found, count=int(d.get(node, "count")))
+    number = int(d.get(node, "count"))
+    named = known_by_name(d, found, kind)
+    if d.tokens[node.start].norm in d.language.speech.get("definite", ()) and len(named) == number:
+        d.group = Items(named)  # "the two doctors", where the world knows two
+        return replace(found, known=True, group=d.group)
+    found = replace(found, count=number)
     d.person, d.thing_last = replace(found, here=True, plural=False), False
     return found
 

@@ -27,7 +27,7 @@ from grammar.discourse import (
     Steps,
     Thing,
 )
-from grammar.meanings.best_places import Best, survey
+from grammar.meanings.best_places import Best, Such, first_such, survey
 from grammar.meanings.finding import found, go, look_for, named, not_found
 from grammar.meanings.surveys import each_asked, uses_answer
 from grammar.naming import place_called
@@ -52,6 +52,7 @@ from grammar.plan import (
     Repeat,
     Step,
     Text,
+    Truth,
     Value,
     While,
 )
@@ -76,7 +77,8 @@ TOGETHER: Final = frozenset(
 """Commands that know themselves what to do with several people."""
 ALWAYS: Final = frozenset(
     {
-        "each_place", "person_either", "place_any", "place_best", "place_either", "place_where",
+        "each_place", "person_either", "place_any", "place_best", "place_either", "place_such",
+        "place_where",
         "thing_either", "things",
     }
 )  # fmt: skip
@@ -295,7 +297,26 @@ def over_places(d: Discourse, node: Node, places: Value, one: One) -> Steps:
     d.loops[place.name] = places
     body = round_of_steps(d, lambda: one(place))
     d.at = d.with_person = None
-    return [ForEach(place.name, places, tuple(another_one(d, body)))]
+    return searched(d, place, places, body) or [
+        ForEach(place.name, places, tuple(another_one(d, body)))
+    ]
+
+
+def searched(d: Discourse, place: Recall, places: Value, body: Steps) -> Steps:
+    """ "search every ward for the thermometer": until it is found; nothing if that is not what is
+    done at each place."""
+    match body:
+        case [If(condition=Not(condition=Holds(value=Ask(method="find"))), then=missing)]:
+            search = body[0].condition.condition  # type: ignore[union-attr]
+        case _:
+            return []
+    found_it = Recall(d.variable("found"))
+    success = (Remember(found_it.name, Truth(True)), End())
+    return [
+        Remember(found_it.name, Truth(False)),
+        ForEach(place.name, places, (If(search, success),)),
+        If(Not(Holds(found_it)), missing),
+    ]
 
 
 def over_either_place(d: Discourse, node: Node, places: list[Value], one: One) -> Steps:
@@ -327,6 +348,13 @@ def over_place_best(d: Discourse, node: Node, best: Best, one: One) -> Steps:
     going, place = survey(d, best)
     d.place = place
     return [*going, *one(place)]
+
+
+def over_place_such(d: Discourse, node: Node, such: Such, one: One) -> Steps:
+    """ "an empty office": the first that is; if none is, that is said."""
+    going, place, none = first_such(d, such)
+    d.place = place
+    return [*going, If(none, (d.say("no_such_places"),), tuple(guarded(d, one(place))))]
 
 
 def over_place_where(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
@@ -519,6 +547,7 @@ OVER: Final[dict[str, Callable[[Discourse, Node, Any, One], Steps]]] = {
     "each_place": over_places,
     "place_any": over_any_place,
     "place_best": over_place_best,
+    "place_such": over_place_such,
     "place_either": over_either_place,
     "place_where": over_place_where,
     "person_coming": over_people,

@@ -89,6 +89,7 @@ def remark_where(d: Discourse, node: Node) -> Steps:
         d.person, d.thing_last = replace(who, place=place, furniture=spot.furniture), False
         d.with_person = None
         known_to_be(d, who.value, place)
+        fetched_there(d, who, place)
     else:
         what = thing or d.thing
         if isinstance(what, Thing):  # of several, each is where it is
@@ -102,6 +103,23 @@ def may_be_it(d: Discourse, node: Node) -> bool:
     Tisch", said of a scarf."""
     things = set(d.language.speech.get("things_too", ()))
     return d.thing_last and bool(things & set(d.norms(node.start, node.start + 2)))
+
+
+def fetched_there(d: Discourse, who: Thing, place: Value | None) -> None:
+    """ "take my father to radiology, he is in the lobby": nobody is led who is elsewhere."""
+    if place is None or any(
+        isinstance(step, Call)
+        and step.method == "find"
+        and step.arguments.get("thing") == who.value
+        for step in d.done
+    ):
+        return
+    for at, step in enumerate(d.done):
+        if not (isinstance(step, Call) and step.method in ("guide", "follow")):
+            continue
+        if step.arguments.get("person") == who.value:
+            d.done.insert(at, Call("find", {"thing": who.value, "place": place}))
+            return
 
 
 def known_to_be(d: Discourse, value: Value, place: Value | None) -> None:

@@ -87,8 +87,15 @@ def remind(d: Discourse, node: Node) -> Steps:
 def said_with(d: Discourse, node: Node) -> Steps:
     """Say some words as part of a phrase: "invite them to the party"."""
     part = node.parts["text"]
-    saying = d.say(str(node.production.fixed["phrase"]), what=d.words(part.start, part.end))
-    return speak_to(d, d.get(node, "person_ref"), [saying])
+    from grammar.meanings.messages import addressed
+
+    person: Thing | None = d.get(node, "person_ref")
+    robot = words_for(d.language).addressing & set(d.language.speech.get("addressed_robot", ()))
+    if robot & set(d.norms(part.start, part.end)):  # "invite them to follow you": no fixed words
+        phrase = d.language.phrase("cannot_say", part=d.words(part.start, part.end))
+        raise NotUnderstood(phrase, gap=(part.start, part.end))
+    words = addressed(d, part.start, part.end, person)
+    return speak_to(d, person, [d.say(str(node.production.fixed["phrase"]), what=words)])
 
 
 @meaning("say_it")

@@ -19,7 +19,7 @@ from grammar.meanings.finding import (
 from grammar.meanings.nouns import described, is_me, thing_it
 from grammar.meanings.places import home_of, kind_places, place_there, sought
 from grammar.meanings.registry import meaning
-from grammar.meanings.remarks import known_to_be
+from grammar.meanings.remarks import fetched_there, known_to_be
 from grammar.meanings.reports import Report, found_out
 from grammar.meanings.sights import best_there, which_there
 from grammar.meanings.speaking import sentence_form
@@ -294,6 +294,7 @@ def statement(d: Discourse, node: Node) -> Steps:
     if thing.person:
         d.person, d.thing_last = thing, False
         d.with_person = None
+        fetched_there(d, thing, thing.place)
     else:
         d.thing, d.thing_last = thing, True
     said = sentence_form(d.words(node.start, node.end))
