@@ -224,6 +224,8 @@ class Discourse:
     """What was told last of a poll or a round (`grammar.meanings.news.News`)."""
     polled_for: str | None = None
     """What the last poll was to find out: "who", "many"."""
+    asking_one: bool = False
+    """Whether a question is put to somebody by name: whether anybody has called is about others."""
     asking_each: bool = False
     """Whether a question is put to each of several: who wants tea is then whether they do."""
     checked: str | None = None

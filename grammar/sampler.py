@@ -40,8 +40,8 @@ BEFORE: Final = 3
 """Sentences that are put before one that speaks of something, and how often others are tried."""
 PARTS_OF_NAMES: Final = {"place_tail", "place_short", "owner"}
 """Slots that take a part of a name only: "ward a, b and c"."""
-LOCATED: Final = "located"
-"""A slot for words that the language lists elsewhere."""
+LOCATED: Final = {"located", "towards"}
+"""Slots for words that the language lists elsewhere."""
 NAMES: Final = {"place", "person", "object"}
 UNSAID: Final = PARTS_OF_NAMES | {"routine"}
 _SPACE_BEFORE: Final = re.compile(r" (?=[,.:;?]|'s\b)|(?<=\b[ldnjmtsc]') ")
@@ -189,7 +189,7 @@ class _Sampler:
         if listed:
             names = [*names, *(" ".join(way) for ways in listed.values() for way in ways)]
         words: list[str] = (
-            self.language.speech.get(name, {}).get("words", []) if name == LOCATED else []
+            self.language.speech.get(name, {}).get("words", []) if name in LOCATED else []
         )
         return self.chance.choice(
             names or words or FILLED.get(name) or self.known(name) or ["robot"]

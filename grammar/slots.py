@@ -247,7 +247,8 @@ class Slots:
             "{word}": self._word,
             "{verb}": self._verb,
             "{zu_infinitive}": self._zu_infinitive,
-            "{located}": self._located,
+            "{located}": functools.partial(self._preposition, "located"),
+            "{towards}": functools.partial(self._preposition, "towards"),
             "{remark}": self._remark,
             "{unknown}": self._unknown,
             "{stranger}": self._stranger,
@@ -422,10 +423,10 @@ class Slots:
                 return [(at + 1, FREE_WORD, particle + rest)] if len(rest) > 2 else []
         return []
 
-    def _located(self, at: int) -> list[Match]:
-        """A preposition that tells where something is, in a language that shows by what follows it
-        whether it tells where to instead: "in der Küche", "in die Küche"."""
-        data = self.language.speech.get("located", {})
+    def _preposition(self, kind: str, at: int) -> list[Match]:
+        """A preposition that tells where something is, or where to, in a language that shows by
+        what follows it which: "in der Küche", "in die Küche"."""
+        data = self.language.speech.get(kind, {})
         if at >= len(self.tokens) or self.tokens[at].norm not in data.get("words", ()):
             return []
         after = self.tokens[at + 1].norm if at + 1 < len(self.tokens) else ""
@@ -480,7 +481,8 @@ class Slots:
     def _asks_on(self, at: int, position: int) -> bool:
         """Whether a question that begins another goes on here: "... and how much it hurts"."""
         joined = position > at + 1 and self.tokens[position - 1].norm in self._joins
-        return joined and self.tokens[position].norm in self._judge.words.asking
+        words = self._judge.words
+        return joined and self.tokens[position].norm in words.asking | words.that
 
     def _never_first(self, at: int) -> bool:
         """Whether a pronoun stands here that no statement begins with: "mir dann, wer da ist"."""

@@ -104,6 +104,10 @@ def is_found(d: Discourse, node: Node) -> Condition:
 
 def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
     thing = noun_of(d, node)
+    if thing.every and not thing.person:  # "if all the beds are taken": one is seen or not
+        words = d.words(node.start, node.end)
+        gap = (node.start, node.end)
+        raise NotUnderstood(d.language.phrase("cannot_check", what=words), gap=gap)
     if isinstance(thing.group, Items):
         result = _each_of_them(d, node, thing.group.items, search)
     else:

@@ -57,6 +57,10 @@ def noun_of(d: Discourse, node: Node) -> Thing:
 
 def in_state(d: Discourse, node: Node, thing: Thing) -> Thing:
     """A thing with what is said of it behind its noun: that a bed is free is about a free bed."""
+    doing = node.parts.get("doing")
+    if doing is not None and node.means == "whether_seen":  # "ob Henry schläft"
+        so = Text(f"{thing.text} {d.described_by(doing)}")
+        return replace(thing, value=so, known=False)
     state = d.get(node, "state")
     if state is None:
         return thing

@@ -46,11 +46,25 @@ def say_that(d: Discourse, node: Node) -> Steps:
     elif node.production.fixed.get("to_you"):
         text = sentence_form(turn_to_you(d, part.start, part.end))
     else:
-        ordered = direct_clause(d, part.start, part.end, turned(d, part.start, part.end, person))
-        if ordered == d.words(part.start, part.end):
-            ordered = addressed(d, part.start, part.end, person)
-        text = sentence_form(ordered)
+        text = told_to(d, part, person)
+    more = node.parts.get("more")  # "that the doctor is here and that she can come in"
+    if more is not None:
+        text = f"{text} {told_to(d, more, person)}"
     return speak_to(d, person, [Call("say", {"text": Text(text)})])
+
+
+@meaning("show_that")
+def show_that(d: Discourse, node: Node) -> Steps:
+    """ "write on the screen that we are closed" -> "We are closed."."""
+    return [Call("show", {"text": Text(told_to(d, node.parts["text"], None))})]
+
+
+def told_to(d: Discourse, part: Leaf | Node, person: Thing | None) -> str:
+    """A reported clause as a sentence to its receiver."""
+    ordered = direct_clause(d, part.start, part.end, turned(d, part.start, part.end, person))
+    if ordered == d.words(part.start, part.end):
+        ordered = addressed(d, part.start, part.end, person)
+    return sentence_form(ordered)
 
 
 def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:

@@ -29,7 +29,8 @@ from grammar.plan import Call, Forever, Items, Recall, Text, Value
 def guide(d: Discourse, node: Node) -> Steps:
     """Lead a person to a place; go and find them first if they are somebody by name."""
     pronoun = node.parts.get("person_ref")
-    if pronoun is not None and d.thing_last and speaks_of_things(d, pronoun):
+    carried = not leads_people_only(d, node)
+    if pronoun is not None and carried and d.thing_last and speaks_of_things(d, pronoun):
         return carry_it(d, node)
     thing = led(d, node)
     source: Where | None = d.get(node, "source")
@@ -123,6 +124,12 @@ def guide_nowhere(d: Discourse, node: Node) -> Steps:
 def speaks_of_things(d: Discourse, pronoun: Leaf | Node) -> bool:
     """Whether a pronoun may stand for things as well as for people: "them"."""
     return d.norms(pronoun.start, pronoun.end)[-1] in d.language.speech.get("things_too", ())
+
+
+def leads_people_only(d: Discourse, node: Node) -> bool:
+    """Whether the verb is one that things are no object of: "begleite ihn"."""
+    stems = tuple(d.language.speech.get("leads_people", ()))
+    return bool(stems) and any(norm.startswith(stems) for norm in d.norms(node.start, node.end))
 
 
 def carry_it(d: Discourse, node: Node) -> Steps:

@@ -69,9 +69,10 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
     question = node.parts["question"]
     assert isinstance(question, Node)
     d.asking_each = everybody or several
+    d.asking_one = person is not None and person.known and not several
     text: str = d.build(question)
     options = options_of(d, question)
-    d.asking_each = False
+    d.asking_each = d.asking_one = False
     scale = node.parts.get("scale")
     if scale is not None:  # "ask from one to ten how bad it is"
         options = numbers_offered(d, scale.start, scale.end)
@@ -213,6 +214,14 @@ def question(d: Discourse, node: Node) -> str:
     turned_each = d.asking_each and "each" in node.production.fixed
     if turned_each:
         form, past = str(node.production.fixed["each"]), None
+    asked = node.parts.get("asked")
+    else_ = set(d.language.speech.get("somebody_else", ()))
+    another = (
+        "another" in node.production.fixed
+        and asked is not None
+        and bool(else_ & set(d.norms(asked.start, asked.end)))
+        and d.asking_one
+    )
     values: dict[str, str] = {}
     you = "to_you_who" if "asked" in node.parts else "to_you"
     for name, part in node.parts.items():
@@ -230,6 +239,8 @@ def question(d: Discourse, node: Node) -> str:
         elif base_form(d, verb) != verb and not turned_each:
             form = str(node.production.fixed.get("third", form))
         as_it_is = node.production.fixed.get("as_it_is", False) and not turned_each
+        if another:
+            as_it_is, form = True, str(node.production.fixed["another"])
         values["verb"] = verb if as_it_is else base_form(d, verb)
         values["rest"] = f"{values['rest']} {particle}"
     form = form if values["rest"].strip() else form.replace(" {rest},", ",")
