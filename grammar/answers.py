@@ -21,6 +21,8 @@ ALIKE: Final = 80
 class Answer:
     """What an answer makes of the sentence that the question was about."""
 
+    chosen: str = ""
+    """Which of the choices it is, if it is one of them."""
     sentences: tuple[str, ...] = ()
     """The completed sentence; the likeliest of several first."""
     certain: bool = True
@@ -52,13 +54,15 @@ class _Reply:
 
     def answer(self) -> Answer | None:
         choices = self.question.choices
-        if self._is_one_of("none_of_them") or self._is_one_of("refuse"):
+        if self.is_one_of("none_of_them") or self.is_one_of("refuse"):
             return Answer(dropped=True)
-        if len(choices) == 1 and self._is_one_of("agree"):
+        if self.is_one_of("unsure"):
+            return Answer(again=self.question.question)
+        if len(choices) == 1 and self.is_one_of("agree"):
             return self._with(choices[0])
-        if self._is_one_of("any_of_them") and choices:
+        if self.is_one_of("any_of_them") and choices:
             return self._with(choices[0])
-        if self._is_one_of("all_of_them") and choices:
+        if self.is_one_of("all_of_them") and choices:
             return self._with_all(choices)
         number = self._ordinal()
         if number is not None and self.question.asked:
@@ -78,7 +82,7 @@ class _Reply:
             start += 1
         noun = text[self.tokens[start].start :] if start < len(self.tokens) else text
         return Answer(
-            (
+            sentences=(
                 self._completed(text),
                 replace_before(self.question, text),
                 self._completed(noun),
@@ -104,7 +108,7 @@ class _Reply:
                 rest = self.text[token.start :].lstrip(" ,.")
                 if len(meant) == 1 and rest:
                     whole = self._completed(meant[0]).rstrip(" .!?")
-                    return Answer((f"{whole} {rest}", f"{whole}. {rest}"), certain=False)
+                    return Answer(sentences=(f"{whole} {rest}", f"{whole}. {rest}"), certain=False)
         return None
 
     def _meant(self, tokens: tuple[Token, ...]) -> list[str]:
@@ -153,16 +157,16 @@ class _Reply:
         return None
 
     def _with(self, choice: str) -> Answer:
-        return Answer((self._completed(choice),))
+        return Answer(sentences=(self._completed(choice),), chosen=choice)
 
     def _with_all(self, choices: tuple[str, ...]) -> Answer:
         joiner = f" {self.language.speech['joined_by']} "
-        return Answer((self._completed(joiner.join(choices)),))
+        return Answer(sentences=(self._completed(joiner.join(choices)),))
 
     def _completed(self, words: str) -> str:
         return joined_up(self.question.completed(words), self.language)
 
-    def _is_one_of(self, name: str) -> bool:
+    def is_one_of(self, name: str) -> bool:
         ways = {self.language.tokens_of(way) for way in self._data(name)}
         return tuple(self.words) in ways or self.said in ways
 
@@ -176,6 +180,15 @@ class _Reply:
     def _data(self, name: str) -> list[str]:
         data: list[str] = self.language.speech.get(name, [])
         return data
+
+
+def other_choice(text: str, asked: Clarification, taken: str, language: Language) -> str | None:
+    """ "the other one": the sentence with the other choice of two, if that is what was said."""
+    reply = _Reply(text, asked, language)
+    others = [choice for choice in asked.choices if choice != taken]
+    if len(others) != 1 or not reply.is_one_of("the_other"):
+        return None
+    return joined_up(asked.completed(others[0]), language)
 
 
 def replace_before(question: Clarification, words: str) -> str:

@@ -13,12 +13,13 @@ from dataclasses import replace
 from typing import Final
 
 from grammar.accounts import TEXTS
-from grammar.answers import Answer, answer_to
+from grammar.answers import Answer, answer_to, other_choice
 from grammar.chart import TooMuch
 from grammar.discourse import Discourse
-from grammar.edits import Edit, Sentence, is_pieces, leaves, same_word
+from grammar.edits import Edit, Sentence, same_word
 from grammar.language import Language
 from grammar.lexicon import Lexicon
+from grammar.pieces import is_pieces, leaves
 from grammar.plan import Call, Plan, Text, calls
 from grammar.requests import Request
 from grammar.understand import Context, Reader, Understanding, rejected
@@ -55,13 +56,20 @@ class _Turn:
             answered = self._answered(answer_to(self.text, question, self.language))
             if answered is not None:
                 return answered
+        if self.context.chosen is not None:
+            asked, taken = self.context.chosen
+            other = other_choice(self.text, asked, taken, self.language)
+            if other is not None:
+                return self._read(other, self.base) or self._reader(other, self.base).understand()
         reader = self._reader(self.text, self.context)
         plain = reader.understand()
         if plain.request is not None:
             return plain
         edit = self._edit()
         if edit is not None and edit.kind == "correct" and question is not None:
-            answered = self._answered(Answer((question.completed(edit.new),), certain=False))
+            answered = self._answered(
+                Answer(sentences=(question.completed(edit.new),), certain=False)
+            )
             if answered is not None:
                 return answered
         if edit is not None:
@@ -85,7 +93,14 @@ class _Turn:
             result = understood(self.text, self.lexicon, self.language, earlier)
             if result.status != "rejected":
                 return result
-        if edit is not None and edit.kind in ("correct", "instead", "drop", "drop step", "manner"):
+        if edit is not None and edit.kind in (
+            "correct",
+            "only",
+            "instead",
+            "drop",
+            "drop step",
+            "manner",
+        ):
             return self._unclear(edit)
         return plain
 
@@ -149,7 +164,11 @@ class _Turn:
         if alone is not None and (alone.plan is not None or alone.request is not None):
             return None  # another command instead of an answer
         base = self.context.referents()
-        return self._first_read(answer.sentences, base)
+        result = self._first_read(answer.sentences, base)
+        if result is None or not answer.chosen or self.question is None:
+            return result
+        chosen = (self.question, answer.chosen)
+        return replace(result, context=replace(result.context, chosen=chosen))
 
     def _dropped(self) -> Understanding:
         return Understanding(
@@ -196,11 +215,13 @@ class _Turn:
             case "drop step":
                 return self._without_step(edit.which)
             case "drop":
-                return self._first_read(self._without(edit.old))
+                return self._first_read(self._others(self._without(edit.old)))
             case "instead":
-                return self._first_read(self._instead(edit))
+                return self._first_read(self._others(self._instead(edit)))
             case "correct":
-                return self._first_read(self._corrected(edit.new))
+                return self._first_read(self._others(self._corrected(edit.new)))
+            case "only":
+                return self._first_read(self._others(self._only(edit.new)))
             case "first" if not self.context.carried_out:
                 return self._first_read(self._with_first(edit.new), self.context.referents())
             case "add" if not self.context.carried_out:
@@ -208,13 +229,29 @@ class _Turn:
             case "add" if not self._commands(edit.new):
                 return self._first_read(self._same(edit.new))
             case "again":
-                return self._again(edit.new)
+                return self._again(edit)
             case "same":
                 return self._first_read(self._same(edit.new))
             case "manner":
                 return self._first_read(self._in_manner(edit.new))
             case _:
                 return None
+
+    def _others(self, texts: Iterable[str | None]) -> Iterator[str]:
+        """Those sentences that differ from the command before: a change that changes nothing is
+        not what was meant."""
+        before = self.context.text.rstrip(" .!?")
+        return (text for text in texts if text is not None and text.rstrip(" .!?") != before)
+
+    def _only(self, said: str) -> Iterator[str | None]:
+        """ "only in the lobby": of several clauses that do the like, the one with this in it."""
+        before, new = self._before(), self._reader(said, Context())
+        words = new.content(0, new.last_word)
+        row = before.siblings()[0] if before.siblings() else []
+        has = [clause for clause in row if words and _has(before.reader.content(*clause), words)]
+        if len(has) == 1 and before.all_do_the_like(row):
+            yield before.reader.words(*has[0])
+        yield from self._corrected(said)
 
     def _corrected(self, said: str) -> Iterator[str | None]:
         """ "no, the pharmacy": the sentence with this in the place of what it corrects."""
@@ -226,6 +263,7 @@ class _Turn:
             if not is_pieces(new):  # "only the kitchen" stands for a part, not for all
                 yield said
         yield from before.corrected(new, everywhere=True)
+        yield from before.corrected(new, within_texts=True)
         if self._goes_on(new):
             yield self._going_on(self._joined(said))
             yield self._there(new)
@@ -265,13 +303,17 @@ class _Turn:
                     return result
             return None
         result = self._read(whole, self.base)
-        if result is not None and not self._swallowed(whole):
-            return result
         before, new = self._before(), self._reader(said, Context())
+        if result is not None and not self._swallowed(whole) and not before.spoken_earlier(new):
+            return result
+        new = before.without_repeated(new)
         like = self._first_read(self._separate(variant) for variant in before.corrected(new))
         return like or result or self._read(separate, self.base)
 
-    def _again(self, said: str) -> Understanding | None:
+    def _again(self, edit: Edit) -> Understanding | None:
+        said = edit.new
+        if edit.late:  # "ask him again in ten minutes"
+            return self._first_read(f"{edit.late}, {each}" for each in self._same(said) if each)
         if not said:
             plan = self.context.plan
             assert plan is not None
@@ -283,7 +325,8 @@ class _Turn:
 
     def _same(self, said: str) -> Iterator[str | None]:
         """ "the same for Bob": again, with Bob in the place of who it was for."""
-        before, new = self._before(), self._reader(said, Context())
+        before = self._before()
+        new = before.without_repeated(self._reader(said, Context()))
         done = self.context.carried_out
         for variant in before.corrected(new):
             yield variant if done else self._separate(variant)
@@ -299,6 +342,10 @@ class _Turn:
         if alone.plan is not None and {call.method for call in calls(alone.plan)} <= MANNER:
             yield f"{said.rstrip(' .!?')}. {self.context.text}"
         yield self._going_on(self._joined(said))
+        if self._speaks():
+            spoken = self.language.speech["spoken_so"].format(words=said.rstrip(" .!?"))
+            yield f"{spoken}. {self.context.text}"
+        yield from self._same(said)  # "say it to Bob, too"
 
     def _without(self, said: str) -> Iterator[str | None]:
         """ "without the greeting", "not the kitchen"."""
@@ -316,10 +363,9 @@ class _Turn:
             for clause in before.clauses()
             if _has(before.reader.content(*clause), words) or self._does(before, clause, words)
         ]
-        smallest = min((end - start for start, end in named), default=0)
-        named = [clause for clause in named if clause[1] - clause[0] == smallest]
-        if len(named) == 1:
-            yield before.without(*named[0])
+        named.sort(key=lambda clause: clause[1] - clause[0])
+        if named and all(start <= named[0][0] and named[0][1] <= end for start, end in named):
+            yield from (before.without(*clause) for clause in named)  # the innermost that can go
 
     def _does(self, before: Sentence, clause: tuple[int, int], words: set[str]) -> bool:
         """Whether a clause does what these words speak of: "the greeting"."""
@@ -374,14 +420,16 @@ class _Turn:
 
     def _in_that_manner(self, plain: Understanding) -> Understanding | None:
         """ "louder", while something to say waits for its approval: that is to be said louder."""
-        plan, before = plain.plan, self.context.plan
-        if plan is None or before is None or self.context.carried_out:
+        if plain.plan is None or self.context.carried_out or not self._speaks():
             return None
-        if not {call.method for call in calls(plan)} <= MANNER:
-            return None
-        if not SPEAKING & {call.method for call in calls(before)}:
+        if not {call.method for call in calls(plain.plan)} <= MANNER:
             return None
         return self._read(f"{self.text.rstrip(' .!?')}. {self.context.text}", self.base)
+
+    def _speaks(self) -> bool:
+        """Whether something is said in the command before."""
+        plan = self.context.plan
+        return plan is not None and any(call.method in SPEAKING for call in calls(plan))
 
     def _joined(self, more: str) -> str:
         """The command before and more, in one sentence."""

@@ -11,42 +11,45 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
+from grammar.accounts import TEXTS
 from grammar.chart import Leaf, Node, TooMuch
 from grammar.language import Language
 from grammar.lexicon import Lexicon, Routine
+from grammar.pieces import (
+    CORRECTABLE,
+    NAMED,
+    NOUNS,
+    PRONOUNS,
+    Piece,
+    is_pieces,
+    lead_words,
+    leading,
+    leaves,
+    norms,
+    pieces_at,
+    pieces_of,
+    words_listed,
+)
 from grammar.readings import SEQUENCE
-from grammar.slots import UNKNOWN_NAME
 from grammar.tokens import Token
 
 if TYPE_CHECKING:
     from grammar.understand import Context, Reader
 
 EditKind = Literal[
-    "cancel", "drop step", "drop", "instead", "correct", "first", "add", "again", "same", "manner"
+    "cancel",
+    "drop step",
+    "drop",
+    "instead",
+    "correct",
+    "only",
+    "first",
+    "add",
+    "again",
+    "same",
+    "manner",
 ]
 
-CORRECTABLE: Final = (
-    "place_ref",
-    "person_ref",
-    "thing",
-    "length",
-    "angle",
-    "duration",
-    "times",
-    "clock_time",
-    "percentage",
-    "language",
-    "emotion",
-    "gesture",
-)
-"""Rules and slots whose words can be put in the place of others."""
-NOUNS: Final = frozenset({"place_ref", "person_ref", "thing"})
-"""Those of them that may stand for each other: "go to Alice" - "no, the kitchen"."""
-NAMED: Final = {"person": "person_ref"}
-"""Slots for names, and the rule that they count as where none of it is around them."""
-PRONOUNS: Final = frozenset({"person_pronoun", "person_me", "thing_it", "place_there"})
-UNHEARD: Final = frozenset({"noun", "unknown", "text", "word"})
-"""Slots for words that nobody knows."""
 MOST_ENDING: Final = 3
 """Letters that an adjective may be longer than another of its forms."""
 SAME_LETTERS: Final = 4
@@ -62,20 +65,10 @@ class Edit:
     """The words that come in."""
     old: str = ""
     """The words that they take the place of, or that are left out."""
+    late: str = ""
+    """Of "again", when: "in ten minutes"."""
     which: int = -1
     """Of "drop step": the last step, or the first (0)."""
-
-
-@dataclass(frozen=True)
-class Piece:
-    """A part of what is said in a correction: "to the pharmacy"."""
-
-    rule: str
-    start: int
-    end: int
-    means: str = ""
-    known: bool = True
-    """Whether it is more than a noun that nobody has heard of."""
 
 
 class Sentence:
@@ -91,6 +84,18 @@ class Sentence:
             self.tree = None
 
     # --- its parts
+
+    def within_texts(self) -> list[Piece]:
+        """The same parts, of what is to be said or asked."""
+        found: list[Piece] = []
+        for leaf in leaves(self.tree) if self.tree is not None else ():
+            at = leaf.start if leaf.slot in TEXTS else leaf.end
+            while at < leaf.end:
+                here = [each for each in pieces_at(self.reader, at) if each.end <= leaf.end]
+                longest = max((each.end for each in here), default=at + 1)
+                found += [each for each in here if each.end == longest]
+                at = longest
+        return found
 
     def pieces(self) -> list[Piece]:
         """All parts that another of its kind could take the place of, in their order."""
@@ -163,19 +168,54 @@ class Sentence:
     def with_words(self, start: int, end: int, words: str) -> str:
         return self.reader.with_words(start, end, words)
 
-    def corrected(self, new: Reader, *, everywhere: bool = False) -> Iterator[str]:
+    def corrected(
+        self, new: Reader, *, everywhere: bool = False, within_texts: bool = False
+    ) -> Iterator[str]:
         """The sentence with the parts of `new` in the places of parts of their kind, the likeliest
-        first. `everywhere`: a part may stand for any noun."""
-        for said in _pieces_of(new):
-            text = self._with_pieces(new, said, everywhere)
+        first. `everywhere`: a part may stand for any noun; `within_texts`: the places are in what
+        is to be said."""
+        places = self.within_texts() if within_texts else self.pieces()
+        for said in pieces_of(new):
+            text = self._with_pieces(new, said, places, everywhere)
             if text is not None:
                 yield text
 
-    def _with_pieces(self, new: Reader, said: list[Piece], everywhere: bool) -> str | None:
+    def place_of(self, new: Reader) -> int | None:
+        """Where the part stands that a single new one is like, if it is the thing spoken of."""
+        for said in pieces_of(new):
+            if len(said) == 1 and said[0].rule == "thing":
+                old = self._counterpart(new, said[0], self.pieces(), set(), False)
+                return old.start if old is not None else None
+        return None
+
+    def without_repeated(self, new: Reader) -> Reader:
+        """What is said without the words at its beginning that were said before: "tell Bob, too"
+        of "tell Alice that ..." is about Bob."""
+        if is_pieces(new):
+            return new
+        known = {token.norm for token in self.tokens} | new.language.closed
+        at = 0
+        while at < new.last_word and new.tokens[at].norm in known:
+            at += 1
+            rest = type(new)(new.words(at, new.last_word), *self._world())
+            if rest.tokens and is_pieces(rest):
+                return rest
+        return new
+
+    def spoken_earlier(self, new: Reader) -> bool:
+        """Whether a single thing has its like before the last clause: "and the folder", of "pick
+        up the box and take it to the lab"."""
+        row = self.siblings()[0] if self.siblings() else []
+        place = self.place_of(new)
+        return place is not None and len(row) > 1 and place < row[-1][0]
+
+    def _with_pieces(
+        self, new: Reader, said: list[Piece], places: list[Piece], everywhere: bool
+    ) -> str | None:
         changes: list[tuple[int, int, str]] = []
         taken: set[int] = set()
         for piece in said:
-            old = self._counterpart(new, piece, taken, everywhere)
+            old = self._counterpart(new, piece, places, taken, everywhere)
             if old is None:
                 return None
             taken.update(range(old.start, old.end))
@@ -183,8 +223,8 @@ class Sentence:
             kept = (
                 not lead
                 or not old_lead
-                or _words(new, piece.start - lead, piece.start)
-                in (_data(new.language, "same_for_words"))
+                or norms(new, piece.start - lead, piece.start)
+                in (words_listed(new.language, "same_for_words"))
             )
             first = piece.start if kept else piece.start - lead
             start = old.start if kept else old.start - old_lead
@@ -197,19 +237,19 @@ class Sentence:
         return text
 
     def _counterpart(
-        self, new: Reader, piece: Piece, taken: set[int], everywhere: bool
+        self, new: Reader, piece: Piece, places: list[Piece], taken: set[int], everywhere: bool
     ) -> Piece | None:
         """The part of the sentence that a new one most likely corrects."""
-        lead = _lead_words(new, piece)
-        away = _data(new.language, "from_words")
+        lead = lead_words(new, piece)
+        away = words_listed(new.language, "from_words")
         words = new.content(piece.start, piece.end)
         best: Piece | None = None
         best_score: tuple[bool, bool, bool, int] | None = None
-        for old in self.pieces():
+        for old in places:
             alike = old.rule == piece.rule or (
                 everywhere and old.rule in NOUNS and piece.rule in NOUNS
             )
-            before = _lead_words(self.reader, old)
+            before = lead_words(self.reader, old)
             if not alike or taken.intersection(range(old.start, old.end)):
                 continue
             if lead and (lead in away) != (before in away):
@@ -227,7 +267,7 @@ class Sentence:
     def with_other_look(self, new: Reader) -> str | None:
         """ "no, the red one": the last thing with another word for how it looks."""
         language, lexicon = self.reader.language, self.reader.lexicon
-        counted = {word for (word,) in _data(language, "counted_words")}
+        counted = {word for (word,) in words_listed(language, "counted_words")}
         words = [token for token in new.tokens[new.lead : new.last_word] if token.kind == "word"]
         with_one = bool(words) and words[-1].norm in counted
         words = words[:-1] if with_one else words
@@ -268,6 +308,14 @@ class Sentence:
                 if doing and part.first_meaning() == doing:
                     return self.with_words(start, end, new.words(0, new.last_word))
         return None
+
+    def all_do_the_like(self, clauses: list[tuple[int, int]]) -> bool:
+        """Whether each of some clauses means the same but for the names in it."""
+        meant = {
+            Sentence(type(self.reader)(self.reader.words(*each), *self._world())).first_meaning()
+            for each in clauses
+        }
+        return len(meant) == 1 and "" not in meant
 
     def first_meaning(self) -> str:
         """What the first clause does."""
@@ -380,15 +428,6 @@ def _looks(language: Language, lexicon: Lexicon) -> frozenset[str]:
     return frozenset({each for each in said if len(each) > 2} | (known if not looks else set()))
 
 
-def leaves(node: Node) -> Iterator[Leaf]:
-    """All that slots have matched in a reading."""
-    for part in node.parts.values():
-        if isinstance(part, Node):
-            yield from leaves(part)
-        else:
-            yield part
-
-
 def same_word(one: str, other: str) -> bool:
     """Whether two words are forms of one."""
     if one == other:
@@ -398,75 +437,3 @@ def same_word(one: str, other: str) -> bool:
         shared >= SAME_LETTERS
         and one[: max(SAME_LETTERS, shared - 2)] == (other[: max(SAME_LETTERS, shared - 2)])
     )
-
-
-def is_pieces(reader: Reader) -> bool:
-    """Whether words are nothing but parts that could be put into a sentence, and known ones: "in
-    ward b"."""
-    return any(all(piece.known for piece in row) for row in _pieces_of(reader))
-
-
-def _pieces_of(reader: Reader) -> Iterator[list[Piece]]:
-    """The ways to read all words of a correction as parts that can be put in, the longest parts
-    first."""
-    try:
-        yield from _rows(reader, 0)
-    except TooMuch:
-        return
-
-
-def _rows(reader: Reader, at: int) -> Iterator[list[Piece]]:
-    end = reader.last_word
-    while at < end and (reader.tokens[at].kind == "mark" or at in reader.skips):
-        at += 1
-    if at >= end:
-        yield []
-        return
-    joined = _data(reader.language, "joins")
-    begins = [at + 1] if (reader.tokens[at].norm,) in joined else []
-    for begin in (at, *begins):
-        leads = (len(each) for each in _data(reader.language, "prepositions"))
-        for start in sorted({begin, *(begin + lead for lead in leads)}):
-            if start > begin and leading(reader, start) < start - begin:
-                continue
-            for piece in sorted(_pieces_at(reader, start), key=lambda piece: -piece.end):
-                for rest in _rows(reader, piece.end):
-                    yield [piece, *rest]
-
-
-def leading(reader: Reader, start: int) -> int:
-    """How many words before a part belong to it: "to" of "to the pharmacy"."""
-    return max(
-        (
-            len(words)
-            for words in _data(reader.language, "prepositions")
-            if _words(reader, start - len(words), start) == words
-        ),
-        default=0,
-    )
-
-
-def _lead_words(reader: Reader, piece: Piece) -> tuple[str, ...]:
-    return _words(reader, piece.start - leading(reader, piece.start), piece.start)
-
-
-def _words(reader: Reader, start: int, end: int) -> tuple[str, ...]:
-    return tuple(token.norm for token in reader.tokens[max(start, 0) : end])
-
-
-@functools.cache
-def _data(language: Language, name: str) -> frozenset[tuple[str, ...]]:
-    """Words that the language lists by this name."""
-    return frozenset(map(language.tokens_of, language.speech.get(name, ())))
-
-
-def _pieces_at(reader: Reader, start: int) -> Iterator[Piece]:
-    for rule in CORRECTABLE:
-        if rule in reader.language.rules:
-            node = reader.chart().longest(rule, start)
-            if node is not None and node.cost < UNKNOWN_NAME:
-                known = all(leaf.slot not in UNHEARD for leaf in leaves(node))
-                yield Piece(rule, node.start, node.end, node.means, known)
-        else:
-            for end, _, _ in reader.slots[f"{{{rule}}}"](start):
-                yield Piece(rule, start, end)

@@ -26,6 +26,7 @@ Kind = Literal[
     "undo",
     "pace",
     "planned",
+    "why",
     "doing",
     "done",
     "happened",
@@ -46,9 +47,9 @@ class Request:
     """Something asked of the application."""
 
     kind: Kind
-    """What to do. "schedule" is to do something at set times; "cancel", "undo", "planned" and
-    "pace" ("slower") are about the command before, those `ABOUT_RUNS` about what was done, "help"
-    about what can be said; the others are about routines."""
+    """What to do. "schedule" is to do something at set times; "cancel", "undo", "planned", "why"
+    and "pace" ("slower") are about the command before, those `ABOUT_RUNS` about what was done,
+    "help" about what can be said; the others are about routines."""
     name: str = ""
     """The name of a routine or a person, as it was said."""
     new: str = ""

@@ -77,6 +77,8 @@ class Context:
     """Whether the last plan has been carried out, so that what comes is not a part of it."""
     origin: str | None = None
     """The place where the robot was before that."""
+    chosen: tuple[Clarification, str] | None = None
+    """The question that was answered for the last plan, and the choice that was taken."""
     earlier: Context | None = None
     """As it was before the last sentence, for what is said of the one before that."""
 

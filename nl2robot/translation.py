@@ -190,6 +190,12 @@ def _replied(
             if talk.last is None or talk.carried_out(record):
                 return Reply("rejected", pack.phrase("nothing_planned"))
             return Reply("ok", talk.last.explanation)
+        case "why" if talk.last is not None and not talk.carried_out(record):
+            values = {"task": talk.last.utterance, "explanation": talk.last.explanation}
+            return Reply("ok", pack.phrase("because_said", **values))
+        case "why":
+            happened = told_of(Request("happened"), record, knowledge.lexicon(language), pack)
+            return Reply("ok" if record is not None else "rejected", happened)
         case _:
             return reply(request, knowledge, language, before)
 

@@ -17,7 +17,8 @@ def edit(d: Discourse, node: Node, kind: EditKind) -> Edit:
 
     more = said("more")
     new = f"{said('new')}, {more}" if more else said("new")
-    return Edit(kind, new, said("old") or said("what"), int(node.production.fixed.get("which", -1)))
+    which = int(node.production.fixed.get("which", -1))
+    return Edit(kind, new, said("old") or said("what"), said("late"), which)
 
 
 @meaning("edit_cancel")
@@ -48,6 +49,12 @@ def edit_instead(d: Discourse, node: Node) -> Edit:
 def edit_correct(d: Discourse, node: Node) -> Edit:
     """ "no, the pharmacy", "make it three"."""
     return edit(d, node, "correct")
+
+
+@meaning("edit_only")
+def edit_only(d: Discourse, node: Node) -> Edit:
+    """ "only in the lobby": of several the one with this in it."""
+    return edit(d, node, "only")
 
 
 @meaning("edit_first")

@@ -1,0 +1,140 @@
+"""The parts of a sentence that another of its kind could take the place of: "to the pharmacy"."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from grammar.chart import Leaf, Node, TooMuch
+from grammar.language import Language
+from grammar.slots import UNKNOWN_NAME, command_words
+
+if TYPE_CHECKING:
+    from grammar.understand import Reader
+
+CORRECTABLE: Final = (
+    "place_ref",
+    "person_ref",
+    "thing",
+    "length",
+    "angle",
+    "duration",
+    "times",
+    "clock_time",
+    "percentage",
+    "language",
+    "emotion",
+    "gesture",
+)
+"""Rules and slots whose words can be put in the place of others."""
+NOUNS: Final = frozenset({"place_ref", "person_ref", "thing"})
+"""Those of them that may stand for each other: "go to Alice" - "no, the kitchen"."""
+NAMED: Final = {"person": "person_ref"}
+"""Slots for names, and the rule that they count as where none of it is around them."""
+PRONOUNS: Final = frozenset({"person_pronoun", "person_me", "thing_it", "place_there"})
+UNHEARD: Final = frozenset({"noun", "unknown", "text", "word"})
+"""Slots for words that nobody knows."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A part of what is said in a correction: "to the pharmacy"."""
+
+    rule: str
+    start: int
+    end: int
+    means: str = ""
+    known: bool = True
+    """Whether it is more than a noun that nobody has heard of."""
+
+
+def leaves(node: Node) -> Iterator[Leaf]:
+    """All that slots have matched in a reading."""
+    for part in node.parts.values():
+        if isinstance(part, Node):
+            yield from leaves(part)
+        else:
+            yield part
+
+
+def is_pieces(reader: Reader) -> bool:
+    """Whether words are nothing but parts that could be put into a sentence, and known ones: "in
+    ward b"."""
+    return any(all(piece.known for piece in row) for row in pieces_of(reader))
+
+
+def pieces_of(reader: Reader) -> Iterator[list[Piece]]:
+    """The ways to read all words of a correction as parts that can be put in, the longest parts
+    first."""
+    try:
+        yield from _rows(reader, 0)
+    except TooMuch:
+        return
+
+
+def _rows(reader: Reader, at: int) -> Iterator[list[Piece]]:
+    end = reader.last_word
+    while at < end and (reader.tokens[at].kind == "mark" or at in reader.skips):
+        at += 1
+    if at >= end:
+        yield []
+        return
+    joined = words_listed(reader.language, "joins")
+    begins = [at + 1] if (reader.tokens[at].norm,) in joined else []
+    for begin in (at, *begins):
+        leads = (len(each) for each in words_listed(reader.language, "prepositions"))
+        for start in sorted({begin, *(begin + lead for lead in leads)}):
+            if start > begin and leading(reader, start) < start - begin:
+                continue
+            for piece in sorted(_likely_at(reader, start), key=lambda piece: -piece.end):
+                for rest in _rows(reader, piece.end):
+                    yield [piece, *rest]
+
+
+def _likely_at(reader: Reader, start: int) -> list[Piece]:
+    """The parts that begin here, without unheard-of nouns where rules know better: "two minutes"
+    are a time, and "stay" is something to do."""
+    pieces = list(pieces_at(reader, start))
+    known = max((piece.end for piece in pieces if piece.known), default=0)
+    begins_command = reader.tokens[start].norm in command_words(reader.language)
+    return [piece for piece in pieces if piece.known or (piece.end > known and not begins_command)]
+
+
+def leading(reader: Reader, start: int) -> int:
+    """How many words before a part belong to it: "to" of "to the pharmacy"."""
+    return max(
+        (
+            len(words)
+            for words in words_listed(reader.language, "prepositions")
+            if norms(reader, start - len(words), start) == words
+        ),
+        default=0,
+    )
+
+
+def lead_words(reader: Reader, piece: Piece) -> tuple[str, ...]:
+    return norms(reader, piece.start - leading(reader, piece.start), piece.start)
+
+
+def norms(reader: Reader, start: int, end: int) -> tuple[str, ...]:
+    return tuple(token.norm for token in reader.tokens[max(start, 0) : end])
+
+
+@functools.cache
+def words_listed(language: Language, name: str) -> frozenset[tuple[str, ...]]:
+    """Words that the language lists by this name."""
+    return frozenset(map(language.tokens_of, language.speech.get(name, ())))
+
+
+def pieces_at(reader: Reader, start: int) -> Iterator[Piece]:
+    for rule in CORRECTABLE:
+        if rule in reader.language.rules:
+            node = reader.chart().longest(rule, start)
+            if node is not None and node.cost < UNKNOWN_NAME:
+                known = all(leaf.slot not in UNHEARD for leaf in leaves(node))
+                yield Piece(rule, node.start, node.end, node.means, known)
+        else:
+            for end, _, _ in reader.slots[f"{{{rule}}}"](start):
+                yield Piece(rule, start, end)
