@@ -219,6 +219,9 @@ def polled(d: Discourse, kind: str, said: Said | None) -> Told:
     if said is not None:
         d.said = wanted(d, surveys[-1], said)
     answer: Wanted = d.said or yes(d)
+    if kind == "list":  # of those who said yes, or of what they said
+        agree, refuse = d.language.phrase("yes"), d.language.phrase("no")
+        kind = "who" if set(surveys[-1].options) == {agree, refuse} else "answers"
     made = {
         "who": _who,
         "where": _where,

@@ -265,7 +265,7 @@ def turn_to_you(d: Discourse, start: int, end: int, words: str = "to_you") -> st
     that person is the subject, only what is theirs: "ob er ihn mag" asks about somebody else."""
     you: dict[str, str] = d.language.speech.get(words) or d.language.speech.get("to_you", {})
     pieces: list[str] = []
-    position = start
+    position, whole = start, False
     while position < end:
         first = d.tokens[position]
         last = position + 1
@@ -284,10 +284,13 @@ def turn_to_you(d: Discourse, start: int, end: int, words: str = "to_you") -> st
         before = d.text[d.tokens[position - 1].end : first.start] if pieces else ""
         if first.kind == "mark":
             pieces.append(original if not pieces else "\b" + original)
+        elif before in ("'", "’") and whole:  # "s'asseoir": "vous asseoir"
+            pieces.append(original)
         elif before in ("'", "’", "-"):  # "d'aide", "rendez-vous"
             pieces.append("\b" + before + original)
         else:
             pieces.append(original)
+        whole = turned is not None and len(turned) > 1
         position = last
     return " ".join(pieces).replace(" \b", "").strip(" ,.?!:()")
 
