@@ -146,6 +146,7 @@ SCENE: Final = (
     "thing_last",
     "place",
     "at",
+    "looked_in",
     "with_person",
     "holding",
     "delivered",
@@ -178,6 +179,8 @@ class Discourse:
     place: Value | None = None
     at: Value | None = None
     """Where the robot is by now; None where the command was given."""
+    looked_in: Value | None = None
+    """That place, if a condition was checked there and for nothing else: others are not there."""
     with_person: Value | None = None
     holding: Value | None = None
     origin: str | None = None
@@ -453,6 +456,7 @@ class Discourse:
     def went(self, place: Value) -> None:
         """The robot is at this place now."""
         self.at = self.place = place
+        self.looked_in = None
         self.at_furniture = None
         self.with_person = None
 

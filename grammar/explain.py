@@ -544,6 +544,8 @@ class _Teller:
             case p.Share():
                 values = {"part": self.value(value.part), "whole": self.value(value.whole)}
                 return fill(say["share"], values)
+            case p.Elapsed():
+                return fill(say["elapsed"], {"value": self.value(value.since)})
             case p.Choice():
                 among = value.among
                 items = self.series(among.items, "or") if isinstance(among, p.Items) else None

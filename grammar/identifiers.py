@@ -16,6 +16,7 @@ _TAKEN: Final = frozenset(
         "robot",
         "random",
         "percent",
+        "minutes_since",
         "re",
         "math",
     }

@@ -81,7 +81,7 @@ class Types:
             case p.Ask():
                 method = METHODS.get(value.method)
                 return method.returns.annotation if method else "Any"
-            case p.Length() | p.Share():
+            case p.Length() | p.Share() | p.Elapsed():
                 return "int"
             case p.Choice():
                 kind = self.of(value.among)
@@ -149,6 +149,8 @@ def takes_time(part: Steps | p.Condition | p.Value) -> bool:
             return takes_time(part.part) or takes_time(part.whole)
         case p.Choice():
             return takes_time(part.among)
+        case p.Elapsed():
+            return takes_time(part.since)
         case _:
             return False
 

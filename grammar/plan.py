@@ -87,7 +87,13 @@ class Choice(Node, frozen=True, tag="choice"):
     among: Value
 
 
-Value = Text | Number | Truth | Recall | Items | Ask | Sentence | Length | Share | Choice
+class Elapsed(Node, frozen=True, tag="elapsed"):
+    """How many whole minutes have passed since a time of day, which may be before midnight."""
+
+    since: Value
+
+
+Value = Text | Number | Truth | Recall | Items | Ask | Sentence | Length | Share | Choice | Elapsed
 
 
 # --- conditions ----------------------------------------------------------------------------------

@@ -64,10 +64,19 @@ PAUSE: Final = "robot.wait(1)"
 PLACE: Final = p.Ask("location", field="place")
 """Written as `str(robot.location())`: where there is no named place, its coordinates."""
 
-PERCENT: Final = (
-    "def percent(part, whole):",
-    "    return round(100 * part / whole) if whole else 0",
-)
+HELPERS: Final = {
+    "percent": (
+        "def percent(part, whole):",
+        "    return round(100 * part / whole) if whole else 0",
+    ),
+    "minutes_since": (
+        "def minutes_since(begin):",
+        "    times = (begin, robot.clock().time)",
+        "    then, now = [60 * int(time[:2]) + int(time[3:]) for time in times]",
+        "    return (now - then) % (24 * 60)",
+    ),
+}
+"""Small functions that stand at the top of a program that needs them, by their names."""
 
 LONGEST_IN_BRACES: Final = 60
 """Characters: an f-string cannot be broken within its braces."""
@@ -81,7 +90,7 @@ class _Writer:
         self.background = plan.background
         self.names = Identifiers()
         self.uses_random = False
-        self.uses_percent = False
+        self.helpers: set[str] = set()
         # Names the user sees keep their spelling; loop counters go around them.
         for name in self.types.names:
             self.names.of(name)
@@ -91,10 +100,10 @@ class _Writer:
         if self.uses_random:
             yield Line("import random")
             yield Line("")
-        if self.uses_percent:
-            if self.uses_random:
-                yield Line("")
-            yield from (Line(text) for text in PERCENT)
+        if self.helpers and self.uses_random:
+            yield Line("")
+        for name in sorted(self.helpers):
+            yield from (Line(text) for text in HELPERS[name])
             yield Line("")
             yield Line("")
 
@@ -256,9 +265,12 @@ class _Writer:
                 counted = self.value(value.of)
                 return counted if self.types.of(value.of) == "int" else Call("len", (counted,))
             case p.Share():
-                self.uses_percent = True
+                self.helpers.add("percent")
                 part = self.as_number(value.part, "float")
                 return Call("percent", (part, self.as_number(value.whole, "float")))
+            case p.Elapsed():
+                self.helpers.add("minutes_since")
+                return Call("minutes_since", (self.as_text(value.since),))
             case p.Choice():
                 self.uses_random = True
                 return Call("random.choice", (self.value(value.among),))

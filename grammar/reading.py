@@ -14,7 +14,7 @@ from typing import Final
 
 from grammar import plan as p
 from grammar.inference import form_for, walk
-from grammar.program import PERCENT
+from grammar.program import HELPERS
 from robot_api.methods import METHODS
 
 
@@ -88,7 +88,7 @@ class _Reader:
         match statement:
             case ast.Pass() | ast.Import() | ast.ImportFrom():
                 return None
-            case ast.FunctionDef(name="percent") if ast.unparse(statement) == "\n".join(PERCENT):
+            case ast.FunctionDef() if _is_helper(statement):
                 return None
             case ast.FunctionDef(name=name, body=body):
                 return Function(steps=self.block(body), name=name)
@@ -240,6 +240,8 @@ class _Reader:
                 return p.Length(self.value(value))
             case ast.Call(func=ast.Name(id="percent"), args=[part, whole], keywords=[]):
                 return p.Share(self.value(part), self.value(whole))
+            case ast.Call(func=ast.Name(id="minutes_since"), args=[since], keywords=[]):
+                return p.Elapsed(self.value(since))
             case ast.Call(
                 func=ast.Attribute(value=ast.Name(id="random"), attr="choice"), args=[among]
             ):
@@ -293,7 +295,7 @@ def _redefined(source: str) -> set[str]:
     bound: set[str] = set()
     for node in ast.walk(ast.parse(source)):
         match node:
-            case ast.FunctionDef(name=name) if ast.unparse(node) != "\n".join(PERCENT):
+            case ast.FunctionDef(name=name) if not _is_helper(node):
                 bound.add(name)
             case ast.ClassDef(name=name) | ast.arg(arg=name):
                 bound.add(name)
@@ -303,7 +305,13 @@ def _redefined(source: str) -> set[str]:
                 bound.add(other)
             case _:
                 pass
-    return bound & {"str", "int", "float", "len", "range", "random", "percent"}
+    return bound & {"str", "int", "float", "len", "range", "random", *HELPERS}
+
+
+def _is_helper(node: ast.FunctionDef) -> bool:
+    """Whether it is one of the functions that written programs bring along."""
+    helper = HELPERS.get(node.name)
+    return helper is not None and ast.unparse(node) == ast.unparse(ast.parse("\n".join(helper)))
 
 
 def _uses(body: Sequence[ast.stmt], name: str) -> bool:

@@ -67,7 +67,7 @@ def _scoped(steps: tuple[Step, ...], known: frozenset[str]) -> tuple[Step, ...]:
         done.append(step)
         while (missing := _missing(done[-1], bound[-1])) is not None:
             giver = max(
-                (at for at, each in enumerate(done[:-1]) if missing in _gives(each)), default=None
+                (at for at, each in enumerate(done[:-1]) if missing in gives(each)), default=None
             )
             if giver is None:
                 raise Unbound(missing)
@@ -84,7 +84,7 @@ def _scoped(steps: tuple[Step, ...], known: frozenset[str]) -> tuple[Step, ...]:
 
 def _missing(step: Step, known: frozenset[str]) -> str | None:
     """A name that a step uses before it or anything inside it could have given it."""
-    given = known | _gives(step)
+    given = known | gives(step)
     own = [value for value in _heads(step) if isinstance(value, Recall)]
     inner = [value for value in nodes(step) if isinstance(value, Recall)]
     for value in own:
@@ -108,7 +108,7 @@ def _body(step: Step, name: str) -> tuple[Step, ...]:
     return body
 
 
-def _gives(step: Step) -> frozenset[str]:
+def gives(step: Step) -> frozenset[str]:
     """The names that a step or a step inside it gives."""
     found: set[str] = set()
     for each in nodes(step):
@@ -132,6 +132,8 @@ def _surely(step: Step) -> frozenset[str]:
             return _all_of(step.steps)
         case RepeatUntil() | Forever():
             return _all_of(step.steps)
+        case Try():
+            return _all_of(step.steps) & _all_of(step.otherwise)
         case _:
             return frozenset()
 
@@ -156,7 +158,7 @@ def _taking_in(step: Step, name: str, more: tuple[Step, ...]) -> Step:
 
 
 def _all_given(steps: tuple[Step, ...]) -> frozenset[str]:
-    return frozenset().union(*(_gives(step) for step in steps))
+    return frozenset().union(*(gives(step) for step in steps))
 
 
 def _goes_back(step: Step) -> bool:
@@ -180,7 +182,13 @@ def _returning(steps: tuple[Step, ...], here: Value) -> tuple[Step, ...]:
         inner = {name: _returning(body, here) for name in BODIES if (body := _body(step, name))}
         step = msgspec.structs.replace(step, **inner) if inner else step
         if isinstance(step, LOOPS) and _leaves(step.steps):
-            step = msgspec.structs.replace(step, steps=(*step.steps, Call("goto", {"place": here})))
+            back = Call("goto", {"place": here})
+            only = step.steps[0]
+            if isinstance(only, If) and len(step.steps) == 1 and not only.otherwise:
+                steps_back = (msgspec.structs.replace(only, then=(*only.then, back)),)
+                step = msgspec.structs.replace(step, steps=steps_back)
+            else:
+                step = msgspec.structs.replace(step, steps=(*step.steps, back))
         if isinstance(step, Call) and step.method == "goto" and "place" in step.arguments:
             here = step.arguments["place"]
         result.append(step)
@@ -189,12 +197,19 @@ def _returning(steps: tuple[Step, ...], here: Value) -> tuple[Step, ...]:
 
 def _leaves(steps: tuple[Step, ...]) -> bool:
     """Whether a round waits for somebody first, and ends somewhere else."""
-    waits = steps and isinstance(steps[0], Call) and steps[0].method == "wait_for"
+    waits = bool(steps) and any(
+        isinstance(each, Call | Ask) and each.method == "wait_for" for each in _first(steps[0])
+    )
     away = {"goto", "guide", "find", "follow", "dock"}
     called = [each for each in nodes(steps) if isinstance(each, Call | Ask) and each.method in away]
     last = steps[-1] if steps else None
     comes_back = isinstance(last, Call) and last.method in ("goto", "dock")
     return bool(waits and called and not comes_back)
+
+
+def _first(step: Step) -> Iterator[Node]:
+    """What is done first in a step."""
+    yield from nodes(step.condition) if isinstance(step, If) else (step,)
 
 
 def is_one_of_each(plan: Plan) -> bool:

@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import Final
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import Claim, Discourse, Meeting, Steps, Thing
+from grammar.discourse import Claim, Discourse, Meeting, NotUnderstood, Steps, Thing
 from grammar.meanings.conditions import condition_of, negated, said_so
 from grammar.meanings.finding import not_found, speak_to
 from grammar.meanings.news import polled
@@ -18,7 +18,7 @@ from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import known_words, tell_speaker
 from grammar.meanings.sights import named_some
-from grammar.meanings.speaking import sentence_form
+from grammar.meanings.speaking import put_for, sentence_form
 from grammar.plan import (
     Ask,
     Call,
@@ -33,7 +33,7 @@ from grammar.plan import (
     Step,
     Text,
 )
-from grammar.tidy import mentions, nodes
+from grammar.tidy import mentions
 from grammar.wordforms import plural
 from grammar.wordorder import direct_clause
 
@@ -54,7 +54,7 @@ def if_(d: Discourse, node: Node) -> Steps:
     d.set_scene(start)
     asked = d.answer is not None and d.answer != known
     denied = node.parts.get("otherwise_denied")
-    part = node.parts.get("otherwise") or node.parts.get("otherwise_not") or denied
+    part = other_branch(d, node, condition) or denied
     if asked and denied is not None:
         # "if Bob is there, ask him whether he has time. If he does not, ...": that is his answer.
         scene = d.scene()
@@ -70,6 +70,18 @@ def if_(d: Discourse, node: Node) -> Steps:
     leave_off(d, after)
     counted, condition = counted_first(condition, [*then, *otherwise])
     return [*before_it, *counted, *either_way(condition, then, otherwise)]
+
+
+def other_branch(d: Discourse, node: Node, condition: Condition) -> Leaf | Node | None:
+    """What is said to be done otherwise; "but if there are some, ..." is that only where there are
+    none at first."""
+    part = node.parts.get("otherwise_so")
+    if part is None:
+        return node.parts.get("otherwise") or node.parts.get("otherwise_not")
+    if not isinstance(condition, Not):
+        words = d.words(part.start, part.end)
+        raise NotUnderstood(d.language.phrase("not_understood", part=words))
+    return part
 
 
 def branch(d: Discourse, part: Leaf | Node, met: Meeting | None, claim: Step | None) -> Steps:
@@ -99,9 +111,11 @@ def claim_of(d: Discourse, node: Node, condition: Condition, met: Meeting | None
 
 
 def as_fact(d: Discourse, clause: str) -> str:
-    """What was waited for, in the words for what is so: "soit sorti" -> "est sorti"."""
+    """What was waited for, in the words for what is so: "soit sorti" -> "est sorti", and of the
+    robot as it speaks of itself: "you see a cup" -> "I see a cup"."""
     facts: dict[str, str] = d.language.speech.get("indicative", {})
-    return " ".join(facts.get(word, word) for word in clause.split(" "))
+    clause = " ".join(facts.get(word, word) for word in clause.split(" "))
+    return put_for(d, "of_robot", clause)
 
 
 def what_it_means(part: Leaf | Node) -> str:
@@ -148,6 +162,7 @@ def meet_there(d: Discourse, met: Meeting | None) -> None:
     d.missing = None if met.holds else replace(met.thing, place=met.thing.place or d.at)
     if thing.place is not None:  # it was looked for there
         d.went(thing.place)
+        d.looked_in = thing.place
     if not met.holds:
         thing = replace(thing, place=None, furniture=None)
     if thing.person:
@@ -214,52 +229,12 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
         then = speak_to(d, person, known_words(d) if claim is None else [claim])
     after = d.scene()
     d.set_scene(start)
-    meet_there(d, turned(met))
+    part = other_branch(d, node, condition)
+    otherwise: Steps = []
+    if part is not None:
+        otherwise = branch(d, part, turned(met), found_claim(d, condition, turned(met)))
+    else:
+        meet_there(d, turned(met))
     leave_off(d, after)
-    counted, condition = counted_first(condition, then)
-    return [*before_it, *counted, If(condition, tuple(then))]
-
-
-# --- one of several answers
-
-
-def exclusive(done: Steps) -> Steps:
-    """ "if they say tea, ...; if they say coffee, ..., otherwise ...": only one of them can be."""
-    result: Steps = []
-    for step in done:
-        last = result[-1] if result else None
-        if isinstance(last, If) and isinstance(step, If) and _excludes(last, step):
-            result[-1] = _or_else(last, step)
-        else:
-            result.append(step)
-    return result
-
-
-def _or_else(first: If, second: If) -> If:
-    if first.otherwise:
-        inner = first.otherwise[0]
-        assert isinstance(inner, If)
-        return If(first.condition, first.then, (_or_else(inner, second),))
-    return If(first.condition, first.then, (second,))
-
-
-def _excludes(first: If, second: If) -> bool:
-    """Whether an answer that one asks for cannot be the one that the other asks for, and the first
-    leaves room for the second."""
-    one, other = first.condition, second.condition
-    if not (isinstance(one, Compare) and isinstance(other, Compare)):
-        return False
-    if not (one.left == other.left and isinstance(one.left, Recall) and one.operator == "=="):
-        return False
-    if other.operator != "==" or one.right == other.right:
-        return False
-    if any(_gives_anew(each, one.left.name) for each in nodes(first.then)):
-        return False
-    if not first.otherwise:
-        return True
-    inner = first.otherwise[0]
-    return len(first.otherwise) == 1 and isinstance(inner, If) and _excludes(inner, second)
-
-
-def _gives_anew(step: object, name: str) -> bool:
-    return isinstance(step, Call) and step.save_as == name
+    counted, condition = counted_first(condition, [*then, *otherwise])
+    return [*before_it, *counted, If(condition, tuple(then), tuple(otherwise))]

@@ -31,13 +31,16 @@ from grammar.plan import (
     Condition,
     Either,
     ForEach,
+    Forever,
     Holds,
     Items,
     Not,
     Number,
     Recall,
+    Remember,
     Share,
     Text,
+    Try,
     Value,
 )
 from grammar.tidy import nodes
@@ -182,6 +185,8 @@ def _each_of_them(d: Discourse, node: Node, people: tuple[Value, ...], search: b
     either = node.production.fixed.get("any") or set(d.language.speech.get("or", ())) & set(
         d.norms(part.start, part.end)
     )
+    if either and d.person is not None and d.person.person:  # whoever of them it is
+        d.person = Thing(Text(ANYONE), person=True, plural=True, here=True)
     return Either(tuple(found)) if either else Both(tuple(found))
 
 
@@ -197,7 +202,7 @@ def place_empty(d: Discourse, node: Node) -> Condition:
 @meaning("counted")
 def counted(d: Discourse, node: Node) -> Condition:
     """ "there are more than three people"."""
-    thing = noun_of(d, node)
+    thing = counted_thing(d, node)
     spot: Where | None = d.get(node, "where")
     if spot is not None:
         thing = replace(thing, place=spot.place, furniture=spot.furniture)
@@ -210,6 +215,23 @@ def counted(d: Discourse, node: Node) -> Condition:
     return Compare(
         Ask("count", {"thing": sought(d, thing)}), operator, Number(int(d.get(node, "count")))
     )
+
+
+def counted_thing(d: Discourse, node: Node) -> Thing:
+    """What a condition counts: what was counted before, where it does not say."""
+    if "thing" in node.parts or "person_ref" in node.parts:
+        return noun_of(d, node)
+    if d.last_counted is None:
+        raise NotUnderstood(d.language.phrase("count_what"))
+    return d.last_counted
+
+
+@meaning("counted_between")
+def counted_between(d: Discourse, node: Node) -> Condition:
+    """ "there are between three and ten people"."""
+    count = Ask("count", {"thing": sought(d, counted_thing(d, node))})
+    least, most = (Number(int(d.get(node, each))) for each in ("least", "most"))
+    return Both((Compare(count, ">=", least), Compare(count, "<=", most)))
 
 
 @meaning("cannot_check")
@@ -395,6 +417,33 @@ def people_asked(d: Discourse, surveys: list[Survey]) -> Value:
     return counted_answers(d, surveys, None)
 
 
+@meaning("unanswered")
+def unanswered(d: Discourse, node: Node) -> Condition:
+    """ "if he does not answer": the question is then put so that silence is an answer, too."""
+    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    if survey is None or survey.call.save_as is None:
+        raise NotUnderstood(d.language.phrase("no_question"))
+    name = survey.call.save_as
+    if not any(each is survey.call for each in nodes(tuple(d.done))):
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("not_understood", part=words))
+    heard = Try((survey.call,), (Remember(name, Text("")),))
+    whole = replacing(Forever(tuple(d.done)), survey.call, [heard])
+    d.done[:] = whole.steps
+    return Compare(Recall(name), "==", Text(""))
+
+
+@meaning("is_touched")
+def is_touched(d: Discourse, node: Node) -> Condition:
+    """ "somebody touches the screen": a button is shown there; nobody need touch it."""
+    touched = Recall(d.variable("touched"))
+    button = Text(d.language.phrase("button"))
+    nobody = Remember(touched.name, Text(""))
+    showing = Call("touch", {"options": Items((button,))}, save_as=touched.name)
+    d.pending.append(Try((showing,), (nobody,)))
+    return Compare(touched, "==", button)
+
+
 @meaning("code_is")
 def code_is(d: Discourse, node: Node) -> Condition:
     if d.code is None:
@@ -405,10 +454,31 @@ def code_is(d: Discourse, node: Node) -> Condition:
     return Compare(Recall(d.code), "==", Text(text))
 
 
+@meaning("is_awaited")
+def is_awaited(d: Discourse, node: Node) -> Condition:
+    """ "nobody comes within five minutes": waited for so long, and no longer."""
+    thing = noun_of(d, node)
+    if thing.place is not None and thing.place != d.at:
+        d.went(thing.place)
+        d.pending.append(Call("goto", {"place": thing.place}))
+    d.person = replace(thing, here=True)
+    seconds = as_value(d.get(node, "seconds"))
+    waited = Holds(Ask("wait_for", {"thing": sought(d, thing), "timeout": seconds}))
+    no = bool(node.production.fixed.get("no"))
+    d.met = Meeting(thing, holds=not no)
+    return Not(waited) if no else waited
+
+
 @meaning("is_heard")
 def is_heard(d: Discourse, node: Node) -> Condition:
-    """ "you hear help"."""
-    heard: Value = Recall(d.heard) if d.heard else Ask("listen")
+    """ "you hear help". Where nobody speaks, nothing was heard, and that is no failure."""
+    if d.heard is None:
+        name = d.variable("heard")
+        silence = Remember(name, Text(""))
+        d.pending.append(Try((Call("listen", save_as=name),), (silence,)))
+        heard: Value = Recall(name)
+    else:
+        heard = Recall(d.heard)
     if node.production.fixed.get("own_name"):
         if not d.lexicon.robot_name:
             words = d.words(node.start, node.end)

@@ -6,13 +6,14 @@ from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, NotUnderstood, Steps, Thing
-from grammar.meanings.branches import exclusive
+from grammar.meanings.alternatives import exclusive, itself, side_by_side
 from grammar.meanings.finding import go, not_found
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import summed_at_end
 from grammar.meanings.rounds import in_round
 from grammar.meanings.things import goes_on
-from grammar.plan import Ask, Call, Holds, If, Not, Recall, Remember, Step, Text, Value
+from grammar.meanings.waiting import until_then
+from grammar.plan import Ask, Call, Holds, If, Not, Recall, Remember, Step, Text, Try, Value
 from grammar.tidy import mentions
 
 NEEDS_IT: Final = frozenset({"grab", "put", "give", "guide", "follow", "describe"})
@@ -39,18 +40,41 @@ def steps(d: Discourse, node: Node) -> Steps:
             ):  # "is anyone there | who needs help": one clause
                 words = d.words(first.start, first.end)
                 raise NotUnderstood(d.language.phrase("not_understood", part=words))
+            first = itself(first)
+            if first.production.means == "reversed" and in_order(first):
+                further += [part for part in (each.parts.get("rest"),) if isinstance(part, Node)]
+                further.append(chained(first.parts["later"]))
+                each = chained(first.parts["earlier"])
+                continue
+            first, beside = side_by_side(d, first)
             d.done.extend(in_round(d, first))
             clauses.append((joint, len(d.done) - before))
             joint = str(each.production.fixed.get("joint", "and"))
             rest, beyond = each.parts.get("rest"), each.parts.get("further")
+            if beside is not None:
+                further += [part for part in (beyond, rest) if isinstance(part, Node)]
+                rest, beyond = beside, None
             if isinstance(beyond, Node):  # after the rest
                 further.append(beyond)
             each = rest if isinstance(rest, Node) else further.pop() if further else None
+        d.done[:] = until_then(d.done)
         if d.depth == 1:
             d.done.extend(summed_at_end(d))
         d.done[:] = exclusive(guard_finds(d, speak_codes(d, d.done)))
 
     return d.sequence(make)
+
+
+def in_order(clause: Node) -> bool:
+    """Whether what is done first was also said first: "after greeting her, ask ...", so that the
+    two are as one sequence."""
+    return clause.parts["earlier"].start < clause.parts["later"].start
+
+
+def chained(part: Leaf | Node) -> Node:
+    """The sequence that a part is."""
+    assert isinstance(part, Node)
+    return part
 
 
 def guard_finds(d: Discourse, done: Steps) -> Steps:
@@ -78,7 +102,7 @@ def guard_finds(d: Discourse, done: Steps) -> Steps:
                 later.method in ("goto", "find", "dock") or later.method in needs_it
             ):
                 break
-            if not isinstance(later, Call | Remember):
+            if not isinstance(later, Call | Remember | Try):
                 break
             body.append(later)
         if body:

@@ -266,7 +266,8 @@ def is_either(node: Node) -> bool:
 
 @meaning("patrol")
 def patrol(d: Discourse, node: Node) -> Steps:
-    """ "drive back and forth between the lobby and the kitchen"."""
-    places: list[Value] = [d.get(node, "place"), *d.get(node, "place_list")]
+    """ "drive back and forth between the lobby and the kitchen", "patrol the corridor": there and
+    back."""
+    places: list[Value] = [d.get(node, "place"), *(d.get(node, "place_list") or [d.start()])]
     d.at = None
     return [Call("goto", {"place": place}) for place in places]

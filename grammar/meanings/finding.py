@@ -186,7 +186,8 @@ def is_here(d: Discourse, person: Thing) -> bool:
     if is_me(person) or person.here or person.value == d.with_person:
         return True
     # "go to the lobby and tell the visitors ..."
-    return not person.known and person.place is None and (d.at is not None or person.plural)
+    there = d.at is not None and d.at != d.looked_in
+    return not person.known and person.place is None and (there or person.plural)
 
 
 def not_found(d: Discourse, thing: Thing) -> Call:

@@ -4,23 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from math import ceil
 from typing import Final
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, as_value
+from grammar.discourse import ANYONE, Discourse, Meeting, NotUnderstood, Steps, Thing, as_value
 from grammar.meanings.branches import meet_there
 from grammar.meanings.conditions import condition_of
 from grammar.meanings.control import guard_finds
+from grammar.meanings.finding import go, look_for, noun_of
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.rounds import told_after_round
 from grammar.meanings.surveys import until_answered
-from grammar.meanings.waiting import at_least, wait_until
+from grammar.meanings.waiting import at_least, awaited, looking_up, there_first, wait_until
 from grammar.plan import (
     Ask,
     Call,
     Compare,
     Condition,
+    Elapsed,
     ForEach,
     Forever,
     Holds,
@@ -28,6 +31,7 @@ from grammar.plan import (
     Items,
     Number,
     Recall,
+    Remember,
     Repeat,
     RepeatUntil,
     Step,
@@ -39,6 +43,8 @@ from grammar.tidy import mentions, nodes, replaced
 
 HOLDS: Final = frozenset({"goto", "dock", "show", "emotion", "wait"})
 """Methods after which something goes on by itself: "stay in the lobby until noon"."""
+WITH_ONE: Final = frozenset({"say", "ask", "guide"})
+"""What is done with one person after the other."""
 A_MINUTE: Final = 60
 FULL_HOUR: Final = Compare(Text(":00"), "in", Ask("clock", field="time"))
 
@@ -72,9 +78,27 @@ def done_until(d: Discourse, body: Steps, looking: Steps, condition: Condition) 
     condition = at_least(condition)
     if body == wait_until(condition):  # "wait for me until I am back"
         return [*looking, *body]
+    led = led_there(body, condition)
+    if led is not None:
+        return led
     if stays(body):
-        return [*held(body), *looking, *wait_until(condition)]
-    return until_answered(d, condition, [*body, *looking])
+        return [*held(body), *awaited(looking, condition)]
+    if d.counting is None:
+        body = looking_up(body)
+    return there_first(until_answered(d, condition, [*body, *looking]))
+
+
+def led_there(body: Steps, condition: Condition) -> Steps | None:
+    """ "keep following her until she is in the lobby": as far as there."""
+    last = body[-1] if body else None
+    if not isinstance(last, Call) or last.method != "follow":
+        return None
+    if not isinstance(condition, Holds) or not isinstance(condition.value, Ask):
+        return None
+    sought_for = condition.value.arguments
+    if sought_for.get("thing") != last.arguments["person"] or "place" not in sought_for:
+        return None
+    return [*body[:-1], Call("follow", {**last.arguments, "to": sought_for["place"]})]
 
 
 @meaning("while")
@@ -106,11 +130,34 @@ def at_intervals(d: Discourse, node: Node) -> Steps:
 def loop(d: Discourse, node: Node) -> Steps:
     """Steps and how often they are done: "every ten minutes until five", "three times"."""
     part = node.parts["steps"]
-    often: Node = d.get(node, "loop")
+    if "loop" in node.parts:
+        often: Node = d.get(node, "loop")
+    else:  # "go there every hour and ..."
+        assert isinstance(part, Node)
+        often = d.get(part, "pace")
     ending: Node | None = d.get(node, "ending")
     if ending is not None:  # "every ten minutes ..., until five": that is no end of one round
         often = replace(often, parts={**often.parts, **ending.parts})
     return looped(d, often, lambda: d.build(part))
+
+
+@meaning("watched")
+def watched(d: Discourse, node: Node) -> Steps:
+    """ "keep an eye on the box and tell me if it disappears": there, where it is."""
+    place: Value | None = d.get(node, "place")
+    if place is not None:
+        going = go(d, place)
+        d.looked_in = place
+        return [*going, *d.build(node.parts["steps"])]
+    thing = noun_of(d, node)
+    going = []
+    if thing.place is not None:
+        going = go(d, thing.place)
+    elif thing.known and thing.person:
+        going = look_for(d, thing)
+    d.met = None
+    meet_there(d, Meeting(replace(thing, place=None)))
+    return [*going, *d.build(node.parts["steps"])]
 
 
 @meaning("loop_that")
@@ -147,7 +194,7 @@ def looped(d: Discourse, often: Node, build: Callable[[], Steps]) -> Steps:
     if "lasting" in often.parts:
         return _lasting(d, often, make)
     body = each_who_comes(d, make)
-    return [Forever(tuple(_paced(d, often, body)))]
+    return there_first([Forever(tuple(_paced(d, often, body)))])
 
 
 def one_round(body: Steps) -> Steps:
@@ -166,21 +213,26 @@ def _paced(d: Discourse, often: Node, body: Steps) -> Steps:
 
 
 def _lasting(d: Discourse, often: Node, make: Callable[[], Steps]) -> Steps:
-    """For some time: as many rounds as there are pauses in it. Without a pause only what goes on
-    by itself can be said to last, for a program cannot tell how long it has been busy."""
+    """For some time: as many rounds as there are pauses in it, else as many as there is time for,
+    which a program can tell to the minute."""
     lasting = float(d.get(often, "lasting"))
     pause = A_MINUTE * 60 if "hourly" in often.parts else d.get(often, "pause")
-    body = make()
+    body = each_who_comes(d, make)
     if pause is not None:
         rounds = Number(max(1, round(lasting / float(pause))))
         return [Repeat(rounds, tuple(_paced(d, often, body)))]
-    if not stays(body):
+    if stays(body):
+        return [*held(body), Call("wait", {"seconds": as_value(lasting)})]
+    if lasting < A_MINUTE:
         part = often.parts["lasting"]
         words = d.words(part.start, part.end)
         raise NotUnderstood(
             d.language.phrase("cannot_time", time=words), gap=(part.start, part.end)
         )
-    return [*held(body), Call("wait", {"seconds": as_value(lasting)})]
+    begin = d.variable("begin")
+    time_left = Compare(Elapsed(Recall(begin)), "<", Number(ceil(lasting / A_MINUTE)))
+    *before, loop = there_first([While(time_left, tuple(looking_up(body)))])
+    return [*before, Remember(begin, Ask("clock", field="time")), loop]
 
 
 def each_who_comes(d: Discourse, make: Callable[[], Steps]) -> Steps:
@@ -193,8 +245,8 @@ def each_who_comes(d: Discourse, make: Callable[[], Steps]) -> Steps:
     only = body[0] if len(body) == 1 else None
     if isinstance(only, If) and only.condition == Holds(Ask("find", {"thing": person.value})):
         body = list(only.then)  # not one after the other, all over the house
-    spoken = [step for step in body if isinstance(step, Call) and step.method in ("say", "ask")]
-    if not spoken or len(spoken) != len(body):
+    once = [step for step in body if isinstance(step, Call) and step.method in WITH_ONE]
+    if not once or len(once) != len(body):
         return body
     return [Call("wait_for", {"thing": person.value}), *body]
 
@@ -202,7 +254,7 @@ def each_who_comes(d: Discourse, make: Callable[[], Steps]) -> Steps:
 @meaning("forever")
 def forever(d: Discourse, node: Node) -> Steps:
     body = each_who_comes(d, lambda: one_round(d.build(node.parts["steps"])))
-    return [Forever(tuple(body))]
+    return there_first([Forever(tuple(body))])
 
 
 # --- all that was said before
@@ -221,6 +273,12 @@ def all_before(d: Discourse) -> tuple[Step, ...]:
 def do_that_times(d: Discourse, node: Node) -> Steps:
     """ "do that three times": all that was said before, so often in all."""
     return [Repeat(as_value(d.get(node, "times")), all_before(d))]
+
+
+@meaning("do_that_more")
+def do_that_more(d: Discourse, node: Node) -> Steps:
+    """ "do that three more times": once it was said to be done already."""
+    return [Repeat(Number(int(d.get(node, "times")) + 1), all_before(d))]
 
 
 @meaning("do_that_again")

@@ -199,6 +199,8 @@ def place_called_after(d: Discourse, owner: str, node: Node) -> Value:
 def place_any(d: Discourse, node: Node) -> Value:
     """ "any office": whichever; the only one if there is no other."""
     only_taken_apart(d, node)
+    if "first" in node.parts:  # "the kitchen or the lobby, you choose"
+        return Items((d.get(node, "first"), d.get(node, "second")))
     places = d.lexicon.place_kinds[d.get(node, "kind")]
     if len(places) == 1:
         return Text(places[0].name)

@@ -177,6 +177,8 @@ def whether_seen(d: Discourse, node: Node) -> Report:
         place=thing.place or more.place,
         furniture=thing.furniture or more.furniture,
     )
+    if thing.known and thing.person:  # "whether Bob is asleep"
+        thing = replace(thing, value=more.value)
     named = named_some(d, thing)
     return Report(
         "yes_seen",

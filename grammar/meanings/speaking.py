@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
 from grammar.chart import Node
@@ -10,8 +11,9 @@ from grammar.freetext import words_for
 from grammar.language import load_language
 from grammar.meanings.finding import speak_to
 from grammar.meanings.nouns import is_me
+from grammar.meanings.questions import turn_to_you
 from grammar.meanings.registry import meaning
-from grammar.plan import Call, Number, Text, Value
+from grammar.plan import Call, ForEach, Items, Number, Recall, Text, Value
 
 
 @meaning("say")
@@ -77,10 +79,44 @@ def sentence_form(text: str) -> str:
 
 @meaning("remind")
 def remind(d: Discourse, node: Node) -> Steps:
-    """ "remind me of the meeting"."""
+    """ "remind me of the meeting", "remind Bob in ten minutes to come"."""
+    delay: Steps = d.get(node, "delay") or []
+    person: Thing | None = d.get(node, "person_ref")
     part = node.parts["text"]
-    words = d.sentence("reminder", what=d.words(part.start, part.end))
-    return speak_to(d, d.get(node, "person_ref"), [Call("say", {"text": words})])
+    if is_me(person):
+        what = put_for(d, "of_speaker", d.words(part.start, part.end))
+    else:
+        what = turn_to_you(d, part.start, part.end)
+    phrase = str(node.production.fixed.get("phrase", "reminder"))
+    words = d.sentence(phrase, what=what, value=sentence_form(what))
+    return [*delay, *speak_to(d, person, [Call("say", {"text": words})])]
+
+
+def put_for(d: Discourse, words: str, text: str) -> str:
+    """A text with some words in the place of others, as a list of the language says."""
+    instead: dict[str, str] = d.language.speech.get(words, {})
+    if not instead:
+        return text
+    either = "|".join(rf"\b{re.escape(each)}\b" for each in instead)
+    return re.sub(either, lambda found: instead[found[0].lower()], text, flags=re.IGNORECASE)
+
+
+MOST_COUNTED: Final = 100
+"""Numbers said one after the other."""
+
+
+@meaning("count_aloud")
+def count_aloud(d: Discourse, node: Node) -> Steps:
+    """ "count to ten", "count down from five"."""
+    last = d.get(node, "last")
+    first = d.get(node, "first", 1)
+    last = int(1 if last is None else last)
+    numbers = range(int(first), last + 1) if last >= first else range(int(first), last - 1, -1)
+    if len(numbers) > MOST_COUNTED:
+        raise NotUnderstood(d.language.phrase("too_long"))
+    number = Recall(d.variable("number"))
+    each = Call("say", {"text": number})
+    return [ForEach(number.name, Items(tuple(map(Number, numbers))), (each,))]
 
 
 @meaning("said_with")

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Final
+
+import msgspec
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing
@@ -15,7 +18,24 @@ from grammar.meanings.registry import meaning
 from grammar.meanings.reports import known_words
 from grammar.meanings.rounds import inside
 from grammar.meanings.surveys import moved
-from grammar.plan import Ask, Call, Compare, Condition, Forever, Holds, Number, Text, While
+from grammar.plan import (
+    Ask,
+    Call,
+    Compare,
+    Condition,
+    Forever,
+    Holds,
+    If,
+    Number,
+    Recall,
+    Repeat,
+    RepeatUntil,
+    Step,
+    Text,
+    Value,
+    While,
+)
+from grammar.tidy import LOOPS, gives, nodes
 
 LOOK_EVERY: Final = 10
 """Seconds between two looks at a condition that is waited for."""
@@ -25,11 +45,102 @@ LOOK_EVERY: Final = 10
 def when(d: Discourse, node: Node) -> Steps:
     """ "when somebody comes, ...": wait for it, then do it; "whenever": again and again."""
     named_before(d, node)
-    wait = waiting(d, node)
-    body = d.build(node.parts["then"])
+    person = d.person
+    before, condition = condition_of(d, node)
+    meet_there(d, d.met)
+    waited = Call("wait_for", {"thing": person.value}) if person is not None else None
+    if d.done[-1:] == [waited] and wait_until(condition) == [waited]:
+        d.done.pop()  # "wait for the doctor, and when she comes, ..."
+    body: Steps = d.build(node.parts["then"])
     if node.production.fixed.get("always"):
-        return [Forever((*wait, *body))]
-    return [*wait, *body]
+        return each_time(before, condition, body)
+    return [*awaited(before, condition), *body]
+
+
+def each_time(before: Steps, condition: Condition, body: Steps) -> Steps:
+    """Steps each time that something happens; what lasts happens once, until it is over."""
+    first, looks = parted(before, condition)
+    if looks:
+        return [*first, Forever((*looks, If(condition, tuple(body))))]
+    wait = wait_until(condition)
+    if isinstance(wait[-1], Call):  # for somebody who was not met before
+        return [*first, *there_first([Forever((*wait, *body))])]
+    over = wait_until(negated(condition))
+    return [*first, Forever((*wait, *body, *over))]
+
+
+def there_first(steps: Steps) -> Steps:
+    """Going where somebody is waited for, before the loop in which that is done: "whenever somebody
+    enters the lobby"."""
+    loop = steps[-1]
+    if not isinstance(loop, Forever | RepeatUntil | While | Repeat) or len(loop.steps) < 2:
+        return steps
+    going = loop.steps[0]
+    goes = isinstance(going, Call) and going.method == "goto"
+    if not goes or _waited_for(loop.steps[1]) is None:
+        return steps
+    rest = loop.steps[1:]
+    return [*steps[:-1], going, msgspec.structs.replace(loop, steps=rest)]
+
+
+def _waits(step: Step | Value | None) -> bool:
+    return isinstance(step, Call | Ask) and step.method == "wait_for"
+
+
+def until_then(done: Steps) -> Steps:
+    """The steps of a sequence in which what would go on without end is done until what was waited
+    for before: "stay in the lobby until noon and greet everybody who comes"; and in which somebody
+    who is led away in each round is waited for in each: "wait for visitors and take them to
+    radiology until five"."""
+    result: Steps = []
+    for step in done:
+        last = result[-1] if result else None
+        if isinstance(step, Forever) and isinstance(last, While) and _only_waits(last.steps):
+            step = While(last.condition, tuple(looking_up(list(step.steps))))
+            result.pop()
+        elif isinstance(step, LOOPS) and isinstance(last, Call) and _waits(last):
+            if _waited_for(step.steps[0]) == last.arguments["thing"]:
+                result.pop()
+            elif _leads_away(step.steps, last.arguments["thing"]):
+                steps: Steps = [last, *step.steps]
+                if isinstance(step, RepeatUntil | While):
+                    steps = looking_up(steps)
+                step = msgspec.structs.replace(step, steps=tuple(steps))
+                result.pop()
+        result.append(step)
+    return result
+
+
+def _waited_for(step: Step) -> Value | None:
+    """Who is waited for, if a round begins with that."""
+    first: Step | Value = step
+    if isinstance(step, If) and isinstance(step.condition, Holds):
+        first = step.condition.value
+    return first.arguments["thing"] if isinstance(first, Call | Ask) and _waits(first) else None
+
+
+def _only_waits(steps: Iterable[Step]) -> bool:
+    return all(isinstance(step, Call) and step.method == "wait" for step in steps)
+
+
+def _leads_away(steps: Iterable[Step], person: Value) -> bool:
+    return any(
+        isinstance(step, Call) and step.method == "guide" and step.arguments["person"] == person
+        for step in steps
+    )
+
+
+def looking_up(body: Steps) -> Steps:
+    """A round that begins with waiting for somebody, so that it ends in time where nobody comes:
+    "greet visitors until five"."""
+    for at, step in enumerate(body):
+        if not isinstance(step, Call) or step.method not in ("goto", "wait_for"):
+            break
+        if step.method == "wait_for" and step.save_as is None and len(body) > at + 1:
+            timeout = step.arguments.get("timeout", Number(LOOK_EVERY))
+            waited = Holds(Ask("wait_for", {**step.arguments, "timeout": timeout}))
+            return [*body[:at], If(waited, tuple(body[at + 1 :]))]
+    return body
 
 
 def named_before(d: Discourse, node: Node) -> None:
@@ -45,7 +156,7 @@ def waiting(d: Discourse, node: Node) -> Steps:
     """Wait until the condition of a clause holds; whoever is waited for is then here."""
     before, condition = condition_of(d, node)
     meet_there(d, d.met)
-    return [*before, *wait_until(condition)]
+    return awaited(before, condition)
 
 
 @meaning("tell_when")
@@ -55,10 +166,13 @@ def tell_when(d: Discourse, node: Node) -> Steps:
     claim = claim_of(d, node, condition, d.met)
     meet_there(d, d.met)
     person: Thing = d.get(node, "person_ref")
-    waiting = [*before_it, *wait_until(condition)]
+    waiting = awaited(before_it, condition)
+    away = d.at is not None or moved(waiting)
     told = speak_to(d, person, known_words(d) if claim is None else [claim])
-    if is_me(person) and moved(waiting):
-        return [*waiting, Call("goto", {"place": d.start()}), *told]
+    if is_me(person) and away:
+        told = [Call("goto", {"place": d.start()}), *told]
+    if node.production.fixed.get("always"):
+        return each_time(before_it, condition, told)
     return [*waiting, *told]
 
 
@@ -72,6 +186,23 @@ def at_least(condition: Condition) -> Condition:
     ):
         return Compare(condition.left, ">=", condition.right)
     return condition
+
+
+def awaited(before: Steps, condition: Condition) -> Steps:
+    """Wait until a condition holds that needs some steps before it can be checked: what is found
+    out by them is found out anew each time."""
+    first, looks = parted(before, condition)
+    if not looks:
+        return [*first, *wait_until(condition)]
+    return [*first, RepeatUntil(at_least(condition), tuple(looks))]
+
+
+def parted(before: Steps, condition: Condition) -> tuple[Steps, Steps]:
+    """The steps before a condition: those that are done once, and those that find out what it is
+    about."""
+    names = {each.name for each in nodes(condition) if isinstance(each, Recall)}
+    looks = [step for step in before if names & gives(step)]
+    return [step for step in before if step not in looks], looks
 
 
 def wait_until(condition: Condition) -> Steps:

@@ -69,6 +69,7 @@ def values(depth: int = 2) -> st.SearchStrategy[p.Value]:
         st.lists(inner, min_size=1, max_size=4).map(lambda parts: p.Sentence(tuple(parts))),
         st.one_of(names.map(p.Recall), lists).map(p.Length),
         st.builds(p.Share, inner, inner),
+        inner.map(p.Elapsed),
         lists.map(p.Choice),
     )
 

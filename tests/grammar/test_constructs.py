@@ -21,6 +21,7 @@ FILES = {
     "constructs_en.yaml": "en",
     "clauses_en.yaml": "en",
     "reports_en.yaml": "en",
+    "times_en.yaml": "en",
     "constructs_de.yaml": "de",
     "constructs_fr.yaml": "fr",
 }

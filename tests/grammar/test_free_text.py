@@ -43,7 +43,6 @@ def test_what_is_no_command_moves_no_robot(language: str) -> None:
         ("say hello backwards", "backwards"),
         ("tell Bob the gist", "the gist"),
         ("say lunch when you are back", "when you are back"),
-        ("remind Alice of her break", "of her break"),
         ("show the text please wait here and paint the wall", "and paint the wall"),
     ],
 )

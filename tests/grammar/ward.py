@@ -14,6 +14,7 @@ from grammar.plan import (
     Collect,
     Compare,
     Either,
+    Elapsed,
     End,
     ForEach,
     Forever,
@@ -176,6 +177,8 @@ def _value(value: Any) -> str:
             return f"len({_value(of)})"
         case Share(part, whole):
             return f"share({_value(part)}, {_value(whole)})"
+        case Elapsed(since):
+            return f"minutes_since({_value(since)})"
         case Choice(among):
             return f"choice({_value(among)})"
     raise AssertionError(value)

@@ -1,0 +1,176 @@
+"""Conditions side by side: "if they say tea, ...; if they say coffee, ..., otherwise ..."."""
+
+from __future__ import annotations
+
+import operator
+from dataclasses import replace
+from typing import Final
+
+from grammar.chart import Leaf, Node
+from grammar.discourse import Discourse, Steps
+from grammar.meanings.branches import what_it_means
+from grammar.meanings.conditions import negated
+from grammar.plan import Ask, Both, Call, Compare, Condition, Holds, If, Not, Number, Recall, Text
+from grammar.tidy import nodes
+
+ABOUT_ANSWERS: Final = frozenset(
+    {"so", "answered", "answer_counts", "answers_many", "unanswered", "code_is"}
+)
+_HOLDS: Final = {
+    "==": operator.eq,
+    "!=": operator.ne,
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+BRANCHES: Final = ("otherwise", "otherwise_not", "otherwise_denied", "then")
+"""The parts of a condition that are steps, the last one first."""
+CONDITIONAL: Final = frozenset({"if", "tell_condition"})
+
+
+def side_by_side(d: Discourse, clause: Node) -> tuple[Node, Node | None]:
+    """A condition without those that stand beside it, and these: "if it is empty, come back, if
+    there are many, call Bob". One that is about an answer which the first asks for stands in it,
+    and so does what is joined by "and": "if Bob is there and if he ..."."""
+    clause = itself(clause)
+    last = next((name for name in BRANCHES if name in clause.parts), "")
+    body = clause.parts.get(last)
+    if clause.production.means not in CONDITIONAL or not isinstance(body, Node):
+        return clause, None
+    about = _about(clause)
+    chain = [body]
+    while isinstance(rest := chain[-1].parts.get("rest"), Node):
+        before, first = chain[-1].parts["first"], rest.parts["first"]
+        if isinstance(first, Node) and _stands_beside(d, before, first, about):
+            return _cut(clause, last, chain, rest)
+        chain.append(rest)
+    return clause, None
+
+
+def itself(clause: Node) -> Node:
+    """What a clause stands for, if it is nothing but another one."""
+    while clause.production.means is None and len(clause.parts) == 1:
+        (inner,) = clause.parts.values()
+        if not isinstance(inner, Node):
+            break
+        clause = inner
+    return clause
+
+
+def _about(clause: Node) -> bool:
+    """Whether a condition is about an answer."""
+    return what_it_means(clause.parts["condition"]) in ABOUT_ANSWERS
+
+
+def _stands_beside(d: Discourse, before: Leaf | Node, clause: Node, about: bool) -> bool:
+    clause = itself(clause)
+    if clause.production.means not in CONDITIONAL or "condition" not in clause.parts:
+        return False
+    if about or _about(clause):
+        return about and _about(clause)
+    joins = d.language.speech.get("clause", {}).get("and", ("and",))
+    return not set(joins) & set(d.norms(before.end, clause.start))
+
+
+def _cut(clause: Node, branch: str, chain: list[Node], tail: Node) -> tuple[Node, Node]:
+    kept: Node | None = None
+    for each in reversed(chain):
+        parts = {name: part for name, part in each.parts.items() if name != "rest"}
+        kept = replace(each, parts=parts if kept is None else {**parts, "rest": kept})
+    assert kept is not None
+    return replace(clause, parts={**clause.parts, branch: kept}), tail
+
+
+def exclusive(done: Steps) -> Steps:
+    """ "if they say tea, ...; if they say coffee, ..., otherwise ...": only one of them can be."""
+    result: Steps = []
+    for step in done:
+        last = result[-1] if result else None
+        if isinstance(last, If) and isinstance(step, If) and _excludes(last, step):
+            result[-1] = _or_else(last, step)
+        elif isinstance(last, If) and isinstance(step, If) and _is_silence(last, step):
+            result[-1] = If(step.condition, step.then, (last,))
+        else:
+            result.append(step)
+    return result
+
+
+def _is_silence(first: If, second: If) -> bool:
+    """Whether nothing was said at all, which is neither the answer asked for first nor another."""
+    one, silent = first.condition, second.condition
+    return (
+        isinstance(one, Compare)
+        and isinstance(silent, Compare)
+        and one.left == silent.left
+        and silent.right == Text("")
+        and not second.otherwise
+    )
+
+
+def _or_else(first: If, second: If) -> If:
+    if first.otherwise:
+        inner = first.otherwise[0]
+        assert isinstance(inner, If)
+        return If(first.condition, first.then, (_or_else(inner, second),))
+    return If(first.condition, first.then, (second,))
+
+
+def _excludes(first: If, second: If) -> bool:
+    """Whether an answer that one asks for cannot be the one that the other asks for, and the first
+    leaves room for the second."""
+    one, other = first.condition, second.condition
+    if not _cannot_be_both(one, other):
+        return False
+    names = {each.name for each in nodes(one) if isinstance(each, Recall)}
+    if any(_gives_anew(each, name) for name in names for each in nodes(first.then)):
+        return False
+    if not first.otherwise:
+        return True
+    inner = first.otherwise[0]
+    return len(first.otherwise) == 1 and isinstance(inner, If) and _excludes(inner, second)
+
+
+def _gives_anew(step: object, name: str) -> bool:
+    return isinstance(step, Call) and step.save_as == name
+
+
+def _cannot_be_both(one: Condition, other: Condition) -> bool:
+    if isinstance(one, Both):
+        return any(_cannot_be_both(each, other) for each in one.conditions)
+    if isinstance(other, Both):
+        return any(_cannot_be_both(one, each) for each in other.conditions)
+    if one == negated(other) or other == negated(one):
+        return True
+    if isinstance(one, Compare) and isinstance(other, Compare):
+        return one.left == other.left and _apart(one, other)
+    if isinstance(one, Not) and isinstance(one.condition, Holds) and isinstance(other, Compare):
+        return _are_some(one.condition, other)
+    if isinstance(one, Compare) and isinstance(other, Not) and isinstance(other.condition, Holds):
+        return _are_some(other.condition, one)
+    return False
+
+
+def _are_some(seen: Holds, counted: Compare) -> bool:
+    """Whether there are some of what is seen: "nobody is there", "there are more than three"."""
+    looked, counting = seen.value, counted.left
+    if not (isinstance(looked, Ask) and isinstance(counting, Ask) and counting.method == "count"):
+        return False
+    same = looked.arguments.get("thing") == counting.arguments.get("thing")
+    some = isinstance(counted.right, Number) and counted.right.value >= 1
+    return same and some and counted.operator in (">", ">=", "==")
+
+
+def _apart(one: Compare, other: Compare) -> bool:
+    """Whether no value is both: below 20 and above 80, before noon and after six."""
+    values = (one.right, other.right)
+    texts = all(isinstance(each, Text) for each in values)
+    numbers = all(isinstance(each, Number) for each in values)
+    if not (texts or numbers) or not {one.operator, other.operator} <= _HOLDS.keys():
+        return False
+    left, right = (each.value for each in values)  # type: ignore[union-attr]
+    ranks = (0, 0) if left == right else (0, 2) if left < right else (2, 0)  # type: ignore[operator]
+    return not any(
+        _HOLDS[one.operator](value, ranks[0]) and _HOLDS[other.operator](value, ranks[1])
+        for value in (-1, 0, 1, 2, 3)
+    )
