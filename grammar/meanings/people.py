@@ -23,6 +23,7 @@ from grammar.meanings.speaking import spoken
 from grammar.meanings.things import deliver, given_last
 from grammar.naming import place_called
 from grammar.plan import Call, Forever, Items, Recall, Text, Value
+from grammar.tidy import nodes
 
 
 @meaning("guide")
@@ -107,6 +108,8 @@ def guide_nowhere(d: Discourse, node: Node) -> Steps:
     last = d.done[-1] if d.done else None
     if isinstance(last, Call) and last.method == "guide":
         return []  # "Bob wants to go to the kitchen, show him the way"
+    if last is not None and Call("answer", {}) in nodes((last,)):
+        return []  # "Bob has a question, help him"
     who = named(d, led(d, node))
     words = who if isinstance(who, str) else d.language.phrase("somebody")
     to_place = d.language.speech["to_place"]

@@ -382,6 +382,8 @@ def over_things(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
     if thing.place is None and d.at is not None:
         thing = replace(thing, place=d.at)
     single = replace(thing, count=None, every=False, plural=False, pronoun=False)
+    if thing.count is None:  # "them" are all of them
+        thing = replace(thing, every=True)
 
     d.at = None if thing.count is not None else thing.place
     d.thing, d.thing_last = single, True

@@ -100,7 +100,7 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
 
 def take_back_delivery(d: Discourse, thing: Thing) -> None:
     """ "get the cup and put it on the table": "get" alone would have handed it to the speaker."""
-    if d.delivered == thing.value and len(d.done) >= 2:
+    if d.delivered == thing.value and len(d.done) >= 2 and isinstance(d.done[-1], Call):
         del d.done[-2:]
         d.delivered = None
         d.holding = thing.value
@@ -118,6 +118,9 @@ def put(d: Discourse, node: Node) -> Steps:
     if node.production.fixed.get("there") and (d.place is not None or not d.done):
         spot = Where(place_there(d, node))
     last = d.done[-1] if d.done else None
+    just_put = isinstance(last, Call) and last.method == "put"
+    if node.production.fixed.get("there") and thing.pronoun and just_put:
+        return []  # "the cup belongs on the shelf, put it there"
     if isinstance(last, Call) and last == Call("put", {"thing": thing.value}):
         d.done.pop()  # "carry it to the ward and put it on the table": put down once
         d.holding = thing.value
