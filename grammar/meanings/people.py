@@ -142,6 +142,13 @@ def carry_it(d: Discourse, node: Node) -> Steps:
     return deliver(d, replace(d.thing, pronoun=True), None, spot)
 
 
+def brought_here(d: Discourse, person: Thing) -> Steps:
+    """ "get the visitor and bring them to me": once."""
+    if d.fetched is not None and d.done[-1:] == [d.fetched]:
+        return []
+    return [*meet(d, person), lead(d, person, d.start())]
+
+
 def fetch_it(d: Discourse) -> Steps:
     """ "I want the cups from the kitchen, can you get them?": for the speaker, once."""
     assert d.thing is not None

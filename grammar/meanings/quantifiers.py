@@ -59,7 +59,7 @@ from grammar.plan import (
 from grammar.tidy import nodes
 from grammar.wordforms import singular
 
-HANDED: Final = frozenset({"bring", "put"})
+HANDED: Final = frozenset({"bring", "grab", "put"})
 """Commands that change where things are."""
 LIST_PARTS: Final = frozenset({"more_names", "either_names", "more_things", "either_things"})
 """Rules for the rest of a list, which is a part of the whole."""

@@ -7,7 +7,7 @@ from dataclasses import replace
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
 from grammar.meanings import news
-from grammar.meanings.finding import in_state, not_found
+from grammar.meanings.finding import in_state, is_here, not_found
 from grammar.meanings.nouns import described
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
@@ -89,7 +89,7 @@ def best_there(d: Discourse, thing: Thing) -> Report:
 
 
 @meaning("looks_of")
-def looks_of(d: Discourse, node: Node) -> Report:
+def looks_of(d: Discourse, node: Node) -> Report | Steps:
     """How something looks; a description says it all."""
     thing: Thing = (
         d.get(node, "thing")
@@ -98,7 +98,21 @@ def looks_of(d: Discourse, node: Node) -> Report:
     )
     extra = described(d, "", node)
     place = thing.place or extra.place
+    if thing.person and thing.known and place is None and not is_here(d, thing):
+        return described_where_found(d, thing)
     return Report("only", Ask("describe", {"thing": sought(d, thing)}), place, name="description")
+
+
+def described_where_found(d: Discourse, person: Thing) -> Steps:
+    """ "what is Alice wearing?": look for her, come back and say it."""
+    arguments: dict[str, Value] = {"thing": person.value}
+    start, name = d.start(), d.variable("description")
+    back = Call("goto", {"place": start})
+    look = Remember(name, Ask("describe", arguments))
+    d.went(start)
+    told = d.say("only", value=Recall(name))
+    found = Holds(Ask("find", arguments))
+    return [If(found, (look, back, told), (back, not_found(d, person)))]
 
 
 @meaning("best_of")
@@ -167,11 +181,15 @@ def _spot_words(d: Discourse, thing: Thing) -> str:
 
 
 @meaning("whether_seen")
-def whether_seen(d: Discourse, node: Node) -> Report:
+def whether_seen(d: Discourse, node: Node) -> Report | Steps:
     """ "is there anybody in the waiting room?", "has Bob got a cup on his desk?"."""
     d.get(node, "holder")  # whose desk "his desk" is
     thing: Thing = d.get(node, "thing") or d.get(node, "person_ref")
     more = described(d, thing.text, node)
+    if not thing.known:  # "whether the woman is lying down"
+        thing = replace(thing, value=more.value)
+    elif thing.person and more.text != thing.text:  # "is Alice sitting?"
+        return looks_of(d, node)
     thing = replace(
         in_state(d, node, thing),
         place=thing.place or more.place,

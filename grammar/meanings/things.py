@@ -151,6 +151,10 @@ def bring(d: Discourse, node: Node) -> Steps:
     if source is not None:
         thing = replace(thing, place=source.place, furniture=source.furniture)
     person: Thing | None = d.get(node, "person_ref")
+    if thing.person and thing.pronoun is False and person is not None and is_me(person):
+        from grammar.meanings.people import brought_here
+
+        return brought_here(d, thing)
     if person is not None and (
         person.coming or person.group is not None or person.count is not None
     ):
