@@ -154,6 +154,12 @@ def setting(d: Discourse, node: Node) -> Steps:
     return [*where_or_when, *d.build(bare)]
 
 
+@meaning("in_each_of_them")
+def in_each_of_them(d: Discourse, node: Node) -> Steps:
+    """Where a `setting` is, taken apart by it; of nothing else does it tell the places."""
+    raise NotUnderstood(d.language.phrase("which_places"))
+
+
 def done_there(d: Discourse, spot: Where, part: Leaf | Node) -> Steps:
     """Go to a spot and do something there."""
     if isinstance(part, Node) and part.means == "report" and d.at_place is None and d.at is None:
