@@ -227,6 +227,8 @@ class Discourse:
     """What was told last of a poll or a round (`grammar.meanings.news.News`)."""
     polled_for: str | None = None
     """What the last poll was to find out: "who", "many"."""
+    taken_from: Where | None = None
+    """Where the things of a command are taken from, if that is said of no noun phrase."""
     asking_one: bool = False
     """Whether a question is put to somebody by name: whether anybody has called is about others."""
     asking_each: bool = False

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, capital
-from grammar.meanings.finding import speak_to
+from grammar.meanings.finding import go, speak_to
 from grammar.meanings.nouns import person_me
 from grammar.meanings.questions import base_form, turn_to_you
 from grammar.meanings.registry import meaning
@@ -51,6 +51,13 @@ def say_that(d: Discourse, node: Node) -> Steps:
     if more is not None:
         text = f"{text} {told_to(d, more, person)}"
     return speak_to(d, person, [Call("say", {"text": Text(text)})])
+
+
+@meaning("say_there")
+def say_there(d: Discourse, node: Node) -> Steps:
+    """ "tell the kitchen that two meals are missing": whoever is there."""
+    going = go(d, d.get(node, "place"))
+    return [*going, Call("say", {"text": Text(told_to(d, node.parts["text"], None))})]
 
 
 @meaning("show_that")

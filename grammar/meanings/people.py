@@ -83,6 +83,10 @@ def lead(d: Discourse, person: Thing, place: Value) -> Call:
 @meaning("guide_back")
 def guide_back(d: Discourse, node: Node) -> Steps:
     """ "bring her back": to where the command was given."""
+    pronoun = node.parts.get("person_ref")
+    carried = d.thing_last and not leads_people_only(d, node)
+    if pronoun is not None and carried and speaks_of_things(d, pronoun):
+        return fetch_it(d)
     thing = led(d, node)
     steps = meet(d, thing)
     return [*steps, lead(d, thing, d.start())]

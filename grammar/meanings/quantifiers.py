@@ -92,7 +92,12 @@ def distributed(d: Discourse, node: Node, make: Make) -> Steps:
     within = setting_of(node) or node
     several = [part for part in phrases(within) if speaks_of_several(d, node, part)]
     several.sort(key=lambda part: part.production.rule == "thing")  # things change hands inside
-    return over(d, several, make)
+    outer = d.taken_from
+    things = any(part.production.rule == "thing" for part in several)
+    d.taken_from = d.get(node, "from") if things and "from" in node.parts else None
+    steps = over(d, several, make)
+    d.taken_from = outer
+    return steps
 
 
 def setting_of(node: Node) -> Node | None:
@@ -379,6 +384,8 @@ def over_things(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
     """ "two cups", "all the cups in the kitchen": one after the other, for the hand holds one."""
     if node.means != "thing":
         take_back(d, thing)
+    if thing.place is None and d.taken_from is not None:
+        thing = replace(thing, place=d.taken_from.place, furniture=d.taken_from.furniture)
     if thing.place is None and d.at is not None:
         thing = replace(thing, place=d.at)
     single = replace(thing, count=None, every=False, plural=False, pronoun=False)

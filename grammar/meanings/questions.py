@@ -323,7 +323,9 @@ def base_form(d: Discourse, verb: str) -> str:
 def ask_to(d: Discourse, node: Node) -> Steps:
     """ "ask them to wait" -> "Please wait."."""
     part = node.parts.get("text")
-    text = turn_to_you(d, part.start, part.end) if part is not None else ""
+    # Whoever else is spoken of is not the one who is asked: "sie soll ihn mir bringen".
+    you = "to_you_who" if "to_you_who" in d.language.speech else "to_you"
+    text = turn_to_you(d, part.start, part.end, you) if part is not None else ""
     if "wished" in node.parts:  # "qu'elle vienne ici"
         text = f"{d.get(node, 'wished')} {text}".strip()
     verb = node.parts.get("verb")
