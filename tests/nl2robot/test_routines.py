@@ -467,8 +467,8 @@ def test_a_routine_is_renamed_and_added_to(nurse) -> None:
         (
             "fr",
             "quand je dis tournée du thé, fais coucou",
-            "renomme tournée du thé en ronde",
-            "ronde",
+            "renomme tournée du thé en ronde du thé",
+            "ronde du thé",
         ),
     ],
 )
