@@ -602,7 +602,12 @@ class Slots:
         return branch is not None and bool(branch.values)
 
     def _noun_over(self, at: int, position: int) -> bool:
-        """Whether a small letter shows that the noun before is at an end: "Tasse leer"."""
+        """Whether a small letter shows that the noun before is at an end: "Tasse leer"; or, where
+        nouns begin with their heads, an order: "la salle d'attente préviens"."""
+        norm = self.tokens[position].norm
+        ordered = norm in self._command_words - self._judge.words.nouns_too
+        if position > at and ordered and self.language.speech.get("head_first"):
+            return True
         if position == at or not self.language.speech.get("capital_nouns"):
             return False
         before, here = self.tokens[position - 1], self.tokens[position]

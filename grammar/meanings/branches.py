@@ -12,7 +12,7 @@ from typing import Final
 from grammar.chart import Leaf, Node
 from grammar.discourse import Claim, Discourse, Meeting, NotUnderstood, Steps, Thing
 from grammar.meanings.conditions import condition_of, negated, said_so
-from grammar.meanings.finding import not_found, speak_to
+from grammar.meanings.finding import go, not_found, speak_to
 from grammar.meanings.news import polled
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
@@ -220,8 +220,10 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
     claim = claim_of(d, node, condition, met)
     start = d.scene()
     meet_there(d, met)
-    person: Thing = d.get(node, "person_ref")
-    if is_me(person):
+    person: Thing | None = d.get(node, "person_ref")
+    if "at_place" in node.parts:  # "tell the kitchen": whoever is there
+        then = [*go(d, d.get(node, "at_place")), *(known_words(d) if claim is None else [claim])]
+    elif is_me(person):
         d.claim = None if claim is None else Claim(claim, d.known_by_now())
         then = tell_speaker(d)
         d.claim = None

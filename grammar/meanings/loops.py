@@ -423,9 +423,16 @@ def check_each_place(d: Discourse, node: Node) -> Steps:
 
 @meaning("for_each_person")
 def for_each_person(d: Discourse, node: Node) -> Steps:
-    """ "for each of the next three visitors, ..." """
+    """ "for each of the next three visitors, ...", "for every patient in ward a, ..." """
     times = d.get(node, "times")
     person: Thing | None = d.get(node, "person_ref")
+    if times is None and person is not None and person.place is not None:
+        going, one = go(d, person.place), Recall(d.variable("person"))
+        d.person = replace(person, value=one, known=True, here=True, place=None)
+        d.with_person = one
+        body = d.build(node.parts["steps"])
+        d.person = d.with_person = None
+        return [*going, ForEach(one.name, Ask("people"), tuple(body))]
     who = person.value if person is not None else Text(ANYONE)
     d.person = Thing(who, person=True, here=True)
     wait = Call("wait_for", {"thing": who})

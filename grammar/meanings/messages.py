@@ -208,7 +208,12 @@ def _before_verb(d: Discourse, at: int, end: int, data: Mapping[str, Any]) -> bo
         return False
     if before in data.get("modals", ()):
         return re.search(data["infinitive"], d.tokens[at + 1].norm) is not None
-    return _is_somebody(d, d.tokens[at - 1], data)
+    if _is_somebody(d, d.tokens[at - 1], data):
+        return True
+    finite = d.language.speech.get("base_forms", {})  # "le patient de la chambre 3 l'appelle"
+    here, after = d.tokens[at - 1], d.tokens[at + 1]
+    verb = (after.spelled or after.norm) in finite and after.norm not in data.get("nouns_too", ())
+    return verb and here.kind != "mark" and before not in d.language.closed
 
 
 def _is_somebody(d: Discourse, token: Token, data: Mapping[str, Any]) -> bool:

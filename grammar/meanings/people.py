@@ -114,6 +114,8 @@ def guide_nowhere(d: Discourse, node: Node) -> Steps:
         return []  # "Bob wants to go to the kitchen, show him the way"
     if last is not None and Call("answer", {}) in nodes((last,)):
         return []  # "Bob has a question, help him"
+    if d.answer is not None and d.place == Recall(d.answer):
+        return guide_where_wanted(d, node)  # "ask where she wants to go and accompany her"
     who = named(d, led(d, node))
     words = who if isinstance(who, str) else d.language.phrase("somebody")
     to_place = d.language.speech["to_place"]

@@ -105,6 +105,8 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
         d.at = d.with_person = None
         return [*steps, ForEach(variable, person.group, tuple(if_found(d, who, [asking])))]
     known = person.value if person is not None and person.known else None
+    if person is None and isinstance(d.with_person, Recall):  # whose turn it is in a round
+        arguments["person"] = known = d.with_person
     who_else = d.place if d.in_loop and isinstance(d.place, Recall) and d.place == d.at else None
     asking = asked(d, Call("ask", arguments, save_as=name), options, known or who_else)
     here = person is None or is_me(person) or d.with_person is not None
