@@ -70,7 +70,7 @@ _PATTERN = re.compile(
     | (?P<selector>(?<!\S)[\#.][A-Za-z][\w-]*)
     | (?P<time>\d{1,2}:\d{2}(?!\d))
     | (?P<number>(?:(?<![\w.)])[-−])?(?:\d{1,3}(?:,\d{3})+(?!\d)|\d+(?:[.,]\d+)?))
-    | (?P<word>[^\W\d_]+(?:['’`][^\W\d_]+)*['’]?)
+    | (?P<word>[^\W\d_]+(?:['’`][^\W\d_]+|(?<=\w\w\w),(?:s|t|ll|re|ve)\b)*['’]?)
     | (?P<pause>\.\.+|…|(?<!\w)\(|(?<=\s)\)|\)(?=\s)|\s[-–—]+(?=\s)|—|–)
     | (?P<mark>[.,;:!?]+)
     | (?P<symbol>.)
@@ -133,7 +133,7 @@ def _tokens(text: str, spelling: Spelling) -> list[Token]:
 
 
 def _add_word(tokens: list[Token], raw: str, start: int, spelling: Spelling) -> None:
-    word = plain(raw)
+    word = plain(raw).replace(",", "'")  # "what,s": the key beside it
     if word.endswith("'"):  # "the nurses' room": the apostrophe says nothing here
         word, raw = word[:-1], raw[:-1]
     opened = spelling.contractions.get(word)

@@ -169,7 +169,12 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
     if noun is not None:  # "how many blankets they need"
         what = singular(d.noun_words(noun.start, noun.end), d.language)
         d.thing, d.thing_last = Thing(Text(what)), False
-    elif not options and "verb" in question.parts and d.thing is None and d.place != Recall(name):
+    elif (
+        not options
+        and {"verb", "aux"} & question.parts.keys()
+        and d.thing is None
+        and d.place != Recall(name)
+    ):
         d.thing, d.thing_last = Thing(Recall(name)), False  # "ask what they need and bring it"
     about = question.parts.get("subject")
     if isinstance(about, Node) and any(each in about.parts for each in ("noun", "object")):

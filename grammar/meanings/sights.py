@@ -24,6 +24,8 @@ def names_here(d: Discourse, node: Node) -> Report:
     if person is None:
         person = described(d, ANYONE, node)
         d.person = Thing(Text(ANYONE), person.place, person=True, here=True)
+    elif "mods" in node.parts and not person.known:  # "the man's name in the bedroom"
+        person = replace(person, place=described(d, "", node).place or person.place)
     elif person.here and isinstance(d.report_asked, Report):
         if d.report_asked.value == Ask("people"):  # those who were seen
             return d.report_asked
