@@ -209,6 +209,8 @@ class Discourse:
     """Who or what the last condition was about."""
     missing: Thing | None = None
     """What was looked for in vain: "if not, look in the kitchen"."""
+    moments: Steps = field(default_factory=list)
+    """The waits whose length was not said."""
     claim: Claim | None = None
     """What is so in this branch of a condition."""
     counting: Any = None
@@ -393,9 +395,9 @@ class Discourse:
 
     # --- making steps
 
-    def call_of(self, node: Node) -> Call:
+    def call_of(self, node: Node, name: str = "") -> Call:
         """A rule named after a robot method: its slots are the parameters."""
-        method = METHODS[node.means]
+        method = METHODS[name or node.means]
         names = {parameter.name for form in method.forms for parameter in form}
         arguments = {
             name: as_value(self.get(node, name))

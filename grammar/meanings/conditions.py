@@ -263,7 +263,19 @@ def time_is(d: Discourse, node: Node) -> Condition:
 
 @meaning("weekday_is")
 def weekday_is(d: Discourse, node: Node) -> Condition:
-    return Compare(Ask("clock", field="weekday"), "==", Text(d.get(node, "weekday")))
+    day = Compare(Ask("clock", field="weekday"), "==", Text(d.get(node, "weekday")))
+    more: Condition | None = d.get(node, "more")
+    if more is None:
+        return day
+    return Either((day, *(more.conditions if isinstance(more, Either) else (more,))))
+
+
+FULL_HOUR: Final = Compare(Text(":00"), "in", Ask("clock", field="time"))
+
+
+@meaning("full_hour")
+def full_hour(d: Discourse, node: Node) -> Condition:
+    return FULL_HOUR
 
 
 @meaning("weekend")
@@ -479,6 +491,12 @@ def is_heard(d: Discourse, node: Node) -> Condition:
         heard: Value = Recall(name)
     else:
         heard = Recall(d.heard)
+    part = node.parts.get("text")
+    if isinstance(part, Leaf) and part.slot == "text":
+        first = d.tokens[part.start].norm
+        if first in d.language.speech.get("articles", ()):  # a sound, and nothing that is said
+            words = d.words(node.start, node.end)
+            raise NotUnderstood(d.language.phrase("cannot_check", what=words))
     if node.production.fixed.get("own_name"):
         if not d.lexicon.robot_name:
             words = d.words(node.start, node.end)

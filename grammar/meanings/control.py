@@ -57,7 +57,7 @@ def steps(d: Discourse, node: Node) -> Steps:
             if isinstance(beyond, Node):  # after the rest
                 further.append(beyond)
             each = rest if isinstance(rest, Node) else further.pop() if further else None
-        d.done[:] = until_then(d.done)
+        d.done[:] = until_then(d, d.done)
         if d.depth == 1:
             d.done.extend(summed_at_end(d))
         d.done[:] = exclusive(guard_finds(d, speak_codes(d, d.done)))

@@ -10,7 +10,7 @@ from typing import Final
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Meeting, NotUnderstood, Steps, Thing, as_value
 from grammar.meanings.branches import meet_there
-from grammar.meanings.conditions import condition_of
+from grammar.meanings.conditions import FULL_HOUR, condition_of
 from grammar.meanings.control import guard_finds
 from grammar.meanings.finding import go, look_for, noun_of
 from grammar.meanings.places import kind_places
@@ -43,10 +43,9 @@ from grammar.tidy import mentions, nodes, replaced
 
 HOLDS: Final = frozenset({"goto", "dock", "show", "emotion", "wait"})
 """Methods after which something goes on by itself: "stay in the lobby until noon"."""
-WITH_ONE: Final = frozenset({"say", "ask", "guide"})
+WITH_ONE: Final = frozenset({"say", "ask", "guide", "gesture"})
 """What is done with one person after the other."""
 A_MINUTE: Final = 60
-FULL_HOUR: Final = Compare(Text(":00"), "in", Ask("clock", field="time"))
 
 
 def stays(body: Steps) -> bool:
@@ -78,6 +77,8 @@ def done_until(d: Discourse, body: Steps, looking: Steps, condition: Condition) 
     condition = at_least(condition)
     if body == wait_until(condition):  # "wait for me until I am back"
         return [*looking, *body]
+    if _only_seeks(body, condition):  # "keep looking for Noah until you find him"
+        return [*looking, *wait_until(condition)]
     led = led_there(body, condition)
     if led is not None:
         return led
@@ -86,6 +87,19 @@ def done_until(d: Discourse, body: Steps, looking: Steps, condition: Condition) 
     if d.counting is None:
         body = looking_up(body)
     return there_first(until_answered(d, condition, [*body, *looking]))
+
+
+def _only_seeks(body: Steps, condition: Condition) -> bool:
+    """Whether a round is nothing but the search that is to succeed."""
+    sought_for = condition.value if isinstance(condition, Holds) else None
+    if not isinstance(sought_for, Ask) or sought_for.method not in ("find", "sees") or not body:
+        return False
+    called = [each for each in nodes(tuple(body)) if isinstance(each, Call | Ask)]
+    found = [each for each in called if each.method == "find"]
+    thing = sought_for.arguments["thing"]
+    return bool(found) and all(
+        each.method == "say" or each.arguments.get("thing") == thing for each in called
+    )
 
 
 def led_there(body: Steps, condition: Condition) -> Steps | None:
@@ -160,6 +174,23 @@ def watched(d: Discourse, node: Node) -> Steps:
     return [*going, *d.build(node.parts["steps"])]
 
 
+@meaning("between_times")
+def between_times(d: Discourse, node: Node) -> Steps:
+    """ "between two and four, greet the visitors"."""
+    clock = Ask("clock", field="time")
+    first, last = (Compare(clock, ">=", Text(d.get(node, each))) for each in ("first", "last"))
+    body = each_who_comes(d, lambda: one_round(d.build(node.parts["steps"])))
+    return [*wait_until(first), *done_until(d, body, [], last)]
+
+
+@meaning("only_if")
+def only_if(d: Discourse, node: Node) -> Steps:
+    """ "do that only if she is awake": all that was said before."""
+    before = all_before(d)
+    looking, condition = condition_of(d, node)
+    return [*looking, If(condition, before)]
+
+
 @meaning("loop_that")
 def loop_that(d: Discourse, node: Node) -> Steps:
     """ "do that every hour": all that was said before."""
@@ -193,7 +224,7 @@ def looped(d: Discourse, often: Node, build: Callable[[], Steps]) -> Steps:
         return [Repeat(as_value(d.get(often, "times")), tuple(_paced(d, often, body)))]
     if "lasting" in often.parts:
         return _lasting(d, often, make)
-    body = each_who_comes(d, make)
+    body = each_who_comes(d, make, at_once="pause" in often.parts)
     return there_first([Forever(tuple(_paced(d, often, body)))])
 
 
@@ -235,8 +266,9 @@ def _lasting(d: Discourse, often: Node, make: Callable[[], Steps]) -> Steps:
     return [*before, Remember(begin, Ask("clock", field="time")), loop]
 
 
-def each_who_comes(d: Discourse, make: Callable[[], Steps]) -> Steps:
-    """A round of "keep greeting visitors": it begins when one comes."""
+def each_who_comes(d: Discourse, make: Callable[[], Steps], at_once: bool = False) -> Steps:
+    """A round of "keep greeting visitors": it begins when one comes; but for those who are said to
+    be somewhere, where each round has its time (`at_once`)."""
     before = d.person
     body = make()
     person = d.person
@@ -245,10 +277,17 @@ def each_who_comes(d: Discourse, make: Callable[[], Steps]) -> Steps:
     only = body[0] if len(body) == 1 else None
     if isinstance(only, If) and only.condition == Holds(Ask("find", {"thing": person.value})):
         body = list(only.then)  # not one after the other, all over the house
+    going: Steps = []
+    if (
+        not at_once
+        and person.place is not None
+        and body[0] == Call("goto", {"place": person.place})
+    ):
+        going, body = body[:1], body[1:]  # "greet the people in the lobby"
     once = [step for step in body if isinstance(step, Call) and step.method in WITH_ONE]
     if not once or len(once) != len(body):
-        return body
-    return [Call("wait_for", {"thing": person.value}), *body]
+        return [*going, *body]
+    return [*going, Call("wait_for", {"thing": person.value}), *body]
 
 
 @meaning("forever")

@@ -87,7 +87,15 @@ def _waits(step: Step | Value | None) -> bool:
     return isinstance(step, Call | Ask) and step.method == "wait_for"
 
 
-def until_then(done: Steps) -> Steps:
+@meaning("moment")
+def moment(d: Discourse, node: Node) -> Steps:
+    """ "wait", "stay here": for how long is not said, so that it is until what is waited for next
+    (`until_then`)."""
+    d.moments.append(d.call_of(node, "wait"))
+    return [d.moments[-1]]
+
+
+def until_then(d: Discourse, done: Steps) -> Steps:
     """The steps of a sequence in which what would go on without end is done until what was waited
     for before: "stay in the lobby until noon and greet everybody who comes"; and in which somebody
     who is led away in each round is waited for in each: "wait for visitors and take them to
@@ -95,6 +103,9 @@ def until_then(done: Steps) -> Steps:
     result: Steps = []
     for step in done:
         last = result[-1] if result else None
+        if any(last is each for each in d.moments) and _awaits(step):
+            result.pop()
+            last = result[-1] if result else None
         if isinstance(step, Forever) and isinstance(last, While) and _only_waits(last.steps):
             step = While(last.condition, tuple(looking_up(list(step.steps))))
             result.pop()
@@ -117,6 +128,13 @@ def _waited_for(step: Step) -> Value | None:
     if isinstance(step, If) and isinstance(step.condition, Holds):
         first = step.condition.value
     return first.arguments["thing"] if isinstance(first, Call | Ask) and _waits(first) else None
+
+
+def _awaits(step: Step) -> bool:
+    """Whether something is waited for first."""
+    if isinstance(step, LOOPS) and step.steps:
+        return _only_waits(step.steps) or _awaits(step.steps[0])
+    return _waits(step) or _waited_for(step) is not None
 
 
 def _only_waits(steps: Iterable[Step]) -> bool:
