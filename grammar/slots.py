@@ -565,6 +565,10 @@ class Slots:
         before = self.tokens[at - 1].norm
         if before not in (COMMA, STOP, COLON) and before not in self._joins:
             return False
+        infinitive = self.language.speech.get("infinitive")  # "s'il préfère jouer ou lire"
+        offered = before in self.language.speech.get("or", ())
+        if infinitive and offered and re.search(infinitive, self.tokens[at].norm):
+            return False
         if self.tokens[at].norm in self._command_words:
             return not self._judge.wished(at)
         return self._judge.order(at, len(self.tokens))

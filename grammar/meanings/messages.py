@@ -207,7 +207,7 @@ def _before_verb(d: Discourse, at: int, end: int, data: Mapping[str, Any]) -> bo
     if d.tokens[at].norm not in data.get("objects", {}) or at + 1 >= end:
         return False
     if before in data.get("modals", ()):
-        return re.search(data["infinitive"], d.tokens[at + 1].norm) is not None
+        return re.search(d.language.speech["infinitive"], d.tokens[at + 1].norm) is not None
     if _is_somebody(d, d.tokens[at - 1], data):
         return True
     finite = d.language.speech.get("base_forms", {})  # "le patient de la chambre 3 l'appelle"
