@@ -15,6 +15,7 @@ from grammar.language import Language
 from grammar.lexicon import Lexicon, Name
 from grammar.naming import joined_up, naming
 from grammar.plan import Ask, Call, Number, Recall, Remember, Sentence, Step, Text, Value
+from grammar.referents import Claim, Meeting, Thing, Where
 from grammar.tokens import Token
 from robot_api.methods import METHODS
 
@@ -26,6 +27,8 @@ COMMANDS: Final = frozenset({"command", "place_corrected"})
 """Rules whose noun phrases may speak of several."""
 ANYONE: Final = "person"
 """What the robot looks for when it is anybody's turn."""
+
+__all__ = ["Claim", "Meeting", "Thing", "Where"]
 
 Steps = list[Step]
 
@@ -62,82 +65,8 @@ class Ambiguous(Exception):
         """What could stand there instead."""
 
 
-@dataclass(frozen=True)
-class Thing:
-    """What a noun phrase speaks of: a thing, or a person by kind or name."""
-
-    value: Value
-    """As the robot is asked for it: "red cup"; a variable if it is not known before the run."""
-    place: Value | None = None
-    """The place that the phrase mentions: "the cup in the kitchen"."""
-    furniture: str | None = None
-    known: bool = False
-    """Whether the world knows it by name."""
-    plural: bool = False
-    person: bool = False
-    here: bool = False
-    """Whether it was pointed at ("this box") or is somebody here: no search needed."""
-    me: bool = False
-    """Whether it is the speaker."""
-    pronoun: bool = False
-    """Whether it was spoken of before: "it"."""
-    group: Value | None = None
-    """The names of several people who are meant one by one."""
-    coming: bool = False
-    """Whether it is whoever comes: each of them, without end."""
-    count: int | None = None
-    """How many of them, whichever they are: "three visitors", "two cups"."""
-    preposition: str = ""
-    """How it stands to the furniture, where that is told: "next to"."""
-    noun: str = ""
-    """The noun alone: "cup" of "red cup"."""
-    but: Value | None = None
-    """Those of a group who are left out."""
-    every: bool = False
-    """Whether all of them are meant that are there: "all the visitors", "every cup"."""
-
-    @property
-    def several(self) -> bool:
-        """Whether it is to be done with one after the other."""
-        return self.count is not None or self.every
-
-    @property
-    def text(self) -> str:
-        return self.value.value if isinstance(self.value, Text) else ""
-
-
-@dataclass(frozen=True)
-class Where:
-    """A place, a piece of furniture, or both: "on the table in the kitchen"."""
-
-    place: Value | None = None
-    furniture: str | None = None
-    words: str = ""
-    """What else tells the thing: "behind the cup"."""
-    preposition: str = ""
-    """How something stands to the furniture: "under"; as far as that is no matter of course."""
-
-
-@dataclass(frozen=True)
-class Meeting:
-    """Somebody or something that is here if a condition holds, or if it does not."""
-
-    thing: Thing
-    holds: bool = True
-    """Whether it is here if the condition holds."""
-
-
 ONE_ONLY: Final = frozenset({"person_ref", "thing", "place"})
 """Parts that are a single one wherever a meaning asks for them."""
-
-
-@dataclass(frozen=True)
-class Claim:
-    """What is so in a branch of a condition, for "if there is a cup, tell me"."""
-
-    saying: Step
-    known: tuple[Any, ...]
-    """What was known besides (`known_by_now`): where more is found out, that is told instead."""
 
 
 SCENE: Final = (
@@ -154,6 +83,7 @@ SCENE: Final = (
     "at_furniture",
     "group",
     "missing",
+    "lacking",
 )
 """What the robot and the speaker have before them; each branch of a condition begins with the same
 scene."""
@@ -209,6 +139,12 @@ class Discourse:
     """Who or what the last condition was about."""
     missing: Thing | None = None
     """What was looked for in vain: "if not, look in the kitchen"."""
+    lacking: Thing | None = None
+    """What is not where it should be: "if there is none, bring one" is for that place."""
+    delivery: Any = None
+    """What was brought to somebody last (`grammar.meanings.deliveries.Delivery`)."""
+    meant_for: Any = None
+    """Whom, or the place that, things are brought to where it is not said."""
     moments: Steps = field(default_factory=list)
     """The waits whose length was not said."""
     claim: Claim | None = None
@@ -463,6 +399,12 @@ class Discourse:
         self.looked_in = None
         self.at_furniture = None
         self.with_person = None
+
+    def came_back(self) -> None:
+        """The robot has gone back to the speaker by itself: "there" is still where it was."""
+        place = self.place
+        self.went(self.start())
+        self.place = place
 
     def scene(self) -> dict[str, Any]:
         """Where everything is by now, to go back to it with `set_scene`."""

@@ -9,14 +9,26 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
+from msgspec.structs import replace as structs_replace
+
 from grammar.chart import Leaf, Node
 from grammar.discourse import Claim, Discourse, Meeting, NotUnderstood, Steps, Thing
 from grammar.meanings.conditions import condition_of, negated, said_so
+from grammar.meanings.deliveries import (
+    Taken,
+    delivered_last,
+    hands_it_over,
+    inside,
+    lacks,
+    still_in_hand,
+    taken_back,
+)
 from grammar.meanings.finding import go, not_found, speak_to
 from grammar.meanings.news import polled
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import known_words, tell_speaker
+from grammar.meanings.searches import searched, searches
 from grammar.meanings.sights import named_some
 from grammar.meanings.speaking import put_for, sentence_form
 from grammar.plan import (
@@ -43,10 +55,18 @@ COUNT: Final = "count"
 
 @meaning("if")
 def if_(d: Discourse, node: Node) -> Steps:
+    delivery = delivered_last(d)
     before_it, condition = condition_of(d, node)
     met = d.met
     if node.production.fixed.get("unless"):
         condition, met = negated(condition), turned(met)
+    if delivery is not None and met is not None and lacks(delivery, met):
+        taken = taken_back(d, delivery, met)
+        if taken is not None:
+            return [*before_it, *failing(d, node, taken, met)]
+    handed = None
+    if delivery is not None and (hands_it_over(node.parts["then"]) or other_hands_it_over(node)):
+        handed = still_in_hand(d, delivery)
     start = d.scene()
     known = d.answer
     then = branch(d, node.parts["then"], met, claim_of(d, node, condition, met))
@@ -54,7 +74,15 @@ def if_(d: Discourse, node: Node) -> Steps:
     d.set_scene(start)
     asked = d.answer is not None and d.answer != known
     denied = node.parts.get("otherwise_denied")
-    part = other_branch(d, node, condition) or denied
+    none, found = node.parts.get("otherwise_none"), node.parts.get("otherwise_so")
+    part, further = none or found, None
+    if part is not None and met is not None and not met.holds:
+        # "if it is not in the lab, look in the store; if it is not there either, ...": both are so
+        further = searched_on(d, then, part, after, no=part is none)
+    if further is not None:
+        then, part, after = further, None, d.scene()
+    else:
+        part = other_branch(d, node, condition) or denied
     if asked and denied is not None:
         # "if Bob is there, ask him whether he has time. If he does not, ...": that is his answer.
         scene = d.scene()
@@ -68,8 +96,106 @@ def if_(d: Discourse, node: Node) -> Steps:
     else:
         meet_there(d, turned(met))
     leave_off(d, after)
+    if handed is not None:
+        then = then if hands_it_over(node.parts["then"]) else [handed, *then]
+        otherwise = otherwise if hands_it_over(part) else [handed, *otherwise]
+        d.holding = None
+        # Who is not found is in no state, either.
+        looked = searched(d.done[-1]) if d.done and not before_it else None
+        if looked is not None and delivery is not None and delivery.person is not None:
+            d.done.pop()
+            missing = not_found(d, delivery.person)
+            return [If(looked, (If(condition, tuple(then), tuple(otherwise)),), (missing,))]
     counted, condition = counted_first(condition, [*then, *otherwise])
-    return [*before_it, *counted, *either_way(condition, then, otherwise)]
+    whole = If(condition, tuple(then), tuple(otherwise))
+    return [*before_it, *counted, whole if further else either_way(whole)]
+
+
+def other_hands_it_over(node: Node) -> bool:
+    """Whether the other branch says what becomes of a thing that was brought."""
+    names = ("otherwise", "otherwise_not", "otherwise_none", "otherwise_so", "otherwise_denied")
+    return any(hands_it_over(node.parts.get(name)) for name in names)
+
+
+def failing(d: Discourse, node: Node, taken: Taken, met: Meeting) -> Steps:
+    """A delivery, and what is done if that is not possible: "if there is no coffee, bring tea"."""
+    after = d.scene()
+    outer, d.meant_for = d.meant_for, d.meant_for if met.thing.person else taken.delivery
+    place = met.thing.place or taken.delivery.thing.place
+    lost = met if met.thing.person else replace(met, thing=replace(met.thing, place=place))
+    otherwise = branch(d, node.parts["then"], lost, found_claim(d, taken.condition, lost))
+    d.meant_for = outer
+    leave_off(d, after)
+    names = ("otherwise", "otherwise_not", "otherwise_none")
+    part = next((node.parts[name] for name in names if name in node.parts), None)
+    done = [*taken.steps, *(d.build(part) if part is not None else [])]
+    return [If(taken.condition, tuple(done), tuple(otherwise))]
+
+
+def searched_on(
+    d: Discourse, steps: Steps, part: Leaf | Node, scene: dict[str, object], *, no: bool
+) -> Steps | None:
+    """The steps of a branch that ends with a search, and what is done if that finds something, or
+    is in vain, too."""
+    if not steps or searched(steps[-1]) is None:
+        return None
+    outer, d.done = d.done, list(steps)
+    before = d.scene()
+    d.set_scene(scene)
+    condition = said_so(d, no=no, there_is_none=no)
+    inner = branch(d, part, d.met, None)
+    found, d.done = d.done, outer
+    d.set_scene(before)
+    return [*found, If(condition, tuple(inner))]
+
+
+def in_branch(d: Discourse, clause: Node) -> Steps | None:
+    """The steps of a clause that goes on a search in the other branch of the condition before it:
+    "If it is not in the lab, look in the store. If it is not there either, tell Bob."."""
+    last = d.done[-1] if d.done else None
+    if not isinstance(last, If) or not asks_again(clause):
+        return None
+    inner = _with_more(d, last, clause)
+    if inner is None:
+        return None
+    d.done.pop()
+    return [inner]
+
+
+def asks_again(clause: Node) -> bool:
+    """Whether a condition is about what was looked for before."""
+    while clause.production.means in (None, "steps") and len(clause.parts) == 1:
+        (only,) = clause.parts.values()
+        if not isinstance(only, Node):
+            return False
+        clause = only
+    condition = clause.parts.get("condition")
+    if clause.production.means != "if" or condition is None:
+        return False
+    about = what_it_means(condition)
+    if about == "so":
+        return True
+    return about in ("is_seen", "is_found") and any(
+        each.production.means == "thing_it" for each in inside(condition)
+    )
+
+
+def _with_more(d: Discourse, step: If, clause: Node) -> If | None:
+    """A condition with a clause put at the end of the branch that ends with a search."""
+    name = "otherwise" if step.otherwise else "then"
+    body: Steps = list(getattr(step, name))
+    search = searched(body[-1] if body else None)
+    if search is None:
+        deeper = body[-1] if body else None
+        inner = _with_more(d, deeper, clause) if isinstance(deeper, If) else None
+        return None if inner is None else structs_replace(step, **{name: (*body[:-1], inner)})
+    outer, d.done = d.done, body
+    looked = searches(search)
+    d.place = looked[-1].arguments.get("place", d.place)
+    d.at = d.place if len(looked) == 1 else None
+    more = d.build(clause)
+    done, d.done = [*d.done, *more], outer
+    return structs_replace(step, **{name: tuple(done)})
 
 
 def other_branch(d: Discourse, node: Node, condition: Condition) -> Leaf | Node | None:
@@ -77,8 +203,9 @@ def other_branch(d: Discourse, node: Node, condition: Condition) -> Leaf | Node 
     none at first."""
     part = node.parts.get("otherwise_so")
     if part is None:
-        return node.parts.get("otherwise") or node.parts.get("otherwise_not")
-    if not isinstance(condition, Not):
+        names = ("otherwise", "otherwise_not", "otherwise_none")
+        return next((node.parts[name] for name in names if name in node.parts), None)
+    if not isinstance(condition, Not) and not node.production.fixed.get("unless"):
         words = d.words(part.start, part.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
     return part
@@ -160,6 +287,7 @@ def meet_there(d: Discourse, met: Meeting | None) -> None:
         return
     thing = replace(met.thing, here=met.holds, pronoun=False)
     d.missing = None if met.holds else replace(met.thing, place=met.thing.place or d.at)
+    d.lacking = None if met.holds or met.sought else d.missing
     if thing.place is not None:  # it was looked for there
         d.went(thing.place)
         d.looked_in = thing.place
@@ -185,31 +313,34 @@ def leave_off(d: Discourse, after: dict[str, object]) -> None:
             d.person = replace(d.person, here=False)
 
 
-def either_way(condition: Condition, then: Steps, otherwise: Steps) -> Steps:
+def either_way(step: If) -> If:
     """A step for both branches. "If Alice is not in her office, look for her in the lab and tell
-    her ...": she is told wherever she is found."""
-    inner = then[0] if len(then) == 1 else None
-    if (
-        isinstance(condition, Not)
-        and not otherwise
-        and isinstance(inner, If)
-        and _looks_for(inner.condition) is not None
-        and _looks_for(inner.condition) == _looks_for(condition.condition)
-    ):
-        anywhere = Either((condition.condition, inner.condition))
-        return [If(anywhere, inner.then, inner.otherwise)]
-    return [If(condition, tuple(then), tuple(otherwise))]
+    her ...", "If there is one, bring it; if not, try the lab": the same wherever it is found."""
+    condition = step.condition
+    inner = step.then[0] if len(step.then) == 1 else None
+    denied = condition.condition if isinstance(condition, Not) else None
+    if denied is None or not isinstance(inner, If) or step.otherwise:
+        inner = None
+    if inner is not None and denied is not None and _same_search(denied, inner.condition):
+        return If(Either((denied, inner.condition)), inner.then, inner.otherwise)
+    further = searched(step.otherwise[0]) if len(step.otherwise) == 1 else None
+    if further is not None and _same_search(condition, further) and handled(condition, step.then):
+        anywhere = Either(tuple(map(Holds, (*searches(condition), *searches(further)))))
+        last = step.otherwise[0]
+        assert isinstance(last, If)
+        return If(anywhere, step.then, last.then)
+    return step
 
 
-def _looks_for(condition: Condition) -> object:
-    """Whom or what a condition looks for; None if it does something else."""
-    if (
-        isinstance(condition, Holds)
-        and isinstance(condition.value, Ask)
-        and condition.value.method == "find"
-    ):
-        return condition.value.arguments["thing"]
-    return None
+def handled(condition: Condition, steps: tuple[Step, ...]) -> bool:
+    """Whether something is done with what a condition looks for."""
+    return any(mentions(steps, each.arguments["thing"]) for each in searches(condition))
+
+
+def _same_search(one: Condition, other: Condition) -> bool:
+    """Whether two conditions look for the same."""
+    sought = [each.arguments["thing"] for each in (*searches(one), *searches(other))]
+    return bool(searches(one) and searches(other)) and all(each == sought[0] for each in sought)
 
 
 @meaning("tell_condition")

@@ -9,6 +9,7 @@ from typing import Final
 from grammar.chart import Leaf, Node
 from grammar.discourse import (
     ANYONE,
+    START,
     Discourse,
     Meeting,
     NotUnderstood,
@@ -18,10 +19,12 @@ from grammar.discourse import (
     as_value,
 )
 from grammar.meanings.answers import wanted as wanted_answer
+from grammar.meanings.deliveries import delivered_last
 from grammar.meanings.finding import noun_of
 from grammar.meanings.news import counted as counted_answers
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
+from grammar.meanings.searches import just_looked_for
 from grammar.meanings.surveys import Survey, asked_before, in_loop, replacing
 from grammar.plan import (
     Ask,
@@ -40,6 +43,7 @@ from grammar.plan import (
     Remember,
     Share,
     Text,
+    Truth,
     Try,
     Value,
 )
@@ -111,10 +115,15 @@ def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
         words = d.words(node.start, node.end)
         gap = (node.start, node.end)
         raise NotUnderstood(d.language.phrase("cannot_check", what=words), gap=gap)
+    said_there = d.tokens[node.end - 1].norm in d.language.speech.get("there", ())
+    if said_there and thing.place is None and d.at == Recall(START) and d.place is not None:
+        thing = replace(thing, place=d.place)  # the robot has come back from there meanwhile
     if isinstance(thing.group, Items):
         result = _each_of_them(d, node, thing.group.items, search)
     else:
         result = _is_doing(d, node, thing) or is_there(d, thing, search)
+    if search and d.met is not None:
+        d.met = replace(d.met, sought=True)
     if node.production.fixed.get("no"):
         d.met = replace(d.met, holds=False) if d.met is not None else None
         result = Not(result)
@@ -143,31 +152,47 @@ def _is_doing(d: Discourse, node: Node, thing: Thing) -> Condition | None:
 
 def is_there(d: Discourse, thing: Thing, search: bool = False) -> Condition:
     """Whether somebody or something is seen here, or found where it is said to be."""
-    asked: Ask | None = just_looked_for(d, thing)
-    if asked is None:
+    known = just_looked_for(d, thing) or just_checked(d, thing)
+    if known is None:
         elsewhere = thing.place is not None and thing.place != d.at
         arguments: dict[str, Value] = {"thing": sought(d, thing)}
         if thing.place is not None and (elsewhere or search):
             arguments["place"] = thing.place
-        asked = Ask("find" if search or elsewhere else "sees", arguments)
+        known = Holds(Ask("find" if search or elsewhere else "sees", arguments))
     if thing.person:
         d.person, d.thing_last = thing, False
     d.met = Meeting(thing)
-    return Holds(asked)
+    return known
 
 
-def just_looked_for(d: Discourse, thing: Thing | None) -> Ask | None:
-    """The search that the step before is, if it is for this; it is taken out of the steps:
-    "look for a wheelchair. If there is one, ..."."""
+def just_checked(d: Discourse, thing: Thing) -> Condition | None:
+    """The check before, if it was for this: "see if there is a cup. If there is a cup, ..."."""
+    from grammar.meanings.reports import Report, checked
+
+    report: Report | None = d.report
+    about = report.thing if report is not None else None
+    if about is None or about.value != thing.value or thing.place not in (None, about.place):
+        return None
+    return seen_there(d) or (Holds(known) if (known := checked(d)) is not None else None)
+
+
+def seen_there(d: Discourse) -> Condition | None:
+    """What was checked in a place that was gone to only for that, as a search in that place."""
+    from grammar.meanings.reports import Report, checked
+
+    report: Report | None = d.report
+    about = report.thing if report is not None else None
+    if about is None or about.place is None or checked(d) is None:
+        return None
+    first = Call("goto", {"place": about.place})
     last = d.done[-1] if d.done else None
-    if not (isinstance(last, Call) and last.method == "find"):
+    if len(d.done) < 2 or d.done[-2] != first or not isinstance(last, Remember):
         return None
-    if thing is not None and last.arguments["thing"] != sought(d, thing):
+    if last.value != Ask("sees", {"thing": sought(d, about)}):
         return None
-    if thing is not None and thing.place not in (None, last.arguments.get("place")):
-        return None
-    d.done.pop()
-    return Ask("find", last.arguments)
+    del d.done[-2:]
+    d.report = None
+    return Holds(Ask("find", {"thing": sought(d, about), "place": about.place}))
 
 
 def _each_of_them(d: Discourse, node: Node, people: tuple[Value, ...], search: bool) -> Condition:
@@ -355,22 +380,31 @@ def same_answers(d: Discourse, node: Node) -> Condition:
     return Compare(Recall(names[0]), "==", Recall(names[1]))
 
 
-def said_so(d: Discourse, no: bool) -> Condition:
+def said_so(d: Discourse, no: bool, there_is_none: bool = False) -> Condition:
     """ "if so", "if he is not": what was looked for in the step before was found, or the last
     answer was yes."""
     looked = just_looked_for(d, None)
     if looked is not None:
         person = d.person if not d.thing_last else None
         if person is not None or d.thing is not None:
-            d.met = Meeting(person or d.thing or Thing(looked.arguments["thing"]), holds=not no)
-        found = Holds(looked)
-        return Not(found) if no else found
+            found_now = person or d.thing or Thing(Text(ANYONE))
+            d.met = Meeting(found_now, holds=not no, sought=True)
+        return Not(looked) if no else looked
+    delivery = delivered_last(d)
+    if delivery is not None and no and (d.answer is None or there_is_none):
+        d.met = Meeting(delivery.thing, holds=False, sought=True)
+        return Not(Holds(Ask("find", {"thing": delivery.thing.value})))
     if d.answer is None:
         from grammar.meanings.reports import checked
 
-        known = checked(d)
-        if known is not None:
-            return Not(Holds(known)) if no else Holds(known)
+        about = d.report.thing if d.report is not None else None
+        looked = seen_there(d)
+        known = checked(d) if looked is None else None
+        if looked is not None or known is not None:
+            if about is not None:
+                d.met = Meeting(about, holds=not no)
+            result = looked or Holds(known or Truth(True))
+            return Not(result) if no else result
         raise NotUnderstood(d.language.phrase("no_question"))
     wanted = d.language.phrase("no" if no else "yes")
     for option in d.answer_options:
@@ -381,7 +415,8 @@ def said_so(d: Discourse, no: bool) -> Condition:
 
 @meaning("so")
 def so(d: Discourse, node: Node) -> Condition:
-    return said_so(d, no=bool(node.production.fixed.get("no")))
+    fixed = node.production.fixed
+    return said_so(d, no=bool(fixed.get("no")), there_is_none=bool(fixed.get("none")))
 
 
 @meaning("answer_counts")

@@ -7,6 +7,7 @@ from typing import Final
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, NotUnderstood, Steps, Thing
 from grammar.meanings.alternatives import exclusive, itself, side_by_side
+from grammar.meanings.branches import in_branch
 from grammar.meanings.finding import go, not_found
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import summed_at_end
@@ -47,7 +48,7 @@ def steps(d: Discourse, node: Node) -> Steps:
                 each = chained(first.parts["earlier"])
                 continue
             first, beside = side_by_side(d, first)
-            d.done.extend(in_round(d, first))
+            d.done.extend(in_branch(d, first) or in_round(d, first))
             clauses.append((joint, len(d.done) - before))
             joint = str(each.production.fixed.get("joint", "and"))
             rest, beyond = each.parts.get("rest"), each.parts.get("further")

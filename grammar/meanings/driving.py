@@ -6,14 +6,25 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import SETTING, Discourse, NotUnderstood, Steps, Thing, Where, as_value
+from grammar.discourse import (
+    SETTING,
+    Discourse,
+    Meeting,
+    NotUnderstood,
+    Steps,
+    Thing,
+    Where,
+    as_value,
+)
+from grammar.meanings.deliveries import delivered_last, taken_back
 from grammar.meanings.finding import found, go, look_for, noun_of, where_sent
 from grammar.meanings.loops import for_each_of_them, looped
 from grammar.meanings.nouns import is_me
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
+from grammar.meanings.searches import search_in
 from grammar.meanings.waiting import wait_until
-from grammar.plan import Ask, Both, Call, Either, Holds, Items, Number, Repeat, Text, Value
+from grammar.plan import Ask, Both, Call, Either, Holds, If, Items, Not, Number, Repeat, Text, Value
 from grammar.tidy import nodes
 
 
@@ -42,14 +53,29 @@ def find_furniture(d: Discourse, node: Node) -> Steps:
 def look_in(d: Discourse, node: Node) -> Steps:
     """ "look in the kitchen": go there; for what was looked for in vain, where there is such."""
     spot: Where = d.get(node, "spot")
+    more: list[Value] = d.get(node, "place_list") or []
+    delivery = delivered_last(d)
+    if delivery is not None and spot.place is not None:
+        taken = taken_back(d, delivery, Meeting(delivery.thing, holds=False))
+        if taken is not None and not delivery.thing.place:
+            search = search_in(d, delivery.thing, [spot.place, *more])
+            assert isinstance(search[0], If) and isinstance(search[0].condition, Not)
+            return [If(search[0].condition.condition, tuple(taken.steps), search[0].then)]
     last = d.done[-1] if d.done else None
     if d.missing is None and isinstance(last, Call) and last.method == "find":
         thing = d.thing if d.thing_last else d.person
         if thing is not None and thing.place is None and last == found(d, thing):
             d.done.pop()  # "I can not find my bag, look in the cafeteria": there, not anywhere
+            if more and spot.place is not None:
+                return search_in(d, thing, [spot.place, *more])
             return look_for(d, replace(thing, place=spot.place, furniture=spot.furniture))
+    if d.missing is None and more:
+        raise NotUnderstood(d.language.phrase("look_for_what"))
     if d.missing is None or spot.place is None:
         return go_to(d, node)
+    if more:
+        d.at = None
+        return search_in(d, replace(d.missing, place=None), [spot.place, *more])
     return look_for(d, replace(d.missing, place=spot.place, furniture=spot.furniture))
 
 

@@ -8,9 +8,10 @@ from dataclasses import replace
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
+from grammar.meanings.places import only_taken_apart
 from grammar.meanings.questions import ask_one
 from grammar.meanings.registry import meaning
-from grammar.meanings.surveys import Survey
+from grammar.meanings.surveys import Survey, each_asked
 from grammar.meanings.things import deliver
 from grammar.plan import Recall, Repeat, Text, Value
 
@@ -49,3 +50,42 @@ def bring_many(d: Discourse, node: Node) -> Steps:
     d.at = d.with_person = None
     fetching = deliver(d, replace(thing, pronoun=False), person, d.get(node, "where"))
     return [Repeat(Recall(d.answer), tuple(fetching))]
+
+
+@meaning("thing_answered")
+def thing_answered(d: Discourse, node: Node) -> Thing:
+    """ "what he wanted", "the one she chose": the thing that an answer names."""
+    person: Thing | None = d.get(node, "person_ref")
+    surveys: list[Survey] = d.surveys
+    if person is not None and person.known:
+        surveys = [each for each in surveys if each.who in (person.value, None)] or surveys
+    survey = surveys[-1] if surveys else None
+    agree = {d.language.phrase("yes"), d.language.phrase("no")}
+    if survey is None or survey.call.save_as is None:
+        raise NotUnderstood(d.language.phrase("no_question"))
+    if agree & set(survey.options) or (
+        survey.options and all(each.isdigit() for each in survey.options)
+    ):
+        raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
+    found = Thing(Recall(survey.call.save_as))
+    source: Where | None = d.get(node, "from")
+    if source is not None:
+        found = replace(found, place=source.place, furniture=source.furniture)
+    d.thing, d.thing_last = found, True
+    return found
+
+
+@meaning("person_said")
+def person_said(d: Discourse, node: Node) -> Thing:
+    """ "each one who said yes": whoever was asked; whether they said so is a condition of what is
+    done for them (`grammar.meanings.quantifiers`)."""
+    only_taken_apart(d, node)
+    if not d.surveys:
+        raise NotUnderstood(d.language.phrase("no_question"))
+    survey: Survey = d.surveys[-1]
+    asked = each_asked(d)
+    if asked is not None:
+        return asked
+    if not isinstance(survey.who, Text):
+        raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
+    return Thing(survey.who, known=True, person=True)

@@ -382,9 +382,9 @@ def each_place(d: Discourse, items: Value, steps: Leaf | Node | None, goes: bool
         d.in_loop = outer
     first = body[0] if body else None
     moves = isinstance(first, Call) and first.method in ("goto", "guide", "find")
-    from grammar.meanings.quantifiers import searched
+    from grammar.meanings.quantifiers import until_found
 
-    search = searched(d, here, items, body)
+    search = until_found(d, here, items, body)
     if search:  # "look for it in all wards": until it is found
         d.at = d.with_person = None
         return search

@@ -109,7 +109,7 @@ def go_back(d: Discourse, more: Steps) -> Steps:
     """Back to who gave the command, unless the robot is there."""
     if not moved([*d.done, *more]) or (d.done and not more and d.done[-1] == BACK):
         return []
-    d.went(d.start())
+    d.came_back()
     return [BACK]
 
 

@@ -404,6 +404,8 @@ def person_pronoun(d: Discourse, node: Node) -> Thing:
     owner = owner_of(d)
     if owner is not None:
         return Thing(owner, known=True, person=True, here=True)
+    if d.last_named is not None and d.with_person is None and not d.is_plural(node):
+        return d.last_named  # somebody named in the other branch
     return Thing(d.with_person or Text(ANYONE), person=True, here=True)
 
 

@@ -90,8 +90,10 @@ def split_options(d: Discourse, start: int, end: int) -> tuple[str, ...]:
             begin = max(begin, last - longest)
             begin, last = without_little_words(d, begin, last)
         options.append(d.words(begin, last).strip(" ()"))
-    numbers = [d.tokens[begin].value for begin, last in stripped if last - begin == 1]
-    if len(numbers) == len(stripped) and all(each is not None for each in numbers):
+    # "one, two or three boxes": how many of them
+    numbers = [d.tokens[begin].value for begin, last in stripped[:-1] if last - begin == 1]
+    numbers.append(d.tokens[stripped[-1][0]].value)
+    if len(numbers) == len(stripped) > 1 and all(each is not None for each in numbers):
         options = [f"{number:g}" for number in numbers]  # as digits, to count with
     return tuple(dict.fromkeys(option for option in options if option))
 

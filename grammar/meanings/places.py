@@ -148,7 +148,7 @@ def place_unknown(d: Discourse, node: Node) -> Value:
     raise unknown_place(d, d.words(node.parts["unknown"].start, node.parts["unknown"].end), node)
 
 
-def unknown_place(d: Discourse, words: str, node: Node) -> NotUnderstood:
+def unknown_place(d: Discourse, words: str, node: Leaf | Node) -> NotUnderstood:
     capitals = any(token.capital for token in d.tokens[node.start : node.end] if token.start)
     known = words.lower() in (each.name.lower() for each in d.lexicon.people)
     if capitals and not known and not d.language.speech.get("capital_nouns"):
@@ -182,7 +182,7 @@ def place_of_owner(d: Discourse, node: Node) -> Value:
     return place_called_after(d, d.one_of(leaf).name, node)
 
 
-def place_called_after(d: Discourse, owner: str, node: Node) -> Value:
+def place_called_after(d: Discourse, owner: str, node: Leaf | Node) -> Value:
     mark = d.language.speech["possessive"]
     own = [
         each.name for each in d.lexicon.places if each.name.lower().startswith(owner.lower() + mark)

@@ -27,8 +27,10 @@ from grammar.discourse import (
     Steps,
     Thing,
 )
+from grammar.meanings.answers import wanted
 from grammar.meanings.best_places import Best, Such, first_such, survey
 from grammar.meanings.finding import found, go, look_for, named, not_found
+from grammar.meanings.searches import named_places, search_in, searched
 from grammar.meanings.surveys import each_asked, uses_answer
 from grammar.naming import place_called
 from grammar.plan import (
@@ -77,7 +79,8 @@ TOGETHER: Final = frozenset(
 """Commands that know themselves what to do with several people."""
 ALWAYS: Final = frozenset(
     {
-        "each_place", "person_either", "place_any", "place_best", "place_either", "place_such",
+        "each_place", "person_either", "person_said", "place_any", "place_best", "place_either",
+        "place_such",
         "place_where",
         "thing_either", "things",
     }
@@ -281,11 +284,20 @@ def over_them(d: Discourse, node: Node, person: Thing, one: One) -> Steps:
     asked = each_asked(d)
     if asked is not None:  # "ask Alice and Bob what they want and bring it to them": each their own
         scene = d.scene()
+        d.at = None
         steps = one(asked)
         if uses_answer(d, steps):
             return steps
         d.set_scene(scene)
     return over_people(d, node, person, one)
+
+
+def over_those_who(d: Discourse, node: Node, person: Thing, one: One) -> Steps:
+    """ "each one who said yes": for whoever was asked, if that is what they answered."""
+    survey = d.surveys[-1]
+    answer: Condition = wanted(d, survey, d.get(node, "said")).given(survey)
+    d.at = None
+    return [If(answer, tuple(round_of_steps(d, lambda: one(person))))]
 
 
 def over_either_person(d: Discourse, node: Node, people: list[Thing], one: One) -> Steps:
@@ -302,19 +314,26 @@ def over_places(d: Discourse, node: Node, places: Value, one: One) -> Steps:
     d.loops[place.name] = places
     body = round_of_steps(d, lambda: one(place))
     d.at = d.with_person = None
-    return searched(d, place, places, body) or [
+    return until_found(d, place, places, body) or [
         ForEach(place.name, places, tuple(another_one(d, body)))
     ]
 
 
-def searched(d: Discourse, place: Recall, places: Value, body: Steps) -> Steps:
+def until_found(d: Discourse, place: Recall, places: Value, body: Steps) -> Steps:
     """ "search every ward for the thermometer": until it is found; nothing if that is not what is
     done at each place."""
-    match body:
-        case [If(condition=Not(condition=Holds(value=Ask(method="find"))), then=missing)]:
-            search = body[0].condition.condition  # type: ignore[union-attr]
-        case _:
-            return []
+    first = body[0] if len(body) == 1 else None
+    search = searched(first)
+    if search is None or not isinstance(first, If):
+        return []
+    known = named_places(d, places)
+    thing = d.thing if d.thing_last else d.person
+    if known is not None and thing is not None:
+        d.thing, d.person = (
+            replace(each, place=None) if each else each for each in (d.thing, d.person)
+        )
+        return search_in(d, replace(thing, place=None), known)
+    missing = first.then
     found_it = Recall(d.variable("found"))
     success = (Remember(found_it.name, Truth(True)), End())
     return [
@@ -326,17 +345,17 @@ def searched(d: Discourse, place: Recall, places: Value, body: Steps) -> Steps:
 
 def over_either_place(d: Discourse, node: Node, places: list[Value], one: One) -> Steps:
     """ "look for it in the lobby or the kitchen": in the one, then in the other."""
-    otherwise: Steps = []
-    for place in reversed(places):
+    looked: Value | None = None
+    for place in places:
         d.at = None
         search = d.sequence(lambda p=place: d.done.extend(one(p)))  # type: ignore[misc]
         first = search[0] if len(search) == 1 else None
         if not (isinstance(first, Call) and first.method == "find"):
             named_places = tuple(each.value for each in places if isinstance(each, Text))
             raise d.which(node.start, node.end, named_places)
-        missing = otherwise or [not_found(d, Thing(first.arguments["thing"]))]
-        otherwise = [If(Not(Holds(Ask("find", first.arguments))), tuple(missing))]
-    return otherwise
+        looked = first.arguments["thing"]
+    assert looked is not None
+    return search_in(d, Thing(looked), places)
 
 
 def over_any_place(d: Discourse, node: Node, places: Value, one: One) -> Steps:
@@ -563,10 +582,11 @@ OVER: Final[dict[str, Callable[[Discourse, Node, Any, One], Steps]]] = {
     "person_count": over_people,
     "person_group": over_people,
     "person_group_kind": over_people,
-    "person_group_them": over_people,
+    "person_group_them": over_them,
     "person_kind": over_people,
     "person_pronoun": over_them,
     "person_either": over_either_person,
+    "person_said": over_those_who,
     "thing": over_things,
     "thing_it": over_things,
     "things": over_thing_list,

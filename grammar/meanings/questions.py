@@ -29,7 +29,7 @@ from grammar.plan import (
     Value,
 )
 from grammar.tidy import nodes
-from grammar.wordforms import singular
+from grammar.wordforms import head_word, singular
 from grammar.wordorder import parted
 
 LONGEST_OFFERED: Final = 3
@@ -166,7 +166,12 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
     rest = question.parts.get("subject") or question.parts.get("rest")
     counted = question.parts.get("wh")
     noun = counted.parts.get("noun") if isinstance(counted, Node) else None
-    if noun is not None:  # "how many blankets they need"
+    asks_thing = counted is not None and d.tokens[counted.start].norm in d.language.speech.get(
+        "asks_thing", ()
+    )
+    if asks_thing and not options and "subject" not in question.parts and d.place != Recall(name):
+        d.thing, d.thing_last = Thing(Recall(name)), False  # "what he would like to drink"
+    elif noun is not None:  # "how many blankets they need"
         what = singular(d.noun_words(noun.start, noun.end), d.language)
         d.thing, d.thing_last = Thing(Text(what)), False
     elif (
@@ -182,14 +187,24 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
         d.thing, d.thing_last = Thing(Text(d.noun_words(start, end))), False
     if rest is None or not {"verb", "aux"} & question.parts.keys():
         return
+    last = next((at for at in reversed(range(rest.start, rest.end)) if d.tokens[at].value), None)
+    if options and last is not None and all(each.isdigit() for each in options):
+        what = singular(d.noun_words(last + 1, rest.end), d.language)
+        if what:  # "one, two or three boxes"
+            d.thing, d.thing_last = Thing(Text(what)), False
+        return
     if len(options) > 1 and not question.production.fixed.get("where"):
         yes_no = options == (d.language.phrase("yes"), d.language.phrase("no"))
         begin = rest.start if "verb" in question.parts else rest.start + 1  # "would like a coffee"
         start, end = without_little_words(d, begin, rest.end)
+        while start < end - 1 and d.tokens[start].norm in d.language.speech.get("how_much", ()):
+            start += 1
         if not yes_no and d.place != Recall(name):
             d.thing, d.thing_last = Thing(Recall(name)), False
         elif yes_no and 0 < end - start <= LONGEST_OFFERED:
-            d.thing, d.thing_last = Thing(Text(d.noun_words(start, end))), False
+            what = d.noun_words(start, end)
+            d.thing = Thing(Text(what), noun=head_word(what, d.language))
+            d.thing_last = False
 
 
 def asked(d: Discourse, call: Call, options: tuple[str, ...], who: Value | None) -> Call:

@@ -54,6 +54,8 @@ class Report:
     """What the value is called when it is remembered."""
     before: tuple[Step, ...] = ()
     """Steps that find it out, where one value is not enough."""
+    thing: Thing | None = None
+    """What it says to be there or not."""
     about_here: bool = True
     """Whether it is about where the robot is, and so has to be found out there."""
 
@@ -100,7 +102,7 @@ def found_out(d: Discourse, found: Report, person: Thing | None, *, back: bool) 
             steps.append(Remember(name, found.value))
             found = replace(found, value=Recall(name))
         steps.append(Call("goto", {"place": start}))
-        d.went(start)
+        d.came_back()
         return [*steps, *told(d, found, None)]
     seen_here = found.about_here and found.value is not None
     if back and asked_by_me and seen_here and news.in_round(d):

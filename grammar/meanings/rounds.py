@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
@@ -10,6 +9,7 @@ from msgspec.structs import replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
+from grammar.meanings.deliveries import inside
 from grammar.meanings.finding import speak_to
 from grammar.meanings.news import News, Told, go_back, last_found, polled, take_back
 from grammar.meanings.nouns import is_me, thing_it
@@ -333,7 +333,7 @@ STAYS_OUTSIDE: Final = frozenset(
     }
 )
 """Clauses that do not belong to a round in the sentence before."""
-OF_THE_ROUND: Final = frozenset({"is_seen", "answered", "trait_holds", "counted"})
+OF_THE_ROUND: Final = frozenset({"is_seen", "is_found", "so", "answered", "trait_holds", "counted"})
 """Conditions on what is found at each place."""
 
 
@@ -380,20 +380,18 @@ def goes_on(d: Discourse, loop: ForEach, clause: Node) -> bool:
     )
 
 
-def inside(part: Leaf | Node) -> Iterator[Node]:
-    """A node of the parse and all in it."""
-    if isinstance(part, Node):
-        yield part
-        for each in part.parts.values():
-            yield from inside(each)
-
-
 @meaning("places_told")
 def places_told(d: Discourse, node: Node) -> Told:
     """ "which labs have no stapler", "how many offices are empty", "which of them are"."""
     named = any(name in node.parts for name in ("kinds", "place_list"))
     named = named or bool(node.production.fixed.get("all"))
-    at = None if named else last_round(d) if last_round(d) is not None else round_of_visits(d)
+    if d.news is not None:  # what was checked on the round is told only as is said now
+        take_back(d, d.news)
+    at = last_round(d)
+    if named and (at is None or not same_places(d, node, d.done[at])):
+        at = None
+    elif at is None:
+        at = round_of_visits(d)
     if not named and at is None:
         raise NotUnderstood(d.language.phrase("which_places"))
     loop = None if at is None else d.done[at]
@@ -410,6 +408,12 @@ def places_told(d: Discourse, node: Node) -> Told:
     else:
         going.append(round_of(d, places_of(d, node), [*trait.first, noted], place))
     return Told(_found_places(d, str(node.production.fixed.get("tell", "which")), found), going)
+
+
+def same_places(d: Discourse, node: Node, loop: Step) -> bool:
+    """Whether the places that are asked about are those that a round went to."""
+    assert isinstance(loop, ForEach)
+    return bool(node.production.fixed.get("all")) or loop.items == places_of(d, node)
 
 
 def _found_places(d: Discourse, tell: str, found: str) -> Steps:

@@ -9,7 +9,7 @@ from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Wh
 from grammar.meanings import news
 from grammar.meanings.finding import in_state, is_here, not_found
 from grammar.meanings.nouns import described
-from grammar.meanings.places import sought
+from grammar.meanings.places import place_called_after, sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report, told_report
 from grammar.naming import place_called, some, the
@@ -185,7 +185,8 @@ def _spot_words(d: Discourse, thing: Thing) -> str:
 @meaning("whether_seen")
 def whether_seen(d: Discourse, node: Node) -> Report | Steps:
     """ "is there anybody in the waiting room?", "has Bob got a cup on his desk?"."""
-    d.get(node, "holder")  # whose desk "his desk" is
+    holder: Thing | None = d.get(node, "holder")  # whose desk "his desk" is
+    there: Value | None = d.get(node, "at_place")
     thing: Thing = d.get(node, "thing") or d.get(node, "person_ref")
     more = described(d, thing.text, node)
     if not thing.known:  # "whether the woman is lying down"
@@ -194,11 +195,13 @@ def whether_seen(d: Discourse, node: Node) -> Report | Steps:
         return looks_of(d, node)
     thing = replace(
         in_state(d, node, thing),
-        place=thing.place or more.place,
+        place=thing.place or more.place or there,
         furniture=thing.furniture or more.furniture,
     )
     if thing.known and thing.person:  # "whether Bob is asleep"
         thing = replace(thing, value=more.value)
+    if holder is not None and thing.place is None:  # what somebody has is where they work
+        thing = replace(thing, place=place_called_after(d, holder.text, node.parts["holder"]))
     named = named_some(d, thing)
     return Report(
         "yes_seen",
@@ -207,6 +210,7 @@ def whether_seen(d: Discourse, node: Node) -> Report | Steps:
         (("thing", named),),
         otherwise="nobody_seen" if named == d.language.phrase("somebody") else "no_seen",
         name="seen",
+        thing=replace(thing, place=thing.place or d.at),
     )
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
+from grammar.meanings.deliveries import Delivery, meant_for
 from grammar.meanings.finding import (
     found,
     go,
@@ -165,7 +166,10 @@ def bring(d: Discourse, node: Node) -> Steps:
         given = Call("give", {"thing": thing.value, "person": person.value})
         if d.done[-1] == given:
             return []  # "Alice needs the cup, bring it to her"
-    return deliver(d, thing, person, d.get(node, "where"))
+    spot: Where | None = d.get(node, "where")
+    if person is None and spot is None and node.production.fixed.get("open"):
+        person, spot = meant_for(d, thing)
+    return deliver(d, thing, person, spot)
 
 
 def handed_there(d: Discourse, thing: Thing, person: Thing) -> Thing:
@@ -231,6 +235,13 @@ def bring_each(d: Discourse, node: Node) -> Steps:
 
 def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None) -> Steps:
     """Pick a thing up, go where it is to be, and put it down or hand it over."""
+    scene = d.scene()
+    steps = _delivered(d, thing, person, spot)
+    d.delivery = Delivery(thing, person, spot, tuple(steps), scene)
+    return steps
+
+
+def _delivered(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None) -> Steps:
     before = d.at
     no_way = spot is not None and spot.place is None and thing.place is None
     if no_way and d.holding != thing.value and not thing.pronoun:

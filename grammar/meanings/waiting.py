@@ -12,11 +12,11 @@ from grammar.discourse import Discourse, Steps, Thing
 from grammar.inference import takes_time
 from grammar.meanings.branches import claim_of, meet_there
 from grammar.meanings.conditions import condition_of, negated
+from grammar.meanings.deliveries import inside
 from grammar.meanings.finding import speak_to
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import known_words
-from grammar.meanings.rounds import inside
 from grammar.meanings.surveys import moved
 from grammar.plan import (
     Ask,

@@ -22,6 +22,7 @@ FILES = {
     "clauses_en.yaml": "en",
     "reports_en.yaml": "en",
     "times_en.yaml": "en",
+    "things_en.yaml": "en",
     "constructs_de.yaml": "de",
     "constructs_fr.yaml": "fr",
 }

@@ -1,0 +1,188 @@
+"""What is brought, and what hangs on a delivery: for whom a thing is that nobody was named for, and
+what is done if the thing or who is to get it is not there.
+
+"Bring me a coffee. If there is none, bring tea": said afterwards, decided before. The delivery goes
+under the condition that what it needs is found; what is said for the other case is the other
+branch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+from grammar.chart import Leaf, Node
+from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing, Where
+from grammar.meanings.nouns import is_me
+from grammar.meanings.surveys import Survey
+from grammar.plan import Ask, Call, Condition, Holds, Recall, Step, Text, Value
+
+
+@dataclass(frozen=True)
+class Delivery:
+    """Something that was brought to somebody or put somewhere."""
+
+    thing: Thing
+    person: Thing | None
+    spot: Where | None
+    steps: tuple[Step, ...]
+    before: dict[str, Any]
+    """The scene in which it began."""
+
+    @property
+    def receiver(self) -> Thing | None:
+        """Whom it is for, unless that is the speaker."""
+        return None if is_me(self.person) else self.person
+
+
+@dataclass(frozen=True)
+class Taken:
+    """What a delivery needs, as a condition, and the steps that then make it."""
+
+    condition: Condition
+    steps: Steps
+    delivery: Delivery
+
+
+def delivered_last(d: Discourse) -> Delivery | None:
+    """The delivery that the last step ends."""
+    delivery: Delivery | None = d.delivery
+    last = d.done[-1] if d.done else None
+    if delivery is None or not delivery.steps or last is not delivery.steps[-1]:
+        return None
+    return delivery
+
+
+def lacks(delivery: Delivery | None, met: Meeting | None) -> bool:
+    """Whether a condition says that what a delivery needs is missing."""
+    if delivery is None or met is None or met.holds:
+        return False
+    return _same(met.thing, delivery.thing) or _same(met.thing, delivery.receiver)
+
+
+def _same(one: Thing, other: Thing | None) -> bool:
+    return other is not None and one.value == other.value
+
+
+def taken_back(d: Discourse, delivery: Delivery, met: Meeting) -> Taken | None:
+    """The last delivery, taken out of the steps as far as it needs what is missing; the scene is
+    then as it was before that."""
+    missing = delivery.thing if _same(met.thing, delivery.thing) else met.thing
+    methods = ("find",) if missing.person else ("find", "grab")
+    at = next(
+        (
+            at
+            for at in range(len(d.done) - 1, -1, -1)
+            if _is_about(d.done[at], methods, missing, delivery)
+        ),
+        None,
+    )
+    if at is None:
+        return None
+    first = d.done[at]
+    if at and _is_about(d.done[at - 1], ("find",), missing, delivery):
+        at, first = at - 1, d.done[at - 1]
+    assert isinstance(first, Call)
+    steps = d.done[at:]
+    del d.done[at:]
+    d.set_scene(delivery.before)
+    arguments: dict[str, Value] = {"thing": first.arguments["thing"]}
+    place = met.thing.place or first.arguments.get("place")
+    if first.method == "find" or (place is not None and place != d.at):
+        if place is not None:
+            arguments["place"] = place
+        found = Ask("find", arguments)
+        steps = steps[1:] if first.method == "find" else steps
+    else:
+        found = Ask("sees", arguments)
+    if missing.person:
+        d.holding = delivery.thing.value
+        d.thing, d.thing_last = replace(delivery.thing, pronoun=True), True
+        d.person = met.thing
+    return Taken(Holds(found), steps, delivery)
+
+
+def _is_about(step: Step, methods: tuple[str, ...], missing: Thing, delivery: Delivery) -> bool:
+    """Whether a step looks for what is missing, or takes it."""
+    if not isinstance(step, Call) or step.method not in methods:
+        return False
+    said = step.arguments["thing"]
+    if said == missing.value:
+        return True
+    mine = next((each for each in delivery.steps if isinstance(each, Call)), None)
+    return not missing.person and mine is step  # "cup on the table"
+
+
+# --- whom a thing is for
+
+
+def meant_for(d: Discourse, thing: Thing) -> tuple[Thing | None, Where | None]:
+    """Who gets a thing that is to be brought without a word to whom: whoever was to get what there
+    was none of, the place that has none, who was asked about it; else the speaker."""
+    if isinstance(d.meant_for, Delivery):
+        return d.meant_for.person, d.meant_for.spot
+    lacking = d.lacking
+    if lacking is not None and lacking.place is not None and _alike(thing, lacking):
+        return None, Where(lacking.place, lacking.furniture)
+    return who_asked_for(d, thing), None
+
+
+def who_asked_for(d: Discourse, thing: Thing) -> Thing | None:
+    """Who was asked whether they need something, or what they want: it is for them."""
+    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    if survey is None or d.answer is None or survey.call.save_as != d.answer:
+        return None
+    if thing.value != Recall(d.answer):
+        question = survey.call.arguments["question"]
+        asked = set(d.language.tokens_of(question.value)) if isinstance(question, Text) else set()
+        spoken_of = thing.pronoun or thing.value == (d.thing.value if d.thing else None)
+        about = spoken_of or set(d.language.tokens_of(thing.text)) & asked
+        wished = set(d.language.speech.get("wishes", ())) & asked
+        if not isinstance(thing.value, Text) or not wished or not about:
+            return None
+    if survey.who is not None and survey.where is None and survey.who != d.place:
+        return Thing(survey.who, known=True, person=True)
+    return Thing(Text(ANYONE), person=True, here=True)
+
+
+def _alike(one: Thing, other: Thing) -> bool:
+    return one.value == other.value or bool(one.noun and one.noun == other.noun)
+
+
+# --- a delivery whose end is decided then
+
+
+def hands_it_over(part: Leaf | Node | None) -> bool:
+    """Whether a branch says what becomes of a thing that was spoken of: "give it to Bob"."""
+    return any(
+        each.production.means in ("bring", "put")
+        and ("thing" not in each.parts or _is_it(each.parts["thing"]))
+        for each in inside(part)
+    )
+
+
+def _is_it(part: Leaf | Node) -> bool:
+    return isinstance(part, Node) and part.production.means == "thing_it"
+
+
+def inside(part: Leaf | Node | None) -> Iterator[Node]:
+    """A node of the parse and all in it."""
+    if isinstance(part, Node):
+        yield part
+        for each in part.parts.values():
+            yield from inside(each)
+
+
+def still_in_hand(d: Discourse, delivery: Delivery) -> Step | None:
+    """The last step of a delivery, taken back, for what is said next may change it: "take it to the
+    lab; if somebody is there, give it to them"."""
+    last = d.done[-1]
+    whereto = delivery.spot is not None and not delivery.spot.furniture
+    if not isinstance(last, Call) or not (whereto or delivery.receiver is not None):
+        return None
+    d.done.pop()
+    d.delivered = None
+    d.holding = delivery.thing.value
+    d.thing, d.thing_last = replace(delivery.thing, pronoun=True), True
+    return last
