@@ -412,7 +412,8 @@ class Judge:
                 if after in self.language.closed or re.search(r"ing$|ed$|^ready$", after):
                     return True
                 continue
-            if norm in words.finite or words.finite_pattern.search(norm):
+            noun = self.tokens[at].capital and bool(self.language.speech.get("capital_nouns"))
+            if norm in words.finite or (not noun and words.finite_pattern.search(norm)):
                 return True
             before = self.tokens[at - 1]
             after_noun = before.kind == "word" and before.value is None

@@ -43,6 +43,9 @@ def guide(d: Discourse, node: Node) -> Steps:
     spot: Where = d.get(node, "spot") or Where(d.get(node, "place"))
     if spot.place is None:
         raise NotUnderstood(d.language.phrase("guide_needs_place"))
+    if "place" in node.parts and spot.place == d.at and d.done:
+        # "ask the visitors whom they want to see and take them there": no place was spoken of
+        raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
     further: list[Value] = d.get(node, "place_list") or []
     return [*steps, *(lead(d, thing, place) for place in (spot.place, *further))]
 

@@ -101,11 +101,15 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
 
 def take_back_delivery(d: Discourse, thing: Thing) -> None:
     """ "get the cup and put it on the table": "get" alone would have handed it to the speaker."""
-    if d.delivered == thing.value and len(d.done) >= 2 and isinstance(d.done[-1], Call):
-        del d.done[-2:]
+    handed = Call("give", {"thing": thing.value})
+    at = max((at for at, step in enumerate(d.done) if step == handed), default=0)
+    if d.delivered == thing.value and at:
+        last = at == len(d.done) - 1
+        del d.done[at - 1 : at + 1]
         d.delivered = None
         d.holding = thing.value
-        d.at = d.at_pick_up
+        if last:  # but "get the box, then go to Henry and give it to him": he is where it is now
+            d.at = d.at_pick_up
 
 
 @meaning("put")
