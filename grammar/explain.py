@@ -37,6 +37,10 @@ ROLES: Final = {
 }
 """How a parameter's text is put into a sentence; all others are quoted."""
 
+LENGTHS_OF_TIME: Final = frozenset({"seconds", "timeout"})
+LANGUAGES: Final = frozenset({"code", "language"})
+"""Parameters that a language's code is given to."""
+
 NUMBERS: Final = frozenset(
     parameter.name
     for method in METHODS.values()
@@ -299,7 +303,8 @@ class _Teller:
                 yield fill(item, {"name": sort})
             case _:
                 kept = self.kept(name, step)
-                yield kept[1] if kept else self.named(readable)
+                known = self.words.names.get(name.rstrip("0123456789_"))
+                yield kept[1] if kept else known or self.named(readable)
 
     def kept(self, name: str, step: p.Step) -> tuple[str, str] | None:
         """What a step starts to count or to list, and what the number or the list is called."""
@@ -340,6 +345,8 @@ class _Teller:
                 yield Told(fill(pattern, {"what": kept}))
             case p.Remember(value=p.Items(items=())):
                 yield Told(fill(say["empty"], {"name": self.recall(step.name)}))
+            case p.Remember(value=p.Text(value="")):
+                yield Told(fill(say["unset"], {"name": self.recall(step.name)}))
             case p.Remember():
                 pattern = say["start" if isinstance(step.value, p.Number) else "remember"]
                 values = {"value": self.value(step.value), "name": self.recall(step.name)}
@@ -433,7 +440,12 @@ class _Teller:
 
     def call(self, step: p.Call) -> str:
         words = self.words.methods[step.method]
-        action = self.patterned(*_signed(words, step.arguments))
+        arguments = step.arguments
+        if step.method == "drive":  # where it does not turn, nothing is said of turning
+            still = p.Number(0)
+            moves = {name: each for name, each in arguments.items() if each != still}
+            arguments = moves if fitting(words.do, set(moves)) else arguments
+        action = self.patterned(*_signed(words, arguments))
         if step.save_as:
             self.latest[self.short[step.save_as]] = step.save_as
         if step.save_as in self.told_apart:
@@ -482,6 +494,13 @@ class _Teller:
         role = ROLES.get(parameter, "quoted")
         nouns = self.words.nouns
         match value:
+            case p.Number(value=seconds) if parameter in LENGTHS_OF_TIME:
+                return self.words.durations.told(seconds)
+            case _ if parameter in LENGTHS_OF_TIME:
+                number = fill(self.words.values["inserted"], {"value": self.value(value)})
+                return fill(self.words.durations.units[-1][2], {"number": number})
+            case p.Text(value=code) if parameter in LANGUAGES:
+                return self.words.languages.get(code, code)
             case p.Text(value=text) if form == "plural":
                 return nouns.many(self.called(text))
             case p.Text(value=text) if form == "the" or role == "place":
@@ -631,10 +650,15 @@ class _Teller:
         return fill(say["holds" if holds else "fails"], {"value": self.value(value)})
 
     def comparison(self, compare: p.Compare, holds: bool) -> str:
+        say = self.words.conditions
         operator = compare.operator
         if not holds and operator != "in":
             operator, holds = _OPPOSITES[operator], True
         match compare:
+            case p.Compare(operator="==" | "!=", left=p.Recall() as name, right=p.Text(value="")):
+                return fill(
+                    say["unset" if operator == "==" else "set"], {"value": self.value(name)}
+                )
             case p.Compare(left=p.Ask(method=method, field=str(part)), right=p.Text(value=text)):
                 patterns = self.words.methods[method].compared.get(part, {})
                 if operator in patterns:

@@ -42,6 +42,36 @@ class Times(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     value: str
 
 
+class Durations(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """How long something takes, as people say it."""
+
+    units: tuple[tuple[int, str, str], ...]
+    """(seconds, one of them, several), the longest first."""
+    words: dict[int, str]
+    """Lengths in seconds that have words of their own: "half an hour"."""
+    two: str
+
+    def told(self, seconds: float) -> str:
+        """ "10 minutes", "1 hour and 20 minutes"."""
+        if seconds in self.words:
+            return self.words[int(seconds)]
+        parts: list[str] = []
+        for length, one, many in self.units:
+            last = length == self.units[-1][0]
+            number = seconds / length if last else seconds // length
+            seconds -= number * length
+            if number == 1:
+                parts.append(one)
+            elif number:
+                whole = str(int(number)) if float(number).is_integer() else f"{number:g}"
+                parts.append(fill(many, {"number": whole}))
+        if not parts:
+            return fill(self.units[-1][2], {"number": "0"})
+        if len(parts) == 1:
+            return parts[0]
+        return fill(self.two, {"first": ", ".join(parts[:-1]), "last": parts[-1]})
+
+
 class Nouns(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     thing: tuple[str, ...]
     place: tuple[str, ...]
@@ -118,8 +148,13 @@ class Speech(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     nouns: Nouns
     conditions: dict[str, str]
     methods: dict[str, Words]
+    durations: Durations
+    languages: dict[str, str] = {}
+    """What languages are called, by their codes."""
     counts: tuple[Kept, ...] = ()
     lists: tuple[Kept, ...] = ()
+    names: dict[str, str] = {}
+    """What else is remembered, by the name that the program has for it."""
     joined: tuple[tuple[str, str], ...] = ()
     """Little words that run together ("à le" -> "au"), as patterns and what stands for them."""
 
