@@ -298,6 +298,8 @@ class Judge:
                 return doubt(start, "cannot_say")  # "Emma auf Französisch, dass ..."
         greeting = self.greeting(start)
         behind = start + greeting
+        if first in words.not_greeting:  # "say in the lobby": where, and not what
+            return doubt(start, "said_or_done")
         if greeting and self.wished(start) and not self.complete_greeting(start):
             return None  # "welcome to our hospital"
         if greeting and behind < end and self.tokens[behind].norm in words.not_greeting:

@@ -1,7 +1,9 @@
-"""Slips of the keyboard, and forms of politeness, put right before a sentence is parsed.
+"""Slips of the keyboard, and verbs in a form that another word gives them, put right before a
+sentence is parsed.
 
-"gothe" and "tothe" are two words, and after "would you mind" a command stands in its -ing form.
-What tokens mean changes, never where they stand: free text is still taken from the original.
+"gothe" and "tothe" are two words; after "would you mind" and in "keep greeting visitors" a command
+stands in its -ing form, so that the rules need to name a verb only once. What tokens mean changes,
+never where they stand: free text is still taken from the original.
 """
 
 from __future__ import annotations
@@ -11,7 +13,7 @@ from dataclasses import replace
 from typing import Final
 
 from grammar.language import Language
-from grammar.tokens import COMMA, Token
+from grammar.tokens import Token
 
 SHORTEST_JOINED: Final = 4
 """Letters of two words that a space is missing between."""
@@ -27,9 +29,9 @@ def mended(
     known: Collection[str],
     verbs: Collection[str],
 ) -> tuple[Token, ...]:
-    """The tokens with joined words parted and verbs in their plain forms."""
+    """The tokens with joined words parted and verbs in the form that commands begin with."""
     parted = [part for token in tokens for part in _parted(token, language, known)]
-    return tuple(_plain(parted, language, verbs))
+    return tuple(_in_plain_form(parted, language, verbs))
 
 
 def _parted(token: Token, language: Language, known: Collection[str]) -> list[Token]:
@@ -60,26 +62,29 @@ def _cut(token: Token, cut: int) -> list[Token]:
     ]
 
 
-def _plain(tokens: list[Token], language: Language, verbs: Collection[str]) -> Iterator[Token]:
-    """After "would you mind", "bringing me the cup and taking it away" is "bring ... and take"."""
-    after = language.speech.get("gerund_after", ())
-    joins = {COMMA, *language.speech.get("joins", ())}
-    begun = False
-    for position, token in enumerate(tokens):
-        before = tokens[position - 1].norm if position else ""
-        begun = begun or before in after
-        if begun and (before in after or before in joins):
-            base = next((each for each in _bases(token.norm, language) if each in verbs), None)
-            yield replace(token, norm=base) if base is not None else token
-        else:
-            yield token
+def _in_plain_form(
+    tokens: list[Token], language: Language, verbs: Collection[str]
+) -> Iterator[Token]:
+    """ "keep greeting them and asking" as "keep greet them and ask": after which words, and with
+    which ending, the language's data say. Only what is then a word that a command can begin with is
+    taken for a verb."""
+    data = language.speech.get("gerunds", {"after": (), "joins": (), "ending": "-"})
+    after, joins, ending = set(data["after"]), set(data["joins"]), str(data["ending"])
+    earlier = False
+    for at, token in enumerate(tokens):
+        before = tokens[at - 1].norm if at else ""
+        verb = None
+        if token.norm.endswith(ending) and (before in after or (earlier and before in joins)):
+            verb = next(
+                (base for base in _bases(token.norm[: -len(ending)]) if base in verbs), None
+            )
+        earlier = earlier or verb is not None
+        yield token if verb is None else replace(token, norm=verb, kind="verb")
 
 
-def _bases(word: str, language: Language) -> Iterator[str]:
-    """What a verb in its -ing form may be in its plain one: "putting" -> "put"."""
-    for ending, *endings in language.speech.get("gerund_endings", ()):
-        if word.endswith(ending) and len(word) > len(ending) + 1:
-            stem = word[: -len(ending)]
-            yield from (stem + each for each in endings)
-            if stem[-1] == stem[-2]:
-                yield stem[:-1]
+def _bases(stem: str) -> Iterator[str]:
+    """ "greet", "giv" -> "give", "runn" -> "run"."""
+    yield stem
+    yield f"{stem}e"
+    if len(stem) > 2 and stem[-1] == stem[-2]:
+        yield stem[:-1]

@@ -26,7 +26,7 @@ class Token:
     start: int
     end: int
     kind: str = "word"
-    """word, verb (`grammar.gerunds`), number, time, quote, url, selector, mark (punctuation),
+    """word, verb (`grammar.slips`), number, time, quote, url, selector, mark (punctuation),
     symbol (anything else)."""
     value: float | None = None
     """Of a number."""

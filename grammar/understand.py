@@ -19,7 +19,6 @@ from grammar.accounts import left_out, unheeded, unspoken
 from grammar.chart import Chart, Node, Slot, TooMuch
 from grammar.discourse import Ambiguous, Discourse, NotUnderstood, Thing
 from grammar.freetext import Doubt, doubtful, words_for
-from grammar.gerunds import as_verbs
 from grammar.language import Language, load_language
 from grammar.lexicon import Lexicon
 from grammar.naming import joined_up, place_called
@@ -171,8 +170,7 @@ class Reader:
         self.names: Names = names_of(language, lexicon)
         known = language.words | self.names.words | language.closed
         commands = command_words(language)
-        mended_tokens = mended(tokenise(text, language.spelling), language, known, commands)
-        self.tokens = as_verbs(mended_tokens, language, commands)
+        self.tokens = mended(tokenise(text, language.spelling), language, known, commands)
         self.skips = self._skips()
         self.corrections = self._corrections()
 

@@ -30,6 +30,7 @@ from grammar.discourse import (
 from grammar.meanings.answers import wanted
 from grammar.meanings.best_places import Best, Such, first_such, survey
 from grammar.meanings.finding import found, go, look_for, named, not_found
+from grammar.meanings.nouns import kind_in_plural
 from grammar.meanings.searches import named_places, search_in, searched
 from grammar.meanings.surveys import each_asked, uses_answer
 from grammar.naming import place_called
@@ -72,8 +73,8 @@ Make = Callable[[], Steps]
 TOGETHER: Final = frozenset(
     {
         "answer", "answers_reached", "ask", "ask_again", "ask_to", "find", "greet", "phrase",
-        "report", "same_for", "say", "say_it", "say_that", "tell", "tell_joke", "tell_that",
-        "wait_for",
+        "report", "said_with", "same_for", "say", "say_it", "say_that", "tell", "tell_joke",
+        "tell_that", "wait_for",
     }
 )  # fmt: skip
 """Commands that know themselves what to do with several people."""
@@ -134,7 +135,9 @@ def speaks_of_several(d: Discourse, node: Node, part: Node) -> bool:
     if together and part.means not in ALWAYS and "but" not in part.parts and not by_name:
         return False
     if part.means == "person_kind":
-        return bool(part.production.fixed.get("plural"))
+        definite = d.tokens[part.start].norm in d.language.speech.get("definite", ())
+        several_of = node.means == "bring" and definite and kind_in_plural(d, part)
+        return bool(part.production.fixed.get("plural")) or several_of
     if part.means == "person_pronoun" and d.thing_last:
         return d.thing is not None and d.thing.several and d.is_plural(part)
     if part.means == "person_pronoun":

@@ -358,7 +358,7 @@ def ask_to(d: Discourse, node: Node) -> Steps:
         text += d.words(node.parts["why"].start, node.parts["why"].end)
     without = d.language.speech.get("please_without", ())
     text = " ".join(word for word in text.split() if word not in without)
-    request = d.sentence("please_do", what=text)
+    request = d.sentence(str(node.production.fixed.get("phrase", "please_do")), what=text)
     return speak_to(d, d.get(node, "person_ref"), [Call("say", {"text": request})])
 
 

@@ -228,6 +228,10 @@ def where_found(d: Discourse, node: Node) -> Steps:
     thing: Thing = d.get(node, "thing") or d.get(node, "person_ref")
     if thing.text == ANYONE and (thing.pronoun or thing.here):  # "where is that?", of a place
         raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
+    if thing.person and thing.every:  # "where is everyone?": a search ends with the first
+        part = node.parts.get("person_ref", node)
+        words = d.words(part.start, part.end)
+        raise NotUnderstood(d.language.phrase("find_one", things=words), gap=(part.start, part.end))
     called = d.called(thing.text)
     known = called if thing.known and thing.person else the(called, d.language)
     arguments: dict[str, Value] = {"thing": sought(d, thing)}
