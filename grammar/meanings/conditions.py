@@ -237,6 +237,8 @@ def counted(d: Discourse, node: Node) -> Condition:
     if thing.person:
         d.person = replace(thing, plural=True, place=None, here=True)
     operator = d.get(node, "operator", "==")
+    if operator in ("<", "<=") and not thing.person:  # "..., bring one": for where they are short
+        d.lacking = replace(thing, place=thing.place or d.at)
     return Compare(
         Ask("count", {"thing": sought(d, thing)}), operator, Number(int(d.get(node, "count")))
     )

@@ -39,7 +39,7 @@ def bring_many(d: Discourse, node: Node) -> Steps:
     if survey.options and not all(each.isdigit() for each in survey.options):
         raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
     thing: Thing | None = d.get(node, "thing") or d.thing
-    if thing is None:
+    if thing is None or thing.value == Recall(d.answer):  # so many of what?
         raise NotUnderstood(d.language.phrase("what_is_it", word=d.words(node.start, node.end)))
     source: Where | None = d.get(node, "from")
     if source is not None:

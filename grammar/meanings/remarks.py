@@ -31,6 +31,9 @@ _Node = TypeVar("_Node", bound=msgspec.Struct)
 def remark(d: Discourse, node: Node) -> Steps:
     """ "the coffee machine is broken", "because I do not hear well". Of whom or what it speaks can
     be spoken of as "her" or "it" from now on, and what it says can be told to somebody."""
+    if d.tokens[node.start].norm in d.language.speech.get("no_remark", ()):
+        words = d.words(node.start, node.end)  # "wherever there are none, ...": a condition
+        raise NotUnderstood(d.language.phrase("not_understood", part=words))
     for name, part in node.parts.items():
         if name in SUBJECTS:
             with contextlib.suppress(NotUnderstood):  # it may speak of what nobody knows
