@@ -24,7 +24,7 @@ from grammar.meanings.finding import noun_of
 from grammar.meanings.news import counted as counted_answers
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
-from grammar.meanings.searches import just_looked_for
+from grammar.meanings.searches import just_looked_for, searches
 from grammar.meanings.surveys import Survey, asked_before, in_loop, replacing
 from grammar.plan import (
     Ask,
@@ -36,12 +36,14 @@ from grammar.plan import (
     ForEach,
     Forever,
     Holds,
+    If,
     Items,
     Not,
     Number,
     Recall,
     Remember,
     Share,
+    Step,
     Text,
     Truth,
     Try,
@@ -53,10 +55,20 @@ from grammar.tidy import nodes
 @meaning("and")
 def and_(d: Discourse, node: Node) -> Condition:
     left = d.get(node, "left")
-    met = d.met
+    met, pending = d.met, len(d.pending)
     right = d.get(node, "right")
+    if not searches(left) and any(_goes(step) for step in d.pending[pending:]):
+        # What is so in one place is noted before the robot goes to look at the other.
+        name = d.variable("so")
+        noted: Steps = [Remember(name, Truth(False)), If(left, (Remember(name, Truth(True)),))]
+        d.pending[pending:pending] = noted
+        left = Holds(Recall(name))
     d.met = d.met or met
     return Both((left, right))
+
+
+def _goes(step: Step) -> bool:
+    return isinstance(step, Call) and step.method == "goto"
 
 
 @meaning("or")

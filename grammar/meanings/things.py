@@ -217,6 +217,8 @@ def bring_too(d: Discourse, node: Node) -> Steps:
     last = d.done[-1] if d.done else None
     if not (isinstance(last, Call) and last.method in ("give", "put")) and not whole(d, node):
         raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
+    if isinstance(last, Call) and last.method == "put":
+        d.at = None  # what goes elsewhere is not where the first one was put
     return bring(d, node)
 
 
