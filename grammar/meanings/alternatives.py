@@ -91,9 +91,27 @@ def exclusive(done: Steps) -> Steps:
             result[-1] = _or_else(last, step)
         elif isinstance(last, If) and isinstance(step, If) and _is_silence(last, step):
             result[-1] = If(step.condition, step.then, (last,))
+        elif isinstance(last, If) and isinstance(step, If) and _takes_up(last, step):
+            inner = last.then[-1]
+            assert isinstance(inner, If)
+            taken = If(inner.condition, step.then, inner.otherwise)
+            result[-1] = If(last.condition, (*last.then[:-1], taken), last.otherwise)
         else:
             result.append(step)
     return result
+
+
+def _takes_up(first: If, second: If) -> bool:
+    """ "If she is not in her office, try the lobby. If she is not there either, come back": that is
+    done instead of saying that she was not found."""
+    inner = first.then[-1] if first.then else None
+    return (
+        isinstance(inner, If)
+        and isinstance(inner.condition, Not)
+        and inner.condition == second.condition
+        and all(isinstance(each, Call) and each.method == "say" for each in inner.then)
+        and not second.otherwise
+    )
 
 
 def _is_silence(first: If, second: If) -> bool:
