@@ -12,7 +12,7 @@ from typing import Final
 from msgspec.structs import replace as structs_replace
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import Claim, Discourse, Meeting, NotUnderstood, Steps, Thing
+from grammar.discourse import ANYONE, Claim, Discourse, Meeting, NotUnderstood, Steps, Thing
 from grammar.meanings.conditions import condition_of, negated, said_so
 from grammar.meanings.deliveries import (
     Taken,
@@ -256,6 +256,8 @@ def found_claim(d: Discourse, condition: Condition, met: Meeting | None) -> Step
     """What has been found, or how many were counted."""
     if met is not None and met.holds:
         return d.say("yes_seen", thing=named_some(d, met.thing))
+    if met is not None and met.thing.text == ANYONE:
+        return d.say("nobody_seen")
     if met is not None:
         return not_found(d, met.thing)
     if isinstance(condition, Compare) and isinstance(condition.left, Ask):
