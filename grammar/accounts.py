@@ -8,7 +8,7 @@ then refused, with the word, rather than obeyed in part.
 from __future__ import annotations
 
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 from typing import Final
 
 from grammar.chart import Leaf, Node
@@ -39,9 +39,11 @@ def left_out(
     plan: Plan,
     language: Language,
     lexicon: Lexicon,
+    resolved: Set[int] = frozenset(),
     slots: frozenset[str] = NAMES,
 ) -> list[str]:
-    """The words in these slots that the plan knows nothing of."""
+    """The words in these slots that the plan knows nothing of, but for those that stand for what is
+    only known when the program runs (`resolved`)."""
     known = {_stem(word) for text in _texts(plan) for word in language.tokens_of(text)}
     silent = language.closed | {word for filler in language.fillers for word in filler}
     silent |= set(language.speech.get("one_words", ()))
@@ -58,15 +60,24 @@ def left_out(
             if not words & known:
                 missing.append(names[0])
             continue
-        for token in tokens[leaf.start : leaf.end]:
+        for at, token in enumerate(tokens[leaf.start : leaf.end], leaf.start):
+            if at in resolved:
+                continue
             forms = {_stem(token.norm), _stem(str(base_forms.get(token.norm, token.norm)))}
             if token.kind == "word" and token.norm not in silent and not forms & known:
                 missing.append(token.norm)
     return missing
 
 
-def unspoken(tree: Node, tokens: tuple[Token, ...], plan: Plan, language: Language) -> list[str]:
+def unspoken(
+    tree: Node,
+    tokens: tuple[Token, ...],
+    plan: Plan,
+    language: Language,
+    resolved: Set[int] = frozenset(),
+) -> list[str]:
     """The words of free text that the plan leaves out: "no" of "choose between no tea and coffee".
+    `resolved` are those that stand for what is only known when the program runs.
     Verbs may change their form on the way; what turns the sense of a text may not be lost."""
     known = {word for text in _texts(plan) for word in language.tokens_of(text)}
     stems = {_stem(word) for word in known}
@@ -77,8 +88,9 @@ def unspoken(tree: Node, tokens: tuple[Token, ...], plan: Plan, language: Langua
     return [
         token.norm
         for leaf in _leaves(tree, FREE)
-        for token in tokens[leaf.start : leaf.end]
+        for at, token in enumerate(tokens[leaf.start : leaf.end], leaf.start)
         if token.kind == "word"
+        and at not in resolved
         and token.norm not in known
         and not known.issuperset(
             language.tokens_of(str(turned.get(token.spelled or token.norm, "?")))

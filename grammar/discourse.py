@@ -104,6 +104,10 @@ class Discourse:
     person: Thing | None = None
     last_named: Thing | None = None
     """Who was named last, in whichever branch: "him" is one person."""
+    genders: dict[str, str] = field(default_factory=dict)
+    """What people were called after they were named: "ask Bob whether he ..." makes Bob a "he"."""
+    named: list[str] = field(default_factory=list)
+    """Who was named so far."""
     thing_last: bool = False
     """Whether a thing was spoken of after the last person."""
     place: Value | None = None
@@ -129,6 +133,10 @@ class Discourse:
     answer: str | None = None
     """The variable with the last answer."""
     answer_options: tuple[str, ...] = ()
+    agreed: tuple[Any, Value] | None = None
+    """The call that asked several who were found to say the same, and what they said."""
+    resolved: set[int] = field(default_factory=set)
+    """The tokens of free texts that stand for what is only known when the program runs."""
     code: str | None = None
     heard: str | None = None
     surveys: list[Any] = field(default_factory=list)
@@ -302,6 +310,39 @@ class Discourse:
         """Whether a pronoun speaks of several: "them"."""
         words = self.language.speech.get("plural_pronouns", ())
         return any(word in words for word in self.norms(node.start, node.end))
+
+    def gender(self, start: int, end: int) -> str | None:
+        """The gender of the first pronoun among some tokens that tells one."""
+        pronouns = self.language.speech.get("pronoun_genders", {})
+        return next((pronouns[norm] for norm in self.norms(start, end) if norm in pronouns), None)
+
+    def called_so(self, person: Thing, start: int, end: int) -> None:
+        """Some tokens speak of a person by a pronoun: now it is known which."""
+        gender = self.gender(start, end)
+        if gender is not None and person.known and person.text:
+            self.genders.setdefault(person.text, gender)
+
+    def may_be(self, person: Thing, start: int, end: int) -> bool:
+        """Whether a pronoun may stand for a person, by how that person was spoken of before."""
+        gender = self.gender(start, end)
+        return gender is None or self.gender_of(person.text, gender) == gender
+
+    def gender_of(self, name: str, otherwise: str = "") -> str:
+        """Whether somebody is a "he" or a "she": as was said, or as most of that name are."""
+        if name in self.genders:
+            return self.genders[name]
+        first = name.lower().split()[0] if name else ""
+        names = self.language.speech.get("given_names", {})
+        return next((each for each, known in names.items() if first in known), otherwise)
+
+    def one_before(self, person: Thing, at: int) -> str | None:
+        """Whom but the person spoken to the pronoun here stands for: "ask Bob whether he is coming
+        and tell Alice that he is"."""
+        gender = self.gender(at, at + 1)
+        if gender is None or self.gender_of(person.text) == gender:
+            return None
+        others = [name for name in self.named if self.gender_of(name) == gender]
+        return next((self.called(name) for name in reversed(others) if name != person.text), None)
 
     def noun_words(self, start: int, end: int) -> str:
         """Some tokens as the words of a noun phrase that things are looked for by: in lower case,

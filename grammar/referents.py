@@ -31,6 +31,8 @@ class Thing:
     """The names of several people who are meant one by one."""
     coming: bool = False
     """Whether it is whoever comes: each of them, without end."""
+    first: bool = False
+    """Whether it is whoever comes first, and so has to be waited for."""
     count: int | None = None
     """How many of them, whichever they are: "three visitors", "two cups"."""
     preposition: str = ""

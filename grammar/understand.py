@@ -241,8 +241,9 @@ class Reader:
         doubt = doubtful(tree, self.tokens, self.language)
         if doubt is not None:
             return self._doubted(doubt)
-        lost = left_out(tree, self.tokens, plan, self.language, self.lexicon)
-        lost += unspoken(tree, self.tokens, plan, self.language)
+        resolved = discourse.resolved
+        lost = left_out(tree, self.tokens, plan, self.language, self.lexicon, resolved)
+        lost += unspoken(tree, self.tokens, plan, self.language, resolved)
         if lost:
             words = " ".join(lost)
             message = self.language.phrase("not_understood", part=words)

@@ -7,6 +7,7 @@ none: its slots are the parameters.
 
 from __future__ import annotations
 
+import grammar.meanings.agreement
 import grammar.meanings.amounts
 import grammar.meanings.answers
 import grammar.meanings.best_places
@@ -26,6 +27,7 @@ import grammar.meanings.nouns
 import grammar.meanings.people
 import grammar.meanings.places
 import grammar.meanings.questions
+import grammar.meanings.references
 import grammar.meanings.remarks
 import grammar.meanings.reports
 import grammar.meanings.requests
@@ -34,6 +36,7 @@ import grammar.meanings.sights
 import grammar.meanings.speaking
 import grammar.meanings.surveys
 import grammar.meanings.things
+import grammar.meanings.volunteers
 import grammar.meanings.waiting  # noqa: F401 (each enters its meanings)
 from grammar.meanings.registry import MEANINGS
 

@@ -14,7 +14,10 @@ from grammar.plan import Ask, Both, Call, Compare, Condition, Holds, If, Not, Nu
 from grammar.tidy import nodes
 
 ABOUT_ANSWERS: Final = frozenset(
-    {"so", "answered", "answer_counts", "answers_many", "unanswered", "code_is"}
+    {
+        *("so", "answered", "answer_counts", "answers_many", "answers_same", "unanswered"),
+        *("code_is", "cannot_check"),
+    }
 )
 _HOLDS: Final = {
     "==": operator.eq,

@@ -59,9 +59,9 @@ def yes(d: Discourse) -> Wanted:
     return Wanted((d.language.phrase("yes"),))
 
 
-def wanted(d: Discourse, survey: Survey, said: Said) -> Wanted:
+def wanted(d: Discourse, survey: Survey, said: Said, *, strict: bool = False) -> Wanted:
     """The answer to this question that is spoken of. Raises `NotUnderstood` where the words have
-    nothing to do with it."""
+    nothing to do with it; `strict` where they say anything besides."""
     norms = [token.norm for token in d.tokens[said.start : said.end]]
     negative = bool(_words(d, "negations") & set(norms))
     agree, refuse = d.language.phrase("yes"), d.language.phrase("no")
@@ -74,12 +74,17 @@ def wanted(d: Discourse, survey: Survey, said: Said) -> Wanted:
             )
         return Wanted((refuse if negative else agree,))
     chosen = tuple(each for each in survey.options if _names(d, norms, each))
+    named = {word for each in chosen for word in d.language.tokens_of(each)}
+    if strict and not _is_about(d, survey, [norm for norm in norms if norm not in named]):
+        chosen = ()
     if chosen:
         return Wanted(chosen, negative and not any(_is_none(d, each) for each in chosen))
     none = tuple(each for each in survey.options if _is_none(d, each))
-    if none and negative:
+    if none and negative and not strict:
         return Wanted(none)
     if survey.options:
+        raise NotUnderstood(d.language.phrase("not_understood", part=d.words(said.start, said.end)))
+    if negative:  # of what was not said in so many words nobody can tell
         raise NotUnderstood(d.language.phrase("not_understood", part=d.words(said.start, said.end)))
     telling = [norm for norm in norms if norm not in _silent(d)] or norms
     return Wanted((" ".join(telling),), negative)
@@ -90,7 +95,7 @@ def _names(d: Discourse, norms: Sequence[str], option: str) -> bool:
     words = [word for word in d.language.tokens_of(option) if word not in d.language.closed]
     words = words or list(d.language.tokens_of(option))
     return any(
-        all(_alike(norms[at + more], word) for more, word in enumerate(words))
+        all(_alike(d, norms[at + more], word) for more, word in enumerate(words))
         for at in range(len(norms) - len(words) + 1)
     )
 
@@ -104,17 +109,27 @@ def _is_about(d: Discourse, survey: Survey, norms: Sequence[str]) -> bool:
     question = survey.call.arguments["question"]
     asked = d.language.tokens_of(question.value) if isinstance(question, Text) else ()
     silent = _silent(d) | _words(d, "negations")
-    return all(norm in silent or any(_alike(norm, word) for word in asked) for norm in norms)
+    return all(norm in silent or any(_alike(d, norm, word) for word in asked) for norm in norms)
 
 
 def _silent(d: Discourse) -> set[str]:
     """Words that name no answer: function words, fillers, and verbs such as "agree"."""
     fillers = {filler[0] for filler in d.language.fillers if len(filler) == 1}
-    return {*d.language.closed, *fillers, *_words(d, "answering"), ",", "."}
+    ones = _words(d, "one_words")
+    return {*d.language.closed, *fillers, *_words(d, "answering"), *ones, ",", "."}
 
 
-def _alike(one: str, other: str) -> bool:
-    return one == other or (len(one) >= ALIKE and one[:ALIKE] == other[:ALIKE])
+def _alike(d: Discourse, one: str, other: str) -> bool:
+    """Whether two words are forms of one: "recommended" and "recommend", "coming" and "come"."""
+    if one == other or (len(one) >= ALIKE and one[:ALIKE] == other[:ALIKE]):
+        return True
+    return _base(d, one) == _base(d, other)
+
+
+def _base(d: Discourse, word: str) -> str:
+    """A word without the ending that verbs have."""
+    endings = d.language.speech.get("verb_endings", ())
+    return next((word.removesuffix(each) for each in endings if word.endswith(each)), word)
 
 
 def _words(d: Discourse, name: str) -> set[str]:

@@ -24,7 +24,7 @@ from grammar.meanings.deliveries import (
     taken_back,
 )
 from grammar.meanings.finding import go, not_found, speak_to
-from grammar.meanings.news import polled
+from grammar.meanings.news import go_back, polled
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import known_words, tell_speaker
@@ -350,6 +350,10 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
     """ "if there are more than three people, tell Alice": that there are more than three people."""
     before_it, condition = condition_of(d, node)
     met = turned(d.met) if node.production.fixed.get("unless") else d.met
+    person_said = node.parts.get("person_ref")
+    asked_whether = person_said and person_said.end <= node.parts["condition"].start
+    if asked_whether and what_it_means(node.parts["condition"]) == "answers_same":
+        return [*before_it, *told_either_way(d, node, condition)]
     claim = claim_of(d, node, condition, met)
     start = d.scene()
     meet_there(d, met)
@@ -373,3 +377,12 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
     leave_off(d, after)
     counted, condition = counted_first(condition, [*then, *otherwise])
     return [*before_it, *counted, If(condition, tuple(then), tuple(otherwise))]
+
+
+def told_either_way(d: Discourse, node: Node, condition: Condition) -> Steps:
+    """ "tell me if it is the same": also if it is not."""
+    person: Thing = d.get(node, "person_ref")
+    part = node.parts["condition"]
+    clause = d.words(part.start, part.end)
+    told = If(condition, (d.say("so_it_is", clause=clause),), (d.say("not_so", clause=clause),))
+    return [*go_back(d, []), told] if is_me(person) else speak_to(d, person, [told])

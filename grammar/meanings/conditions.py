@@ -18,6 +18,8 @@ from grammar.discourse import (
     Where,
     as_value,
 )
+from grammar.meanings.agreement import same_answers
+from grammar.meanings.answers import Said
 from grammar.meanings.answers import wanted as wanted_answer
 from grammar.meanings.deliveries import delivered_last
 from grammar.meanings.finding import noun_of
@@ -164,6 +166,10 @@ def _is_doing(d: Discourse, node: Node, thing: Thing) -> Condition | None:
 
 def is_there(d: Discourse, thing: Thing, search: bool = False) -> Condition:
     """Whether somebody or something is seen here, or found where it is said to be."""
+    if thing.person and thing.text == ANYONE and thing.place is None:
+        agreed = just_agreed(d)
+        if agreed is not None:
+            return agreed
     known = just_looked_for(d, thing) or just_checked(d, thing)
     if known is None:
         elsewhere = thing.place is not None and thing.place != d.at
@@ -175,6 +181,18 @@ def is_there(d: Discourse, thing: Thing, search: bool = False) -> Condition:
         d.person, d.thing_last = thing, False
     d.met = Meeting(thing)
     return known
+
+
+def just_agreed(d: Discourse, no: bool = False) -> Condition | None:
+    """Whether the search that the step before is has found somebody who says yes."""
+    from grammar.meanings.volunteers import just_found
+
+    known = just_found(d)
+    if known is None:
+        return None
+    condition, person = known
+    d.met = Meeting(person, holds=not no)
+    return negated(condition) if no else condition
 
 
 def just_checked(d: Discourse, thing: Thing) -> Condition | None:
@@ -275,13 +293,32 @@ def counted_between(d: Discourse, node: Node) -> Condition:
 
 @meaning("cannot_check")
 def cannot_check(d: Discourse, node: Node) -> Condition:
-    """Something that is neither seen nor heard nor known: "the patient feels better"."""
+    """What was asked before, in its own words: "if he prefers the morning", "if it is not ready".
+    Else something that is neither seen nor heard nor known: "the patient feels better"."""
+    asked_for = about_answer(d, node)
+    if asked_for is not None:
+        return asked_for
     start = node.parts["unknown"].start
     end = node.end
     while end < len(d.tokens) and d.tokens[end].kind != "mark":
         end += 1  # "if the door is | open, go in": the clause goes on to its comma
     words = d.words(start, end)
     raise NotUnderstood(d.language.phrase("cannot_check", what=words), gap=(start, end))
+
+
+def about_answer(d: Discourse, node: Node) -> Condition | None:
+    """The condition that some words are on the last answer; None if they say more than what was
+    asked, or nothing is known of how it was answered."""
+    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    if survey is None or not survey.options or d.answer != survey.call.save_as:
+        return None
+    try:
+        meant = wanted_answer(d, survey, Said(node.start, node.end), strict=True)
+    except NotUnderstood:
+        return None
+    if in_loop(d, survey.call) and not d.in_loop:
+        return None
+    return meant.given(survey)
 
 
 # --- the battery, the time
@@ -336,6 +373,10 @@ def answered(d: Discourse, node: Node) -> Condition:
     fixed = node.production.fixed
     if d.answer is None:
         raise NotUnderstood(d.language.phrase("no_question"))
+    several = "answer" in fixed and "text" not in node.parts and asked_which(d)
+    if several:  # "if they agree", on one of several days
+        same = same_answers(d, node)
+        return Not(same) if fixed["answer"] == "no" else same
     if "answer" in fixed:
         wanted = d.language.phrase(str(fixed["answer"]))
     else:
@@ -351,7 +392,15 @@ def answered(d: Discourse, node: Node) -> Condition:
     for option in d.answer_options:
         if option.lower() == wanted.lower():
             return Compare(Recall(d.answer), "==", Text(option))
-    if set(d.answer_options) == {d.language.phrase("yes"), d.language.phrase("no")}:
+    said = node.parts.get("text")
+    yes_no = set(d.answer_options) == {d.language.phrase("yes"), d.language.phrase("no")}
+    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    if said is not None and survey is not None and d.answer_options:
+        if not yes_no and survey.call.save_as == d.answer:
+            return wanted_answer(d, survey, Said(said.start, said.end)).given(survey)
+        if (asked_for := about_answer(d, node)) is not None:
+            return asked_for
+    if yes_no:
         ask_openly(d)
     return Compare(Text(wanted), "in", Recall(d.answer))
 
@@ -375,6 +424,15 @@ def ask_openly(d: Discourse) -> None:
     d.answer_options = ()
 
 
+def asked_which(d: Discourse) -> bool:
+    """Whether several people were asked last to choose, but not between yes and no."""
+    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    yes_no = {d.language.phrase("yes"), d.language.phrase("no")}
+    if survey is None or not survey.options or yes_no & set(survey.options):
+        return False
+    return in_loop(d, survey.call) or len(d.surveys) > 1
+
+
 def says_the_same(d: Discourse, words: str) -> bool:
     """Whether words mean what somebody else has said: "the same one"."""
     low = words.lower()
@@ -384,19 +442,12 @@ def says_the_same(d: Discourse, words: str) -> bool:
     )
 
 
-def same_answers(d: Discourse, node: Node) -> Condition:
-    """ "if they want the same one", of two who were asked one after the other."""
-    names = [each.call.save_as for each in d.surveys if each.call.save_as is not None]
-    alone = all(not isinstance(each.who, Recall) for each in d.surveys[-2:])
-    if len(d.surveys) != 2 or len(set(names)) != 2 or not alone:
-        words = d.words(node.start, node.end)
-        raise NotUnderstood(d.language.phrase("not_understood", part=words))
-    return Compare(Recall(names[0]), "==", Recall(names[1]))
-
-
 def said_so(d: Discourse, no: bool, there_is_none: bool = False) -> Condition:
     """ "if so", "if he is not": what was looked for in the step before was found, or the last
     answer was yes."""
+    agreed = just_agreed(d, no)
+    if agreed is not None:
+        return agreed
     looked = just_looked_for(d, None)
     if looked is not None:
         person = d.person if not d.thing_last else None

@@ -13,6 +13,7 @@ from grammar.meanings.registry import meaning
 from grammar.meanings.reports import summed_at_end
 from grammar.meanings.rounds import in_round
 from grammar.meanings.things import goes_on
+from grammar.meanings.volunteers import guard_found
 from grammar.meanings.waiting import until_then
 from grammar.plan import Ask, Call, Holds, If, Not, Recall, Remember, Step, Text, Try, Value
 from grammar.tidy import mentions
@@ -61,7 +62,7 @@ def steps(d: Discourse, node: Node) -> Steps:
         d.done[:] = until_then(d, d.done)
         if d.depth == 1:
             d.done.extend(summed_at_end(d))
-        d.done[:] = exclusive(guard_finds(d, speak_codes(d, d.done)))
+        d.done[:] = exclusive(guard_finds(d, guard_found(speak_codes(d, d.done))))
 
     return d.sequence(make)
 

@@ -6,6 +6,7 @@ from grammar.chart import Node
 from grammar.discourse import Ambiguous, Discourse, NotUnderstood, Steps, as_value
 from grammar.meanings.finding import speak_to
 from grammar.meanings.places import kind_places
+from grammar.meanings.references import answer_to, survey_named
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report, told
 from grammar.naming import place_called
@@ -15,6 +16,12 @@ from grammar.plan import Ask, Choice, Compare, Items, Number, Text, Value
 @meaning("about_robot")
 def about_robot(d: Discourse, node: Node) -> Report:
     fixed = node.production.fixed
+    survey = survey_named(d, node.end - 1, node.end) if d.surveys else None
+    answer = answer_to(d, survey) if survey is not None else None
+    if answer is not None and node.end - node.start == 2:
+        return Report(
+            "only", answer, about_here=False
+        )  # "the time", after somebody was asked for one
     value = Ask(str(fixed["method"]), {}, fixed.get("field"))
     return Report(str(fixed["phrase"]), value, about_here=False)
 

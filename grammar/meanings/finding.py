@@ -97,6 +97,11 @@ def look_for(d: Discourse, thing: Thing) -> Steps:
 
 def meet(d: Discourse, person: Thing) -> Steps:
     """Find a person, unless they are here by what was said."""
+    if person.first:
+        going = go(d, person.place) if person.place is not None else []
+        d.with_person = person.value
+        d.person, d.thing_last = replace(person, first=False, place=None, here=True), False
+        return [*going, Call("wait_for", {"thing": person.value})]
     if person.here or d.with_person == person.value:
         return []
     if not person.known and person.place is None:
@@ -120,6 +125,8 @@ def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
         return each_of(d, person.group, steps)
     if person is None:
         return steps
+    if person.first:
+        return [*meet(d, person), *steps]
     person = where_sent(d, person)
     if is_here(d, person):
         return if_met(d, person, steps)

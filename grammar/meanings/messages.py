@@ -15,9 +15,10 @@ from grammar.discourse import Discourse, Steps, Thing, capital
 from grammar.meanings.finding import go, speak_to
 from grammar.meanings.nouns import person_me
 from grammar.meanings.questions import base_form, turn_to_you
+from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning
 from grammar.meanings.speaking import sentence_form
-from grammar.plan import Call, Text
+from grammar.plan import Call, Recall, Text
 from grammar.slots import names_of
 from grammar.tokens import COMMA, STOP, Token
 from grammar.wordorder import direct_clause, is_direct
@@ -47,10 +48,11 @@ def say_that(d: Discourse, node: Node) -> Steps:
         text = sentence_form(turn_to_you(d, part.start, part.end))
     else:
         text = told_to(d, part, person)
+    end = part.end
     more = node.parts.get("more")  # "that the doctor is here and that she can come in"
     if more is not None:
-        text = f"{text} {told_to(d, more, person)}"
-    return speak_to(d, person, [Call("say", {"text": Text(text)})])
+        text, end = f"{text} {told_to(d, more, person)}", more.end
+    return speak_to(d, person, [Call("say", {"text": answers_in(d, text, part.start, end)})])
 
 
 @meaning("say_there")
@@ -105,7 +107,15 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
             noun = not clitic and _noun_follows(d, at + 1, end, data)
             possessed = word in data["possessives"] and noun
             impersonal = _begins(d, at, end, data.get("impersonal", ()))
+            before = None if person.me else d.one_before(person, at + number)
             another = not person.me and _of_another(d, start, at, possessed, data)
+            if before and not possessed and before not in pieces:
+                changed[number] = before
+            another = (
+                another
+                or before is not None
+                or (not person.me and _of_others(d, person, word, data))
+            )
             if you and not impersonal and not another:
                 changed[number] = data["possessives"][word] if possessed else you
                 subject = subject or word in data["subjects"]
@@ -194,7 +204,8 @@ def _of_another(
         token = d.tokens[position]
         boundary = boundary or token.norm == COMMA or token.norm in data["clause_joins"]
         if (boundary or possessed) and _is_somebody(d, token, data):
-            return True
+            gender = d.gender(at, at + 1)
+            return gender is None or d.gender_of(token.norm, gender) == gender
     return False
 
 
@@ -214,6 +225,13 @@ def _before_verb(d: Discourse, at: int, end: int, data: Mapping[str, Any]) -> bo
     here, after = d.tokens[at - 1], d.tokens[at + 1]
     verb = (after.spelled or after.norm) in finite and after.norm not in data.get("nouns_too", ())
     return verb and here.kind != "mark" and before not in d.language.closed
+
+
+def _of_others(d: Discourse, person: Thing, word: str, data: Mapping[str, Any]) -> bool:
+    """Whether a pronoun stands for several who were asked before: "tell Alice that they agree"."""
+    several = word in data.get("plural", ())
+    alone = person.known and person.group is None and not person.plural
+    return several and alone and any(isinstance(each.who, Recall) for each in d.surveys)
 
 
 def _is_somebody(d: Discourse, token: Token, data: Mapping[str, Any]) -> bool:

@@ -330,6 +330,7 @@ def person_name(d: Discourse, node: Node) -> Thing:
     leaf = node.parts["person"]
     assert isinstance(leaf, Leaf)
     name = d.one_of(leaf).name
+    d.named.append(name)
     d.person = d.last_named = Thing(Text(name), known=True, person=True)  # "Alice in her office"
     found = replace(described(d, name, node), value=Text(name), known=True, person=True)
     d.person, d.thing_last = found, False
@@ -397,7 +398,12 @@ def person_pronoun(d: Discourse, node: Node) -> Thing:
     if everybody and not d.is_plural(node):
         # "ask every visitor ... and send him away": each in his turn
         raise NotUnderstood(d.language.phrase("one_person"))
+    if d.person is not None and not d.may_be(d.person, node.start, node.end):
+        other = d.last_named  # "ask Bob if he is free; if so, tell Alice, if not, tell her ..."
+        if other is not None and d.may_be(other, node.start, node.end):
+            return replace(other, here=d.with_person == other.value)
     if d.person is not None:
+        d.called_so(d.person, node.start, node.end)
         met = d.person.here or d.with_person == d.person.value
         elsewhere = d.person.place is not None and not met
         return replace(d.person, here=not elsewhere and (met or not d.person.known))
@@ -478,6 +484,15 @@ def person_coming(d: Discourse, node: Node) -> Thing:
     found = Thing(Text(kind), person=True, here=True)
     d.person, d.thing_last = found, False
     return replace(found, coming=True)
+
+
+@meaning("person_first")
+def person_first(d: Discourse, node: Node) -> Thing:
+    """ "the first visitor you meet": whoever comes first."""
+    kind = str(d.get(node, "kind_of_person", ANYONE))
+    found = replace(by_furniture(d, described(d, kind, node)), person=True, first=True)
+    d.person, d.thing_last = replace(found, first=False, place=None, here=True), False
+    return found
 
 
 @meaning("person_group_them")

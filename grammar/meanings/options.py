@@ -29,6 +29,9 @@ def options_of(d: Discourse, node: Node) -> tuple[str, ...]:
         words = max(len(each.split()) for each in later) if later else 1
         start = max(rest.start, rest.end - words)
         return (*split_options(d, start, rest.end), *later)
+    subject = node.parts.get("subject")
+    if subject is not None and joins & set(d.norms(subject.start, subject.end)):
+        return split_options(d, subject.start, subject.end)
     if rest is not None and joins & set(d.norms(rest.start, rest.end)):
         start = rest.start
         if not fixed.get("yes_no") and d.tokens[start - 1].norm != COMMA:

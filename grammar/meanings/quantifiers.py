@@ -33,6 +33,7 @@ from grammar.meanings.finding import found, go, look_for, named, not_found
 from grammar.meanings.nouns import kind_in_plural
 from grammar.meanings.searches import named_places, search_in, searched
 from grammar.meanings.surveys import each_asked, uses_answer
+from grammar.meanings.volunteers import over_willing
 from grammar.naming import place_called
 from grammar.plan import (
     Ask,
@@ -80,7 +81,8 @@ TOGETHER: Final = frozenset(
 """Commands that know themselves what to do with several people."""
 ALWAYS: Final = frozenset(
     {
-        "each_place", "person_either", "person_said", "place_any", "place_best", "place_either",
+        "each_place", "person_either", "person_said", "person_willing", "place_any", "place_best",
+        "place_either",
         "place_such",
         "place_where",
         "thing_either", "things",
@@ -590,6 +592,7 @@ OVER: Final[dict[str, Callable[[Discourse, Node, Any, One], Steps]]] = {
     "person_pronoun": over_them,
     "person_either": over_either_person,
     "person_said": over_those_who,
+    "person_willing": over_willing,
     "thing": over_things,
     "thing_it": over_things,
     "things": over_thing_list,

@@ -12,6 +12,7 @@ from grammar.meanings.conditions import says_the_same
 from grammar.meanings.finding import go, if_found, if_met, meet, speak_to, where_sent
 from grammar.meanings.nouns import described, is_me, known_by_name
 from grammar.meanings.options import MOST_OPTIONS, numbers_offered, options_of, without_little_words
+from grammar.meanings.references import answers_in, nouns_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import Survey
 from grammar.plan import (
@@ -63,9 +64,9 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
     elif person is not None and everybody:
         steps = go(d, person.place) if person.place is not None else []
     elif person is not None and not is_me(person):
-        if person.known or person.place is not None:
+        if person.known or person.first or person.place is not None:
             steps = meet(d, person)
-        d.person = person
+        d.person = person if not person.first else d.person
     question = node.parts["question"]
     assert isinstance(question, Node)
     d.asking_each = everybody or several
@@ -73,6 +74,8 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
     text: str = d.build(question)
     options = options_of(d, question)
     d.asking_each = d.asking_one = False
+    if person is not None:
+        d.called_so(person, question.start, question.end)
     scale = node.parts.get("scale")
     if scale is not None:  # "ask from one to ten how bad it is"
         options = numbers_offered(d, scale.start, scale.end)
@@ -88,16 +91,19 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
     if (everybody or several) and "each" in question.production.fixed:
         d.polled_for = "who"
     offered(d, question, options, name)
+    nouns = nouns_of(d, question, options)
     if person is not None and person.known:
         arguments["person"] = person.value
     if person is not None and person.count is not None:
-        asking = asked(d, Call("ask", arguments, save_as=name), options, None)
+        asking = asked(d, Call("ask", arguments, save_as=name), options, None, nouns)
         waiting = Call("wait_for", {"thing": person.value})
         return [*steps, Repeat(Number(person.count), (waiting, asking))]
     if everybody or several:
         variable = d.variable("person")
         who = Recall(variable)
-        asking = asked(d, Call("ask", {**arguments, "person": who}, save_as=name), options, who)
+        asking = asked(
+            d, Call("ask", {**arguments, "person": who}, save_as=name), options, who, nouns
+        )
         if everybody or person is None or person.group is None:
             return [*steps, ForEach(variable, Ask("people"), (asking,))]
         if isinstance(person.group, Ask):
@@ -108,7 +114,7 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
     if person is None and isinstance(d.with_person, Recall):  # whose turn it is in a round
         arguments["person"] = known = d.with_person
     who_else = d.place if d.in_loop and isinstance(d.place, Recall) and d.place == d.at else None
-    asking = asked(d, Call("ask", arguments, save_as=name), options, known or who_else)
+    asking = asked(d, Call("ask", arguments, save_as=name), options, known or who_else, nouns)
     here = person is None or is_me(person) or d.with_person is not None
     if known is None and who_else is not None and person is not None and not here:
         # A round comes to places where nobody is.
@@ -181,6 +187,8 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
         and d.place != Recall(name)
     ):
         d.thing, d.thing_last = Thing(Recall(name)), False  # "ask what they need and bring it"
+    elif "noun" in question.parts and d.place != Recall(name):
+        d.thing, d.thing_last = Thing(Recall(name)), False  # "ask for her favourite fruit"
     about = question.parts.get("subject")
     if isinstance(about, Node) and any(each in about.parts for each in ("noun", "object")):
         start, end = without_little_words(d, about.start, about.end)
@@ -207,10 +215,16 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
             d.thing_last = False
 
 
-def asked(d: Discourse, call: Call, options: tuple[str, ...], who: Value | None) -> Call:
+def asked(
+    d: Discourse,
+    call: Call,
+    options: tuple[str, ...],
+    who: Value | None,
+    nouns: frozenset[str] = frozenset(),
+) -> Call:
     """Remember a question, so that its answers can be reported."""
     round_at = d.place if d.in_loop and isinstance(d.place, Recall) else None
-    d.surveys.append(Survey(call, options, who, round_at))
+    d.surveys.append(Survey(call, options, who, round_at, nouns))
     return call
 
 
@@ -282,9 +296,12 @@ def _ends_phrase(d: Discourse, at: int, end: int) -> bool:
     return token is None or token.kind == "mark" or token.norm in d.language.closed
 
 
-def turn_to_you(d: Discourse, start: int, end: int, words: str = "to_you") -> str:
+def turn_to_you(
+    d: Discourse, start: int, end: int, words: str = "to_you", to: Thing | None = None
+) -> str:
     """The original words with "they", "their", "her" ... turned to the person spoken to. Where
-    that person is the subject, only what is theirs: "ob er ihn mag" asks about somebody else."""
+    that person is the subject, only what is theirs: "ob er ihn mag" asks about somebody else. `to`
+    is who is spoken to, if that is known, for pronouns that stand for others to be told from."""
     you: dict[str, str] = d.language.speech.get(words) or d.language.speech.get("to_you", {})
     pieces: list[str] = []
     position, whole = start, False
@@ -298,11 +315,14 @@ def turn_to_you(d: Discourse, start: int, end: int, words: str = "to_you") -> st
             original = first.norm
         opened = " ".join(token.norm for token in d.tokens[position:last])
         turned = you.get(first.norm)
-        alone = d.language.speech.get("to_you_alone", {})
+        alone = d.language.speech.get(f"{words}_alone", {})
         if first.norm in alone and _ends_phrase(d, position + 1, end):
             turned = alone[first.norm]  # "better for her", but "her office"
+        other = d.one_before(to, position) if to is not None else None
         if turned is not None:
             original = opened.replace(first.norm, turned, 1)
+        elif other is not None:
+            original = other
         before = d.text[d.tokens[position - 1].end : first.start] if pieces else ""
         if first.kind == "mark":
             pieces.append(original if not pieces else "\b" + original)
@@ -346,8 +366,10 @@ def ask_to(d: Discourse, node: Node) -> Steps:
     """ "ask them to wait" -> "Please wait."."""
     part = node.parts.get("text")
     # Whoever else is spoken of is not the one who is asked: "sie soll ihn mir bringen".
-    you = "to_you_who" if "to_you_who" in d.language.speech else "to_you"
-    text = turn_to_you(d, part.start, part.end, you) if part is not None else ""
+    person: Thing | None = d.get(node, "person_ref")
+    kinds = ("to_you_asked", "to_you_who", "to_you")
+    you = next(each for each in kinds if each in d.language.speech)
+    text = turn_to_you(d, part.start, part.end, you, person) if part is not None else ""
     if "wished" in node.parts:  # "qu'elle vienne ici"
         text = f"{d.get(node, 'wished')} {text}".strip()
     verb = node.parts.get("verb")
@@ -358,8 +380,10 @@ def ask_to(d: Discourse, node: Node) -> Steps:
         text += d.words(node.parts["why"].start, node.parts["why"].end)
     without = d.language.speech.get("please_without", ())
     text = " ".join(word for word in text.split() if word not in without)
-    request = d.sentence(str(node.production.fixed.get("phrase", "please_do")), what=text)
-    return speak_to(d, d.get(node, "person_ref"), [Call("say", {"text": request})])
+    first = node.parts.get("text") or node
+    words = answers_in(d, text, first.start, first.end)
+    request = d.sentence(str(node.production.fixed.get("phrase", "please_do")), what=words)
+    return speak_to(d, person, [Call("say", {"text": request})])
 
 
 @meaning("ask_again")
@@ -381,7 +405,8 @@ def ask_again(d: Discourse, node: Node) -> Steps:
     d.person = person
     name = remember_answer(d, last.options, "answer")
     call = Call("ask", arguments, save_as=name)
-    return [*steps, asked(d, call, last.options, person.value if person.known else None)]
+    who = person.value if person.known else None
+    return [*steps, asked(d, call, last.options, who, last.nouns)]
 
 
 @meaning("ask_more")

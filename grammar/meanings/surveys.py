@@ -46,6 +46,8 @@ class Survey:
     """Who was asked, or where; None if it is not known who they are."""
     where: Value | None = None
     """The place, where a round goes from one to the next."""
+    nouns: frozenset[str] = frozenset()
+    """What its answer may be called: "time", "colour"."""
 
     def said(self, option: str) -> Condition:
         """Whether the answer is this."""

@@ -164,6 +164,12 @@ def bring(d: Discourse, node: Node) -> Steps:
         person.coming or person.group is not None or person.count is not None
     ):
         raise NotUnderstood(d.language.phrase("one_person"))
+    if thing.person and (person is None or is_me(person)):  # "find Bob and bring him to me"
+        from grammar.meanings.people import lead
+
+        target: Where | None = d.get(node, "where")
+        to = d.start() if target is None or target.place is None else target.place
+        return [*meet(d, thing), lead(d, thing, to)]
     if node.production.fixed.get("handing") and person is not None and not thing.pronoun:
         person = handed_there(d, thing, person)
     if person is not None and thing.pronoun and d.done:

@@ -23,6 +23,7 @@ FILES = {
     "reports_en.yaml": "en",
     "times_en.yaml": "en",
     "things_en.yaml": "en",
+    "polls_en.yaml": "en",
     "constructs_de.yaml": "de",
     "constructs_fr.yaml": "fr",
 }

@@ -167,7 +167,6 @@ def test_what_hangs_on_something_is_done_only_where_that_is_so(sentence: str, me
         "find three cups",
         "find all the cups in the house",
         "get a chair from the kitchen and bring it there",
-        "ask Bob and Alice what they want; if they want the same one, bring it",
         "ask Bob if he wants tea or coffee, then ask Alice if she wants the same one",
     ],
 )

@@ -34,7 +34,7 @@ def test_the_receiver_is_you(sentence: str, said: str) -> None:
     ("sentence", "said"),
     [
         ("tell Alice that Bob has forgotten his folder", "Bob has forgotten his folder."),
-        ("tell Alice that her patient is here and that he is waiting", "and that he is waiting."),
+        ("tell Alice that her patient is here and that he is waiting", "and he is waiting."),
         ("say that he is late", "He is late."),
     ],
 )
