@@ -70,20 +70,23 @@ def _in_plain_form(
     taken for a verb."""
     data = language.speech.get("gerunds", {"after": (), "joins": (), "ending": "-"})
     after, joins, ending = set(data["after"]), set(data["joins"]), str(data["ending"])
+    rooms = data.get("rooms", ())  # "go to meeting room" is about no meeting of a room
     earlier = False
     for at, token in enumerate(tokens):
         before = tokens[at - 1].norm if at else ""
+        named = at + 1 < len(tokens) and tokens[at + 1].norm in rooms
+        called_for = before in after or (earlier and before in joins)
         verb = None
-        if token.norm.endswith(ending) and (before in after or (earlier and before in joins)):
+        if token.norm.endswith(ending) and called_for and not named:
             verb = next(
-                (base for base in _bases(token.norm[: -len(ending)]) if base in verbs), None
+                (base for base in plain_forms(token.norm[: -len(ending)]) if base in verbs), None
             )
         earlier = earlier or verb is not None
         yield token if verb is None else replace(token, norm=verb, kind="verb")
 
 
-def _bases(stem: str) -> Iterator[str]:
-    """ "greet", "giv" -> "give", "runn" -> "run"."""
+def plain_forms(stem: str) -> Iterator[str]:
+    """What a verb may be without its ending: "greet", "giv" -> "give", "runn" -> "run"."""
     yield stem
     yield f"{stem}e"
     if len(stem) > 2 and stem[-1] == stem[-2]:

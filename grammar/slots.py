@@ -16,6 +16,7 @@ from grammar.chart import CORRECTION, Corrected, Match, Slot
 from grammar.freetext import Judge
 from grammar.language import Language
 from grammar.lexicon import Lexicon, Name
+from grammar.slips import plain_forms
 from grammar.tokens import COLON, COMMA, STOP, Token
 from grammar.wordforms import kind_words, plural
 
@@ -589,6 +590,8 @@ class Slots:
                 break
             if position > at and self._named("person", position):
                 break
+            if position == at and self._is_doing(at):
+                break
             doubt += MISSPELT_NOUN if position in self.corrections else 0.0
             if self._is_look(position):
                 continue  # "der blaue oder der rote Hefter": no noun ends with an adjective
@@ -596,6 +599,17 @@ class Slots:
             matches.append((position + 1, FREE_WORD * length + doubt, None))
         named = {end for slot in ("person", "place") for end in self._named(slot, at)}
         return [match for match in matches if match[0] not in named]  # a name is no thing
+
+    def _is_doing(self, at: int) -> bool:
+        """Whether this is what somebody does, and no noun: "are getting on my nerves"."""
+        word, before = self.tokens[at].norm, self.tokens[at - 1].norm if at else ""
+        ending = str(self.language.speech.get("gerunds", {}).get("ending", "-"))
+        verbs = self._command_words - self._judge.words.nouns_too
+        followed = at + 1 < len(self.tokens) and self.tokens[at + 1].norm in self.language.closed
+        doing = word.endswith(ending) and any(
+            base in verbs for base in plain_forms(word[: -len(ending)])
+        )
+        return doing and followed and before in self.language.speech.get("being", ())
 
     def _is_look(self, position: int) -> bool:
         """Whether a small letter shows that this is no noun but a word for how things look."""

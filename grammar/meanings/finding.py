@@ -192,9 +192,10 @@ def is_here(d: Discourse, person: Thing) -> bool:
     """Whether a person can be spoken to without looking for them."""
     if is_me(person) or person.here or person.value == d.with_person:
         return True
+    if person.known or person.place is not None or particular(person):
+        return False
     # "go to the lobby and tell the visitors ..."
-    there = d.at is not None and d.at != d.looked_in
-    return not person.known and person.place is None and (there or person.plural)
+    return person.plural or (d.at is not None and d.at != d.looked_in)
 
 
 def not_found(d: Discourse, thing: Thing) -> Call:

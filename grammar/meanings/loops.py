@@ -24,6 +24,7 @@ from grammar.plan import (
     Compare,
     Condition,
     Elapsed,
+    End,
     ForEach,
     Forever,
     Holds,
@@ -455,6 +456,8 @@ def check_each_place(d: Discourse, node: Node) -> Steps:
     body = d.build(node.parts["steps"])
     d.in_loop = outer
     d.at = d.with_person = None
+    if sought_for.known or Call("grab", {"thing": sought_for.value}) in body:
+        body = [*body, End()]  # there is no other one to be looked for
     seen = If(Holds(Ask("sees", {"thing": sought_for.value})), tuple(body))
     going = Call("goto", {"place": Recall(variable)})
     return [ForEach(variable, kind_places(d, d.get(node, "kinds")), (going, seen))]

@@ -140,6 +140,20 @@ def put(d: Discourse, node: Node) -> Steps:
     return deliver(d, thing, None, spot)
 
 
+@meaning("put_each")
+def put_each(d: Discourse, node: Node) -> Steps:
+    """ "put the cup on the table and the plate on the shelf": one after the other."""
+    at, here = len(d.done), d.at
+    d.done.extend(put(d, node))
+    if d.at != here:
+        d.at = None  # nobody says that the next thing is where the first one was brought to
+    if "more" in node.parts:
+        d.done.extend(d.build(node.parts["more"]))
+    steps = d.done[at:]
+    del d.done[at:]
+    return steps
+
+
 def given_last(d: Discourse) -> bool:
     """Whether the last step was to hand something to the speaker, or to do so with several."""
     last = d.done[-1] if d.done else None
