@@ -10,6 +10,7 @@ from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import Survey, asked_before, in_loop, note
 from grammar.plan import (
     Both,
+    Call,
     Compare,
     Condition,
     ForEach,
@@ -24,6 +25,7 @@ from grammar.plan import (
     Step,
     Text,
     Truth,
+    Value,
 )
 from grammar.tidy import nodes
 
@@ -32,7 +34,17 @@ from grammar.tidy import nodes
 def answers_same(d: Discourse, node: Node) -> Condition:
     """ "if both say the same", "if they disagree", "if it is the same"."""
     condition = same_answers(d, node)
+    if node.production.fixed.get("consent") and d.agreed is not None:
+        condition = _consent(d, condition, *d.agreed)
     return Not(condition) if node.production.fixed.get("no") else condition
+
+
+def _consent(d: Discourse, alike: Condition, asked: Call, answer: Value) -> Condition:
+    """ "if both agree": they say the same, and where that may be yes or no, they say yes."""
+    yes, no = (Text(d.language.phrase(each)) for each in ("yes", "no"))
+    if asked.arguments.get("options") != Items((yes, no)):
+        return alike
+    return Both((alike, Compare(answer, "==", yes)))
 
 
 def same_answers(d: Discourse, node: Node) -> Condition:
