@@ -7,6 +7,7 @@ person used.
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -89,6 +90,14 @@ class Lexicon:
                     series[name] = (*series.get(name, ()), place)
         self._kinds.update(series)
         object.__setattr__(self, "_series", frozenset(series))
+
+    def __hash__(self) -> int:
+        """Of all its names, counted once: whatever is known of a lexicon is looked up by it."""
+        return self._hash
+
+    @functools.cached_property
+    def _hash(self) -> int:
+        return hash((self.places, self.people, self.objects, self.furniture, self.routines))
 
     @property
     def place_kinds(self) -> dict[str, tuple[Name, ...]]:

@@ -224,6 +224,7 @@ class Slots:
         self._time_fillers = frozenset(self.language.speech.get("time_fillers", ()))
         self._filler_words = self._inside_fillers()
         self._unfinished = frozenset(self.language.speech.get("unfinished", ()))
+        self._news_at: dict[int, bool] = {}
         self._not_kept = self._joins.union(self.language.speech.get("text_ends", ()))
         clause = self.language.speech.get("clause", {})
         no_verbs = ("pronouns", "determiners", "prepositions", "and", "subordinating", "reflexive")
@@ -539,8 +540,13 @@ class Slots:
 
     def _begins_news(self, at: int) -> bool:
         """Whether something is said that is never part of a text: "... and tell me"."""
+        if at not in self._news_at:
+            self._news_at[at] = self._tells_news(at)
+        return self._news_at[at]
+
+    def _tells_news(self, at: int) -> bool:
         before = self.tokens[at - 1].norm
-        if before not in (COMMA, STOP, COLON, *self.language.speech.get("joins", ())):
+        if before not in (COMMA, STOP, COLON, *self._joins):
             return False
         return any(
             all(
