@@ -197,7 +197,7 @@ class _Sampler:
 
     def known(self, name: str) -> list[str]:
         """What a slot matches that only the names of the world fill, such as {place_tail}."""
-        from grammar.slots import names_of
+        from grammar.names import names_of
 
         found: list[str] = []
         trie = names_of(self.language, self.lexicon).tries.get(name)

@@ -9,16 +9,15 @@ from __future__ import annotations
 import functools
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 from typing import Any, Final
 
 from grammar.chart import CORRECTION, Corrected, Match, Slot
 from grammar.freetext import Judge
 from grammar.language import Language
-from grammar.lexicon import Lexicon, Name
+from grammar.names import Names, Trie
+from grammar.numerals import Numerals
 from grammar.slips import plain_forms
 from grammar.tokens import COLON, COMMA, STOP, Token
-from grammar.wordforms import kind_words, plural
 
 FREE_WORD: Final = 1.0
 """Cost of a word that only an open slot understands."""
@@ -43,160 +42,9 @@ SPACED: Final = 0.5
 SHORTEST_JOINED_NAME: Final = 6
 MISSPELT_NOUN: Final = 3.5
 """Cost of taking for a noun what is nearly a known word: "bigest"."""
-CALLED: Final = frozenset({"person", "place", "object", "furniture", "contact", "routine"})
-"""Slots of names that somebody or something goes by."""
 LONGEST_NOUN: Final = 5
 LONGEST_UNKNOWN: Final = 6
 LONGEST_STRANGER: Final = 2
-
-
-@dataclass(slots=True)
-class Trie:
-    branches: dict[str, Trie] = field(default_factory=dict)
-    values: list[Any] = field(default_factory=list)
-
-    def add(self, words: Iterable[str], value: Any) -> None:
-        node = self
-        for word in words:
-            node = node.branches.setdefault(word, Trie())
-        if value not in node.values:
-            node.values.append(value)
-
-
-class Names:
-    """The names that a language and a lexicon give together: a trie for each slot."""
-
-    def __init__(self, language: Language, lexicon: Lexicon) -> None:
-        self.language = language
-        self.lexicon = lexicon
-        self.tries: dict[str, Trie] = {}
-        self.words: set[str] = set()
-        self.called: set[str] = set()
-        """Those of them that people, places and things are called by."""
-        self.spelled: set[str] = set()
-        """The names as people write and speak them."""
-        self._places()
-        for name in lexicon.people:
-            self._add_name("person", name)
-            for word in (name.kind or "", plural(name.kind or "", language)):
-                if word and word not in language.words:  # "porter" carries things in French
-                    self._add("person_kind", word, name.kind)
-            for owner in self.language.speech.get("bare_possessive", ()):
-                for text in (name.name, *name.aliases):
-                    self._add_words("owner", language.tokens_of(f"{text}{owner}"), name)
-        for thing in lexicon.objects:
-            for text in (thing.name, *thing.aliases):
-                for form in self._forms(text):
-                    self._add("object", form, thing.name)
-        for described in (*lexicon.objects, *lexicon.furniture):
-            for attribute in described.attributes:
-                self._add("quality", attribute, attribute)
-        for furniture in lexicon.furniture:
-            for text in (furniture.name, *furniture.aliases):
-                for variant in self._variants(text):
-                    self._add("furniture", variant, furniture.name)
-            if furniture.kind:
-                self._add("furniture", furniture.kind, furniture.kind)
-        for contact in lexicon.contacts:
-            self._add("contact", contact, contact)
-        for contact_name in lexicon.contact_aliases:
-            for text in contact_name.aliases:
-                for variant in self._variants(text):
-                    self._add("contact", variant, contact_name.name)
-        for question in lexicon.questions:
-            for text in (question.question, *question.aliases):
-                for words in self._asked(language.tokens_of(text.rstrip("?"))):
-                    self._add_words("question", words, question)
-        for slot, known in (
-            ("gesture", lexicon.gestures),
-            ("emotion", lexicon.emotions),
-            ("joint", lexicon.joints),
-            ("skill", lexicon.skills),
-        ):
-            for each in known:
-                self._add(slot, each.replace("_", " "), each)
-        for routine in lexicon.routines:
-            self._add("routine", routine.name, routine)
-        if lexicon.robot_name:
-            self._add("robot_name", lexicon.robot_name, lexicon.robot_name)
-        for name_of_list, values in language.lists.items():
-            for value, ways in values.items():
-                for way in ways:
-                    self._add_words(name_of_list, way, value)
-
-    def _places(self) -> None:
-        for place in self.lexicon.places:
-            self._add_name("place", place)
-            for text in (place.name, *place.aliases):
-                self._shorter(place, text)
-        for kind in self.lexicon.place_kinds:
-            one, many = kind_words(kind, self.language)
-            for word in one:
-                self._add("kind", word, kind)
-            for word in many:
-                self._add("kinds", word, kind)
-
-    def _shorter(self, place: Name, text: str) -> None:
-        """What is left of a place's name where its kind goes without saying: "supply" of "supply
-        room", "b" of "ward b" after "ward a"."""
-        *before, last = self.language.tokens_of(text)
-        if not before:
-            return
-        kinds = {word for kind in kind_words(place.kind or "", self.language) for word in kind}
-        if len(last) == 1 or last.isdigit():
-            self._add_words("place_tail", (last,), place)
-        elif last in kinds and not {*before} <= self.language.closed and len(before[-1]) > 2:
-            self._add_words("place_short", tuple(before), place)
-
-    def _asked(self, words: tuple[str, ...]) -> Iterable[tuple[str, ...]]:
-        """A question; without its articles; as it is put to others: "when visiting hours are"."""
-        articles = self.language.speech.get("articles", ())
-        bare = tuple(word for word in words if word not in articles)
-        for form in dict.fromkeys((words, bare)):
-            yield form
-            if len(form) > 2 and form[1] in self.language.speech.get("turned_verbs", ()):
-                for article in articles:
-                    yield (*form[:2], article, *form[2:])
-                yield (form[0], *form[2:], form[1])
-
-    def _add_name(self, slot: str, name: Name) -> None:
-        for text in (name.name, *name.aliases):
-            for variant in self._variants(text):
-                self._add(slot, variant, name)
-
-    def _variants(self, text: str) -> Iterable[str]:
-        """ "Alice's office" is also "the office of Alice", and written "Alices office";
-        names may be inflected."""
-        yield text
-        for pattern, *others in self.language.speech.get("name_forms", ()):
-            if re.search(pattern, text):
-                yield from (re.sub(pattern, other, text) for other in others)
-        mark = self.language.speech.get("possessive")
-        if mark and mark in text:
-            owner, _, owned = text.partition(mark)
-            for pattern in self.language.speech.get("possessive_forms", ()):
-                yield pattern.format(owner=owner, owned=owned.strip())
-
-    def _forms(self, text: str) -> tuple[str, ...]:
-        forms = (text, plural(text, self.language))
-        return tuple(dict.fromkeys(each for form in forms for each in self._variants(form)))
-
-    def _add(self, slot: str, text: str, value: Any) -> None:
-        self.spelled.add(text)
-        self._add_words(slot, self.language.tokens_of(text), value)
-
-    def _add_words(self, slot: str, words: tuple[str, ...], value: Any) -> None:
-        if words:
-            self.tries.setdefault(slot, Trie()).add(words, value)
-            self.words.update(words)
-            if slot in CALLED:
-                self.called.update(words)
-
-
-@functools.lru_cache(maxsize=16)
-def names_of(language: Language, lexicon: Lexicon) -> Names:
-    """The names, made once for a language and a lexicon."""
-    return Names(language, lexicon)
 
 
 class Slots:
@@ -215,6 +63,7 @@ class Slots:
         self._command_words = command_words(self.language)
         self._joins = frozenset(self.language.speech.get("joins", ()))
         self._judge = Judge(tokens, self.language)
+        self._numerals = Numerals(tokens, self.language)
         self._adverb = re.compile(self.language.speech.get("adverbs", r"(?!)")).search
         self._possessive = str(self.language.speech.get("possessive", "")).strip()
         self._noun_joins = frozenset(self.language.speech.get("noun_joins", ()))
@@ -318,67 +167,7 @@ class Slots:
     # --- numbers
 
     def _number(self, at: int) -> list[Match]:
-        """ "2.5", "twenty five", "two hundred and ten", "two and a half", "half a", "a"."""
-        numbers = self.language.numbers
-        scales: Mapping[str, float] = numbers.get("scales", {})
-        joiners = set(numbers.get("and", ()))
-        if at < len(self.tokens) and self.tokens[at].norm in numbers.get("minus", ()):
-            return [(end, cost, -value) for end, cost, value in self._number(at + 1)]
-        matches: list[Match] = []
-        total, current, position, any_digit = 0.0, None, at, False
-        while position < len(self.tokens):
-            token = self.tokens[position]
-            value, more = self._compound(position) or (token.value, 1)
-            if value is not None:
-                if (
-                    current is not None
-                    and not (current % 10 == 0 and current >= 20 and 0 < value < 10)
-                    and not (current % 100 == 0 and current >= 100 and value < 100)
-                ):
-                    break
-                if current is not None and self.tokens[position - 1].kind == "number":
-                    break
-                current = (current or 0.0) + value
-                position += more - 1
-            elif token.norm in scales:
-                scale = scales[token.norm]
-                current = (1.0 if current is None else current) * scale
-                if scale >= 1000:
-                    total, current = total + current, None
-            elif token.norm in joiners and any_digit and position + 1 < len(self.tokens):
-                following = self.tokens[position + 1]
-                if following.value is None or (total + (current or 0)) < 100:
-                    break
-                position += 1
-                continue
-            else:
-                break
-            any_digit = True
-            position += 1
-            matches.append((position, 0.0, total + (current or 0.0)))
-        whole = matches[-1] if matches else None
-        if whole:
-            for end, value in self._said_number("and_fractions", whole[0]):
-                matches.append((end, 0.0, whole[2] + value))
-        matches += [(end, 0.2, value) for end, value in self._said_number("phrases", at)]
-        return matches
-
-    def _compound(self, at: int) -> tuple[float, int] | None:
-        """A number said in several words that do not add up one by one, "quatre-vingt-dix", and
-        how many words it has."""
-        found = max(self._said_number("compounds", at), default=None)
-        return None if found is None else (found[1], found[0] - at)
-
-    def _said_number(self, kind: str, at: int) -> list[tuple[int, float]]:
-        """The numbers of this kind that are said here in words of their own: where each ends, and
-        its value."""
-        if at >= len(self.tokens):
-            return []
-        return [
-            (at + len(words), value)
-            for words, value in _number_phrases(self.language, kind).get(self.tokens[at].norm, ())
-            if tuple(token.norm for token in self.tokens[at : at + len(words)]) == words
-        ]
+        return self._numerals.starting(at)
 
     def _count(self, at: int) -> list[Match]:
         """A whole number from 1 on."""
@@ -666,18 +455,6 @@ class Slots:
             cost = UNKNOWN_NAME + FREE_WORD * (position + 1 - at - token.capital)
             matches.append((position + 1, cost, None))
         return matches
-
-
-@functools.cache
-def _number_phrases(
-    language: Language, kind: str
-) -> dict[str, list[tuple[tuple[str, ...], float]]]:
-    """The numbers of several words of this kind, by their first one."""
-    found: dict[str, list[tuple[tuple[str, ...], float]]] = {}
-    for phrase, value in language.numbers.get(kind, {}).items():
-        words = language.tokens_of(phrase)
-        found.setdefault(words[0], []).append((words, float(value)))
-    return found
 
 
 @functools.cache

@@ -21,6 +21,7 @@ from grammar.discourse import Ambiguous, Discourse, NotUnderstood, Thing
 from grammar.freetext import Doubt, doubtful, words_for
 from grammar.language import Language, load_language
 from grammar.lexicon import Lexicon
+from grammar.names import Names, names_of
 from grammar.naming import joined_up, place_called
 from grammar.plan import Plan, Text, Value
 from grammar.plausible import implausible
@@ -36,7 +37,7 @@ from grammar.refusals import (
 )
 from grammar.requests import Request
 from grammar.slips import mended
-from grammar.slots import Names, Slots, command_words, names_of
+from grammar.slots import Slots, command_words
 from grammar.tidy import Unbound, is_one_of_each, returning, scoped, without_unused
 from grammar.tokens import COMMA, Token, tokenise
 

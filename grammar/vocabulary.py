@@ -6,7 +6,7 @@ import re
 
 from grammar.language import load_language
 from grammar.lexicon import Lexicon
-from grammar.slots import names_of
+from grammar.names import names_of
 from grammar.tokens import plain
 
 _WORD = re.compile(r"[^\W\d_]+(?:'[^\W\d_]+)*")

@@ -203,7 +203,7 @@ def _begins_noun(rules: Any, group: Group) -> bool:
 
 def _named(d: Discourse, groups: Sequence[Group], at: int) -> int:
     """How many words there are up to the end of a name of the world that begins here; 0 if none."""
-    from grammar.slots import names_of
+    from grammar.names import names_of
 
     tries = names_of(d.language, d.lexicon).tries
     longest = 0

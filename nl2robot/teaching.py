@@ -13,11 +13,11 @@ from typing import Literal
 from grammar.explain import explain
 from grammar.language import Language, UnknownLanguage, load_language
 from grammar.lexicon import Lexicon
+from grammar.names import names_of
 from grammar.naming import naming
 from grammar.plan import Plan
 from grammar.requests import Request
 from grammar.samples import samples
-from grammar.slots import names_of
 from grammar.understand import Understanding, understand
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge

@@ -18,8 +18,8 @@ from grammar.meanings.questions import base_form, turn_to_you
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning
 from grammar.meanings.speaking import sentence_form
+from grammar.names import names_of
 from grammar.plan import Call, Recall, Text
-from grammar.slots import names_of
 from grammar.tokens import COMMA, STOP, Token
 from grammar.wordorder import direct_clause, is_direct
 

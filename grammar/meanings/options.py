@@ -124,7 +124,7 @@ def _without_what_follows(d: Discourse, groups: list[tuple[int, int]]) -> tuple[
 
 def _place_at_end(d: Discourse, start: int, end: int) -> str | None:
     """The place whose name the last words are."""
-    from grammar.slots import names_of
+    from grammar.names import names_of
 
     trie = names_of(d.language, d.lexicon).tries.get("place")
     for begin in range(start, end):

@@ -9,8 +9,9 @@ import pytest
 
 from grammar.language import load_language
 from grammar.lexicon import Lexicon, Name
+from grammar.names import names_of
 from grammar.naming import Naming, naming, place_called
-from grammar.slots import Slots, names_of
+from grammar.slots import Slots
 from grammar.speech import speech
 from grammar.tokens import Spelling, tokenise, words_of
 from grammar.wordforms import plural, singular
