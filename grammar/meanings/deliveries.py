@@ -62,7 +62,10 @@ def lacks(delivery: Delivery | None, met: Meeting | None) -> bool:
 
 
 def _same(one: Thing, other: Thing | None) -> bool:
-    return other is not None and one.value == other.value
+    """Whether one is the other, or what it is called for short: "tea" for a cup of tea."""
+    return other is not None and (
+        one.value == other.value or f" {other.text}".endswith(f" {one.text}")
+    )
 
 
 def taken_back(d: Discourse, delivery: Delivery, met: Meeting) -> Taken | None:
