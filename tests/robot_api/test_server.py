@@ -124,6 +124,9 @@ def test_a_stop_overtakes_64_calls_that_wait(driver: EmulatedDriver, server: Ser
             for id in range(64):
                 wire.send("robot.wait", [60], id)
         assert all_at_it.wait(SOON)
+    for wire in wires:
+        # What a stop overtakes has come in before it: one more is refused once 64 are there.
+        assert "error" in wire.ask("robot.battery", id="one too many")
     wires[0].send("robot.stop", id="stop")
     for wire in wires:
         answers = {answer["id"]: answer for answer in (wire.receive() for _ in range(64))}
