@@ -71,7 +71,6 @@ def tell(d: Discourse, node: Node) -> Steps:
 
 @meaning("battery_low")
 def battery_low(d: Discourse, node: Node) -> object:
-
     fixed = node.production.fixed
     return Compare(Ask("battery"), str(fixed["operator"]), Number(int(fixed["percent"])))
 
