@@ -1,0 +1,362 @@
+"""A robot on paper: it carries out a program at once and writes down what would have happened.
+
+Nothing drives and nobody waits, so thousands of sentences can be judged by what comes of them
+rather than by how their program is written. Where things and people are, and what people answer,
+is the scene.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+START = "start"
+"""Where the command is given: where the operator stands."""
+OPERATOR = "operator"
+MOST_EVENTS = 400
+
+
+class Over(BaseException):
+    """The program would go on for ever, or waits for somebody who does not come."""
+
+
+class Failed(Exception):
+    """As a robot's error: a program may catch it."""
+
+
+@dataclass(frozen=True)
+class Event:
+    kind: str
+    """visits, says, asks, shows, takes, puts, gives, guides, follows, waits, calls, does"""
+    what: str
+    at: str
+    whom: str = ""
+
+    def __str__(self) -> str:
+        whom = f" ({self.whom})" if self.whom else ""
+        return f"{self.kind} {self.what!r}{whom} at {self.at}"
+
+
+@dataclass
+class Scene:
+    """What is where, and who says what; `is_` of a person or a thing are words that fit it."""
+
+    places: Mapping[str, str]
+    """Names and kinds."""
+    people: dict[str, str] = field(default_factory=dict)
+    """Who is where."""
+    things: list[tuple[str, str]] = field(default_factory=list)
+    """(what, where), a row for each."""
+    answers: Mapping[str, Any] = field(default_factory=dict)
+    """Of somebody: a text, a list of texts, or texts by patterns of the questions."""
+    arrivals: dict[str, list[str]] = field(default_factory=dict)
+    """Who comes to a place, one after the other, while somebody waits there."""
+    traits: Mapping[str, str] = field(default_factory=dict)
+    """More words for somebody: {"Zoe": "visitor woman waving"}."""
+    clock: str = "10:00"
+    weekday: str = "Tuesday"
+    battery: int = 80
+
+
+@dataclass(frozen=True)
+class Location:
+    place: str
+    x: float = 0.0
+    y: float = 0.0
+    theta: float = 0.0
+
+    def __str__(self) -> str:
+        return self.place
+
+
+@dataclass(frozen=True)
+class Clock:
+    time: str
+    weekday: str
+    date: str = "2026-11-24"
+
+
+def words_of(phrase: str) -> set[str]:
+    """The words of a noun phrase, singular, without those that say nothing."""
+    found = re.findall(r"[\w'.-]+", phrase.lower())
+    return {_singular(word) for word in found} - _SILENT
+
+
+_SILENT = {"a", "an", "the", "any", "some", "my", "in", "of", "all", "other", "bottle", "piece"}
+_PERSON = {"person", "somebody", "someone", "anyone", "anybody", "everybody", "human", "people"}
+
+
+def _singular(word: str) -> str:
+    if word in ("people", "persons"):
+        return "person"
+    for ending, instead in (("ies", "y"), ("ches", "ch"), ("xes", "x"), ("sses", "ss")):
+        if word.endswith(ending):
+            return word.removesuffix(ending) + instead
+    return word.removesuffix("s") if not word.endswith(("ss", "us", "'s")) else word
+
+
+class PaperRobot:
+    """The robot methods; what they do is in `events`."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.place = START
+        self.people_at = dict(scene.people)
+        self.things = list(scene.things)
+        self.held: list[str] = []
+        self.events: list[Event] = []
+        self.partner: str | None = None
+        self.met: set[tuple[str, str]] = set()
+        self.asked: dict[str, int] = {}
+        self.minutes = 0.0
+
+    # --- looking
+
+    def _is(self, phrase: str, person: str) -> bool:
+        traits = set(self.scene.traits.get(person, "").split())
+        wanted = words_of(phrase)
+        if wanted <= words_of(person):
+            return True
+        return bool(wanted) and wanted <= traits | words_of(person) | _PERSON
+
+    def _people_here(self, phrase: str = "person") -> list[str]:
+        return [
+            who
+            for who, where in self.people_at.items()
+            if where == self.place and self._is(phrase, who)
+        ]
+
+    def _things_here(self, phrase: str) -> list[str]:
+        wanted = words_of(phrase) or {"thing"}
+        return [
+            what
+            for what, where in self.things
+            if where == self.place and (wanted <= words_of(what) or wanted & {"thing", "object"})
+        ]
+
+    def _event(self, kind: str, what: object, whom: str = "") -> None:
+        self.events.append(Event(kind, str(what), self.place, whom))
+        if len(self.events) > MOST_EVENTS:
+            raise Over
+
+    # --- the methods
+
+    def goto(self, place: Any, y: Any = None, theta: Any = None) -> None:
+        name = str(place)
+        if name != START and name not in self.scene.places:
+            raise Failed(f"There is no place called {name}.")
+        self.place = name
+        self.partner = None
+        self._event("visits", name)
+
+    def location(self) -> Location:
+        return Location(self.place)
+
+    def places(self, kind: str | None = None) -> list[str]:
+        return [name for name, k in self.scene.places.items() if kind is None or k == kind]
+
+    def dock(self) -> None:
+        self.place = "charger"
+        self._event("does", "dock")
+
+    def sees(self, thing: str) -> bool:
+        return bool(self._people_here(thing) or self._things_here(thing))
+
+    def count(self, thing: str) -> int:
+        self._event("counts", thing)
+        return len(self._people_here(thing)) or len(self._things_here(thing))
+
+    def people(self) -> list[str]:
+        return self._people_here()
+
+    def objects(self) -> list[str]:
+        return self._things_here("thing")
+
+    def describe(self, thing: str) -> str:
+        seen = [*self._people_here(thing), *self._things_here(thing)]
+        if not seen:
+            raise Failed(f"I do not see {thing}.")
+        return f"I see {', '.join(seen)}."
+
+    def find(self, thing: str, place: str | None = None) -> bool:
+        self._event("looks for", thing)
+        if place is not None:
+            if self.place != str(place):
+                self.goto(place)
+            return self.sees(thing)
+        if self.sees(thing):
+            return True
+        for name in self.scene.places:
+            self.place = name
+            if self.sees(thing):
+                self._event("visits", name)
+                return True
+        return False
+
+    def wait_for(self, thing: str, timeout: float | None = None) -> bool:
+        self._event("waits", thing)
+        here = [who for who in self._people_here(thing) if (who, self.place) not in self.met]
+        if not here and self._things_here(thing):
+            return True
+        coming = self.scene.arrivals.get(self.place, [])
+        if not here:
+            for who in list(coming):
+                if self._is(thing, who) and who not in self.people_at:
+                    self.people_at[who] = self.place
+                    here = [who]
+                    break
+        if not here:
+            if timeout is not None:
+                self.minutes += timeout / 60
+                return False
+            raise Over
+        self.partner = here[0]
+        self.met.add((here[0], self.place))
+        return True
+
+    # --- talking
+
+    def say(self, text: object, language: str | None = None) -> None:
+        here = self._people_here()
+        whom = self.partner if self.partner in here else here[0] if here else ""
+        self._event("says", text, whom or (OPERATOR if self.place == START else ""))
+
+    def ask(
+        self, question: object, options: Sequence[str] | None = None, person: str | None = None
+    ) -> str:
+        whom = self._one(person)
+        self._event("asks", question, whom)
+        answer = self._answer(whom, str(question))
+        if not options:
+            return answer
+        said = answer.lower()
+        for option in options:
+            if option.lower() == said:
+                return option
+        for option in sorted(options, key=len, reverse=True):
+            if re.search(rf"\b{re.escape(option.lower())}\b", said):
+                return option
+        return list(options)[-1]
+
+    def _one(self, person: str | None) -> str:
+        here = self._people_here(person or "person")
+        if person is None and self.partner in here:
+            return str(self.partner)
+        if person in here:
+            return str(person)
+        unmet = [who for who in here if not self.asked.get(who)]
+        if here:
+            self.partner = (unmet or here)[0]
+            return self.partner
+        if self.place == START:
+            return OPERATOR
+        raise Failed(f"{person or 'Nobody'} is not here.")
+
+    def _answer(self, whom: str, question: str) -> str:
+        number = self.asked[whom] = self.asked.get(whom, 0) + 1
+        given = self.scene.answers.get(whom, "yes")
+        if isinstance(given, Mapping):
+            for pattern, answer in given.items():
+                if re.search(str(pattern), question, re.IGNORECASE):
+                    return str(answer)
+            return "yes"
+        if isinstance(given, list):
+            return str(given[min(number, len(given)) - 1])
+        return str(given)
+
+    def listen(self, prompt: str | None = None, timeout: float = 10) -> str:
+        return self.ask(prompt or "")
+
+    def touch(self, options: Sequence[str], prompt: str | None = None) -> str:
+        return self.ask(prompt or "", options)
+
+    def answer(self, question: str | None = None) -> str:
+        self._event("answers", question or "")
+        return "42"
+
+    def show(self, text: object = None, html: object = None, url: object = None) -> None:
+        self._event("shows", text or html or url)
+
+    # --- things and company
+
+    def grab(self, thing: object) -> None:
+        here = self._things_here(str(thing))
+        if self.held:
+            raise Failed("My hand is full.")
+        if not here:
+            raise Failed(f"I do not see {thing}.")
+        self.things.remove((here[0], self.place))
+        self.held.append(here[0])
+        self._event("takes", here[0])
+
+    def _let_go(self, thing: object) -> str:
+        held = [each for each in self.held if words_of(str(thing)) <= words_of(each)]
+        if not held:
+            raise Failed(f"I do not hold {thing}.")
+        self.held.remove(held[0])
+        return held[0]
+
+    def put(self, thing: object, where: str | None = None) -> None:
+        name = self._let_go(thing)
+        self.things.append((name, self.place))
+        self._event("puts", name, where or "")
+
+    def give(self, thing: object, person: str | None = None) -> None:
+        name = self._let_go(thing)
+        self._event("gives", name, self._one(person))
+
+    def guide(self, person: str, place: object) -> None:
+        whom = self._one(person)
+        self.place = str(place)
+        if whom != OPERATOR:
+            self.people_at[whom] = self.place
+        self.partner = whom
+        self._event("guides", whom, whom)
+
+    def follow(self, person: str, to: object = None) -> None:
+        whom = self._one(person)
+        self._event("follows", whom, whom)
+        if to is not None:
+            self.place = str(to)
+            self.people_at[whom] = self.place
+
+    # --- the rest
+
+    def wait(self, seconds: float) -> None:
+        self.minutes += seconds / 60
+        self._event("waits", f"{seconds:g} s")
+
+    def clock(self) -> Clock:
+        hours, minutes = map(int, self.scene.clock.split(":"))
+        now = hours * 60 + minutes + int(self.minutes)
+        return Clock(f"{now // 60 % 24:02d}:{now % 60:02d}", self.scene.weekday)
+
+    def battery(self) -> int:
+        return self.scene.battery
+
+    def scan(self, prompt: str | None = None, timeout: float = 30) -> str:
+        self._event("does", "scan")
+        return "4006381333931"
+
+    def call(self, contact: str) -> None:
+        self._event("calls", contact)
+
+    def __getattr__(self, name: str) -> Any:
+        return lambda *values, **named: self._event("does", f"{name} {values} {named}")
+
+
+def carried_out(program: str, scene: Scene) -> tuple[list[Event], str]:
+    """What the program does in the scene, and how it ended: "done", "over" or why it failed."""
+    robot = PaperRobot(scene)
+    random.seed(0)
+    try:
+        exec(program, {"robot": robot, "math": math})
+    except Over:
+        return robot.events, "over"
+    except Exception as error:
+        return robot.events, f"{type(error).__name__}: {error}"
+    return robot.events, "done"
