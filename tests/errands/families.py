@@ -178,7 +178,7 @@ def misses(case: Case, events: Sequence[Event], end: str) -> str | None:
         return f"the program ended as {end}"
     rest = list(events)
     for expected in case.expect:
-        wanted = expected["all"] if "all" in expected else [expected]
+        wanted = expected.get("all", [expected])
         last = -1
         for each in wanted:
             at = next((i for i, event in enumerate(rest) if matches(event, each)), None)

@@ -357,6 +357,6 @@ def carried_out(program: str, scene: Scene) -> tuple[list[Event], str]:
         exec(program, {"robot": robot, "math": math})
     except Over:
         return robot.events, "over"
-    except Exception as error:
+    except Exception as error:  # noqa: BLE001 (whatever a program stumbles over is its end)
         return robot.events, f"{type(error).__name__}: {error}"
     return robot.events, "done"
