@@ -7,6 +7,8 @@ then refused, with the word, rather than obeyed in part.
 
 from __future__ import annotations
 
+import functools
+import math
 import unicodedata
 from collections.abc import Iterator, Set
 from typing import Final
@@ -15,7 +17,7 @@ from grammar.chart import Leaf, Node
 from grammar.freetext import weighty_words
 from grammar.language import Language
 from grammar.lexicon import Lexicon, Name, Question
-from grammar.plan import Plan
+from grammar.plan import Ask, Call, Plan, Text
 from grammar.tidy import nodes
 from grammar.tokens import Token
 
@@ -29,8 +31,10 @@ NO_PART: Final = frozenset(
 """Meanings whose words need not be in the plan: taken back, or said for what follows."""
 LEFT_OUT: Final = "but"
 """What an exception is bound to: it shows in what the plan does not do."""
-ALIKE: Final = 3
-"""Letters that a word and its form in the plan share: "wants" and "want"."""
+ALIKE: Final = 0.5
+"""The part of a word that its form in the plan begins with, too: "cookies" and "cooky"."""
+SHORTEST: Final = 3
+"""Letters of that part at least."""
 
 
 def left_out(
@@ -44,7 +48,7 @@ def left_out(
 ) -> list[str]:
     """The words in these slots that the plan knows nothing of, but for those that stand for what is
     only known when the program runs (`resolved`)."""
-    known = {_stem(word) for text in _texts(plan) for word in language.tokens_of(text)}
+    known = {_plain(word) for text in _texts(plan) for word in language.tokens_of(text)}
     silent = language.closed | {word for filler in language.fillers for word in filler}
     silent |= set(language.speech.get("one_words", ()))
     base_forms = language.speech.get("base_forms", {})
@@ -55,16 +59,18 @@ def left_out(
         if isinstance(leaf.value, tuple):
             names = [_name_of(value) for value in leaf.value]
             names += [homes[name] for name in names if name in homes]
-            words = {_stem(word) for name in names for word in language.tokens_of(name)}
-            words |= {_stem(token.norm) for token in tokens[leaf.start : leaf.end]}
-            if not words & known:
+            words = {_plain(word) for name in names for word in language.tokens_of(name)}
+            words |= {_plain(token.norm) for token in tokens[leaf.start : leaf.end]}
+            if not _alike(words, known):
                 missing.append(names[0])
             continue
         for at, token in enumerate(tokens[leaf.start : leaf.end], leaf.start):
             if at in resolved:
                 continue
-            forms = {_stem(token.norm), _stem(str(base_forms.get(token.norm, token.norm)))}
-            if token.kind == "word" and token.norm not in silent and not forms & known:
+            if token.kind != "word" or token.norm in silent:
+                continue
+            forms = {_plain(token.norm), _plain(str(base_forms.get(token.norm, token.norm)))}
+            if not _alike(forms, known):
                 missing.append(token.norm)
     return missing
 
@@ -80,8 +86,8 @@ def unspoken(
     `resolved` are those that stand for what is only known when the program runs.
     Verbs may change their form on the way; what turns the sense of a text may not be lost."""
     known = {word for text in _texts(plan) for word in language.tokens_of(text)}
-    stems = {_stem(word) for word in known}
-    parts = [word for word in known if len(word) > ALIKE]
+    plain = {_plain(word) for word in known}
+    parts = [word for word in known if len(word) > SHORTEST]
     weighty = weighty_words(language)
     silent = language.closed | {word for filler in language.fillers for word in filler}
     turned = language.speech.get("base_forms", {})  # "elle doit" told to her: "vous devez"
@@ -99,7 +105,7 @@ def unspoken(
             token.norm in weighty
             or not (
                 token.norm in silent
-                or _stem(token.norm) in stems
+                or _alike({_plain(token.norm)}, plain)
                 or any(part in token.norm for part in parts)  # "ankommt": "kommt ... an"
             )
         )
@@ -120,10 +126,22 @@ def unheeded(tree: Node, tokens: tuple[Token, ...], language: Language) -> list[
     return [" ".join(spelled[at : at + length]) for at, length in sorted(found.items())]
 
 
-def _stem(word: str) -> str:
-    """The beginning of a word, without accents."""
-    letters = unicodedata.normalize("NFD", word)[: ALIKE + 2]
-    return "".join(each for each in letters if not unicodedata.combining(each))[:ALIKE].lower()
+@functools.lru_cache(maxsize=4096)
+def _plain(word: str) -> str:
+    """A word without accents and capitals."""
+    letters = unicodedata.normalize("NFD", word)
+    return "".join(each for each in letters if not unicodedata.combining(each)).lower()
+
+
+def _alike(words: Set[str], known: Set[str]) -> bool:
+    """Whether one of some words, or a form of it, is among those known."""
+    return not words.isdisjoint(known) or any(_same(one, other) for one in words for other in known)
+
+
+def _same(one: str, other: str) -> bool:
+    """Whether two words may be forms of one: they begin alike."""
+    least = max(SHORTEST, math.ceil(ALIKE * max(len(one), len(other))))
+    return one[:least] == other[:least] and min(len(one), len(other)) >= least
 
 
 def _name_of(value: object) -> str:
@@ -144,10 +162,10 @@ def _leaves(tree: Node, slots: frozenset[str]) -> Iterator[Leaf]:
 
 
 def _texts(value: Plan) -> Iterator[str]:
-    """All texts and names in a plan."""
+    """All texts in a plan, and its methods; its variables are no words of the speaker's."""
     yield from value.background
     for node in nodes(value.steps):
-        for name in node.__struct_fields__:
-            inside = getattr(node, name)
-            if isinstance(inside, str):
-                yield inside
+        if isinstance(node, Text):
+            yield node.value
+        elif isinstance(node, Call | Ask):
+            yield node.method

@@ -242,6 +242,7 @@ class Reader:
         doubt = doubtful(tree, self.tokens, self.language)
         if doubt is not None:
             return self._doubted(doubt)
+        plan = returning(without_unused(plan))  # what came to nothing is lost, too
         resolved = discourse.resolved
         lost = left_out(tree, self.tokens, plan, self.language, self.lexicon, resolved)
         lost += unspoken(tree, self.tokens, plan, self.language, resolved)
@@ -257,7 +258,6 @@ class Reader:
         beyond = out_of_range(plan, self.language)
         if beyond is not None:
             return rejected(self.text, beyond, self.context)
-        plan = returning(without_unused(plan))
         senseless = implausible(plan)
         if senseless is not None:
             message = self.language.phrase(senseless.value)

@@ -20,6 +20,8 @@ from grammar.tidy import mentions
 
 NEEDS_IT: Final = frozenset({"grab", "put", "give", "guide", "follow", "describe"})
 """Methods that say themselves when what was looked for is not there."""
+SAID: Final = frozenset({"statement", "remark", "remark_name", "remark_where"})
+"""Clauses that say how something is, and ask for nothing."""
 LED: Final = frozenset({"guide", "follow"})
 
 
@@ -60,6 +62,10 @@ def steps(d: Discourse, node: Node) -> Steps:
                 further.append(beyond)
             each = rest if isinstance(rest, Node) else further.pop() if further else None
         d.done[:] = until_then(d, d.done)
+        if d.depth > 1 and not d.done and only_said(node):
+            # "make sure there is a cup in each office": nothing is done there, so it was no remark.
+            words = d.words(node.start, node.end)
+            raise NotUnderstood(d.language.phrase("not_understood", part=words))
         if d.depth == 1:
             d.done.extend(summed_at_end(d))
         d.done[:] = exclusive(guard_finds(d, guard_found(speak_codes(d, d.done))))
@@ -71,6 +77,12 @@ def in_order(clause: Node) -> bool:
     """Whether what is done first was also said first: "after greeting her, ask ...", so that the
     two are as one sequence."""
     return clause.parts["earlier"].start < clause.parts["later"].start
+
+
+def only_said(sequence: Node) -> bool:
+    """Whether a sequence does nothing but say how something is."""
+    first = itself(chained(sequence.parts["first"]))
+    return "rest" not in sequence.parts and first.production.means in SAID
 
 
 def chained(part: Leaf | Node) -> Node:

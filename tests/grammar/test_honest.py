@@ -247,3 +247,8 @@ def test_nobody_is_taken_in_the_hand(language: str, sentence: str) -> None:
     refused = understand(sentence, hospital(language), language)
     assert refused.status == "rejected"
     assert refused.message == load_language(language).phrase("unknown_person", name=refused.unclear)
+
+
+def test_a_remark_is_never_all_that_is_done_somewhere() -> None:
+    found = understand("make sure there is a cup in each office", WARD)
+    assert found.status == "rejected" or "cup" in write_program(found.plan)
