@@ -216,10 +216,10 @@ class _Compiler:
         start = closure({0})
         if any(node in finals for node in start):
             raise RuleError(f"the rule <{name}> can be empty")
-        first = len(self.states)
-        known = {start: first}
+        states: list[State] = []
+        known = {start: 0}
         reached_from: dict[int | frozenset[int], int] = {}
-        self.states.append(State({}, (), None))
+        states.append(State({}, (), None))
         todo = [start]
         while todo:
             nodes = todo.pop()
@@ -236,8 +236,8 @@ class _Compiler:
                 if state is None:
                     target = closure(targets)
                     if target not in known:
-                        known[target] = len(self.states)
-                        self.states.append(State({}, (), None))
+                        known[target] = len(states)
+                        states.append(State({}, (), None))
                         todo.append(target)
                     state = reached_from[key] = known[target]
                 if isinstance(symbol, str):
@@ -245,10 +245,29 @@ class _Compiler:
                 else:
                     calls.append((*symbol, state))
             reached = [finals[node] for node in nodes if node in finals]
-            self.states[known[nodes]] = State(
-                words, tuple(calls), min(reached) if reached else None
-            )
-        return first
+            states[known[nodes]] = State(words, tuple(calls), min(reached) if reached else None)
+        return self._shared(states)
+
+    def _shared(self, states: list[State]) -> int:
+        """Keep the states of a rule, those from which the same can follow as one: templates share
+        their endings as they share their beginnings. No rule leads back to a state of its own, so
+        that each is looked at after all that follow it. Returns the first one's number."""
+        numbers: dict[int, int] = {}
+        same: dict[Any, int] = {}
+
+        def keep(at: int) -> int:
+            if at not in numbers:
+                old = states[at]
+                words = {word: keep(following) for word, following in old.words.items()}
+                calls = tuple((callee, name, keep(then)) for callee, name, then in old.calls)
+                key = (frozenset(words.items()), frozenset(calls), old.final)
+                if key not in same:
+                    same[key] = len(self.states)
+                    self.states.append(State(words, calls, old.final))
+                numbers[at] = same[key]
+            return numbers[at]
+
+        return keep(0)
 
     # --- all rules
 

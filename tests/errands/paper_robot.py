@@ -105,6 +105,7 @@ class PaperRobot:
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
         self.place = START
+        self.operator_at = START
         self.people_at = dict(scene.people)
         self.things = list(scene.things)
         self.held: list[str] = []
@@ -223,7 +224,7 @@ class PaperRobot:
     def say(self, text: object, language: str | None = None) -> None:
         here = self._people_here()
         whom = self.partner if self.partner in here else here[0] if here else ""
-        self._event("says", text, whom or (OPERATOR if self.place == START else ""))
+        self._event("says", text, whom or (OPERATOR if self.place == self.operator_at else ""))
 
     def ask(
         self, question: object, options: Sequence[str] | None = None, person: str | None = None
@@ -252,7 +253,7 @@ class PaperRobot:
         if here:
             self.partner = (unmet or here)[0]
             return self.partner
-        if self.place == START:
+        if self.place == self.operator_at:
             return OPERATOR
         raise Failed(f"{person or 'Nobody'} is not here.")
 
@@ -312,7 +313,9 @@ class PaperRobot:
     def guide(self, person: str, place: object) -> None:
         whom = self._one(person)
         self.place = str(place)
-        if whom != OPERATOR:
+        if whom == OPERATOR:
+            self.operator_at = self.place
+        else:
             self.people_at[whom] = self.place
         self.partner = whom
         self._event("guides", whom, whom)
