@@ -143,6 +143,8 @@ class Discourse:
     """What was asked so far (`grammar.meanings.surveys.Survey`)."""
     pending: Steps = field(default_factory=list)
     """Steps that a condition needs before it can be checked."""
+    visitor: Thing | None = None
+    """Somebody nobody knows who was met or waited for: "they", told to somebody by name."""
     met: Meeting | None = None
     """Who or what the last condition was about."""
     missing: Thing | None = None

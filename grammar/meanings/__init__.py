@@ -29,6 +29,7 @@ import grammar.meanings.places
 import grammar.meanings.questions
 import grammar.meanings.references
 import grammar.meanings.remarks
+import grammar.meanings.repeating
 import grammar.meanings.reports
 import grammar.meanings.requests
 import grammar.meanings.rounds
@@ -36,6 +37,7 @@ import grammar.meanings.sights
 import grammar.meanings.speaking
 import grammar.meanings.surveys
 import grammar.meanings.things
+import grammar.meanings.visiting
 import grammar.meanings.volunteers
 import grammar.meanings.waiting  # noqa: F401 (each enters its meanings)
 from grammar.meanings.registry import MEANINGS

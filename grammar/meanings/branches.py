@@ -298,6 +298,8 @@ def meet_there(d: Discourse, met: Meeting | None) -> None:
     if thing.person:
         d.person, d.thing_last = thing, False
         d.with_person = thing.value if met.holds else None
+        if met.holds and not thing.known:
+            d.visitor = thing
     else:
         d.thing, d.thing_last = thing, True
 

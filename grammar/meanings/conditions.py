@@ -26,7 +26,7 @@ from grammar.meanings.finding import noun_of
 from grammar.meanings.news import counted as counted_answers
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
-from grammar.meanings.searches import just_looked_for, searches
+from grammar.meanings.searches import just_awaited, just_looked_for, searches
 from grammar.meanings.surveys import Survey, asked_before, in_loop, replacing
 from grammar.plan import (
     Ask,
@@ -170,7 +170,7 @@ def is_there(d: Discourse, thing: Thing, search: bool = False) -> Condition:
         agreed = just_agreed(d)
         if agreed is not None:
             return agreed
-    known = just_looked_for(d, thing) or just_checked(d, thing)
+    known = just_looked_for(d, thing) or just_awaited(d, thing) or just_checked(d, thing)
     if known is None:
         elsewhere = thing.place is not None and thing.place != d.at
         arguments: dict[str, Value] = {"thing": sought(d, thing)}

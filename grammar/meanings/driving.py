@@ -34,9 +34,22 @@ def go_to(d: Discourse, node: Node) -> Steps:
     spot: Where = d.get(node, "spot") or Where(d.get(node, "place"))
     if spot.place is None:
         return look_for(d, Thing(Text(str(spot.furniture))))
-    d.went(spot.place)
+    place = spot.place
+    if "place" in node.parts and place == d.at and d.done:
+        place = place_before(d)  # "take them there, then go back there": to where you were
+    d.went(place)
     d.at_furniture = spot.furniture
-    return [Call("goto", {"place": spot.place})]
+    return [Call("goto", {"place": place})]
+
+
+def place_before(d: Discourse) -> Value:
+    """Where the robot was before it came to where it is."""
+    places = [
+        each.arguments["place"]
+        for each in nodes(tuple(d.done))
+        if isinstance(each, Call) and each.method in ("goto", "guide") and "place" in each.arguments
+    ]
+    return next((place for place in reversed(places) if place != d.at), None) or d.start()
 
 
 @meaning("find_furniture")
@@ -285,6 +298,7 @@ def wait_for(d: Discourse, node: Node) -> Steps:
     if thing.person:
         d.person = d.person or thing
         d.with_person = thing.value
+        d.visitor = d.visitor if thing.known else thing
     if thing.count is not None:
         return [*steps, Repeat(Number(thing.count), (Call("wait_for", arguments),))]
     return [*steps, Call("wait_for", arguments)]

@@ -11,7 +11,6 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Meeting, NotUnderstood, Steps, Thing, as_value
 from grammar.meanings.branches import meet_there
 from grammar.meanings.conditions import FULL_HOUR, condition_of
-from grammar.meanings.control import guard_finds
 from grammar.meanings.finding import go, look_for, noun_of
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
@@ -34,13 +33,11 @@ from grammar.plan import (
     Recall,
     Remember,
     Repeat,
-    RepeatUntil,
-    Step,
     Text,
     Value,
     While,
 )
-from grammar.tidy import mentions, nodes, replaced
+from grammar.tidy import mentions, nodes
 
 HOLDS: Final = frozenset({"goto", "dock", "show", "emotion", "wait"})
 """Methods after which something goes on by itself: "stay in the lobby until noon"."""
@@ -129,9 +126,22 @@ def while_(d: Discourse, node: Node) -> Steps:
 
 @meaning("repeat")
 def repeat(d: Discourse, node: Node) -> Steps:
-    times = d.get(node, "times")
-    body = d.build(node.parts["steps"])
-    return [Repeat(as_value(times), tuple(body))]
+    return so_often(d, node.parts["times"], lambda: one_round(d.build(node.parts["steps"])))
+
+
+def so_often(d: Discourse, times: Leaf | Node, make: Callable[[], Steps]) -> Steps:
+    """Steps a number of times; told by the people they are for, each time with the next of them:
+    "until you have greeted five people"."""
+    number = as_value(d.build(times))
+    people = isinstance(times, Node) and times.production.fixed.get("people", False)
+    if not people:
+        return [Repeat(number, tuple(make()))]
+    assert isinstance(times, Node)
+    body = each_who_comes(d, make)
+    if stays(body):  # "stay in the lobby until five visitors have come"
+        coming = Call("wait_for", {"thing": as_value(d.get(times, "kind", ANYONE))})
+        return [*held(body), Repeat(number, (coming,))]
+    return there_first([Repeat(number, tuple(body))])
 
 
 @meaning("at_intervals")
@@ -184,20 +194,6 @@ def between_times(d: Discourse, node: Node) -> Steps:
     return [*wait_until(first), *done_until(d, body, [], last)]
 
 
-@meaning("only_if")
-def only_if(d: Discourse, node: Node) -> Steps:
-    """ "do that only if she is awake": all that was said before."""
-    before = all_before(d)
-    looking, condition = condition_of(d, node)
-    return [*looking, If(condition, before)]
-
-
-@meaning("loop_that")
-def loop_that(d: Discourse, node: Node) -> Steps:
-    """ "do that every hour": all that was said before."""
-    return looped(d, d.get(node, "loop"), lambda: list(all_before(d)))
-
-
 @meaning("how_often")
 def how_often(d: Discourse, node: Node) -> Node:
     """At what intervals, and how many times or until when: what it means depends on what is done,
@@ -221,8 +217,7 @@ def looped(d: Discourse, often: Node, build: Callable[[], Steps]) -> Steps:
         looking, condition = condition_of(d, often)
         return done_until(d, _paced(d, often, body), looking, condition)
     if "times" in often.parts:
-        body = make()
-        return [Repeat(as_value(d.get(often, "times")), tuple(_paced(d, often, body)))]
+        return so_often(d, often.parts["times"], lambda: _paced(d, often, make()))
     if "lasting" in often.parts:
         return _lasting(d, often, make)
     body = each_who_comes(d, make, at_once="pause" in often.parts)
@@ -297,65 +292,6 @@ def forever(d: Discourse, node: Node) -> Steps:
     return there_first([Forever(tuple(body))])
 
 
-# --- all that was said before
-
-
-def all_before(d: Discourse) -> tuple[Step, ...]:
-    """The steps so far, which "do that ..." speaks of; they are taken out of the sequence."""
-    if not d.done:
-        raise NotUnderstood(d.language.phrase("repeat_what"))
-    before = tuple(guard_finds(d, d.done))
-    d.done.clear()
-    return before
-
-
-@meaning("do_that_times")
-def do_that_times(d: Discourse, node: Node) -> Steps:
-    """ "do that three times": all that was said before, so often in all."""
-    return [Repeat(as_value(d.get(node, "times")), all_before(d))]
-
-
-@meaning("do_that_more")
-def do_that_more(d: Discourse, node: Node) -> Steps:
-    """ "do that three more times": once it was said to be done already."""
-    return [Repeat(Number(int(d.get(node, "times")) + 1), all_before(d))]
-
-
-@meaning("do_that_again")
-def do_that_again(d: Discourse, node: Node) -> Steps:
-    """ "and again", "repeat that": once more."""
-    return [Repeat(as_value(d.get(node, "times", 2)), all_before(d))]
-
-
-@meaning("do_that_until")
-def do_that_until(d: Discourse, node: Node) -> Steps:
-    looking, condition = condition_of(d, node)
-    return [RepeatUntil(condition, (*all_before(d), *looking))]
-
-
-@meaning("do_that_while")
-def do_that_while(d: Discourse, node: Node) -> Steps:
-    looking, condition = condition_of(d, node)
-    return [*looking, While(condition, (*all_before(d), *looking))]
-
-
-@meaning("do_that_forever")
-def do_that_forever(d: Discourse, node: Node) -> Steps:
-    return [Forever(all_before(d))]
-
-
-@meaning("same_for")
-def same_for(d: Discourse, node: Node) -> Steps:
-    """ "do the same for Bob": the steps before, with Bob in the place of the person before."""
-    if d.person is None or not d.done:
-        raise NotUnderstood(d.language.phrase("repeat_what"))
-    old = d.person.value
-    person: Thing = d.get(node, "person_ref")
-    if person.group is not None or not person.known:
-        raise NotUnderstood(d.language.phrase("one_person"))
-    return [replaced(step, old, person.value) for step in d.done]
-
-
 # --- for each
 
 
@@ -394,30 +330,6 @@ def each_place(d: Discourse, items: Value, steps: Leaf | Node | None, goes: bool
     d.at = None if body else before
     d.with_person = None
     return told_after_round(d, ForEach(variable, items, tuple(body)))
-
-
-@meaning("same_at")
-def same_at(d: Discourse, node: Node) -> Steps:
-    """ "do the same in the kitchen", "do that for every office, too": the steps before, with the
-    place that they are about changed."""
-    kinds = d.get(node, "kinds")
-    steps = d.done[:]
-    old = next((each for each in reversed([*nodes(tuple(steps))]) if _is_place(d, each)), None)
-    if not steps or old is None:
-        raise NotUnderstood(d.language.phrase("repeat_what"))
-    assert isinstance(old, Text)
-    if kinds is None:
-        place: Value = d.get(node, "place")
-        d.went(place)
-        return [replaced(step, old, place) for step in steps]
-    variable = d.variable("place")
-    d.at = d.with_person = None
-    body = tuple(replaced(step, old, Recall(variable)) for step in steps)
-    return [ForEach(variable, kind_places(d, kinds), body)]
-
-
-def _is_place(d: Discourse, value: object) -> bool:
-    return isinstance(value, Text) and any(value.value == each.name for each in d.lexicon.places)
 
 
 @meaning("for_each_of_them")

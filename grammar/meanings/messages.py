@@ -228,10 +228,12 @@ def _before_verb(d: Discourse, at: int, end: int, data: Mapping[str, Any]) -> bo
 
 
 def _of_others(d: Discourse, person: Thing, word: str, data: Mapping[str, Any]) -> bool:
-    """Whether a pronoun stands for several who were asked before: "tell Alice that they agree"."""
+    """Whether a pronoun stands for several who were asked before, or somebody whom nobody knows:
+    "tell Alice that they agree", "wait for a visitor and tell Alice that they are here"."""
     several = word in data.get("plural", ())
     alone = person.known and person.group is None and not person.plural
-    return several and alone and any(isinstance(each.who, Recall) for each in d.surveys)
+    others = d.visitor is not None or any(isinstance(each.who, Recall) for each in d.surveys)
+    return several and alone and others
 
 
 def _is_somebody(d: Discourse, token: Token, data: Mapping[str, Any]) -> bool:

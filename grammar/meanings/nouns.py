@@ -402,6 +402,9 @@ def person_pronoun(d: Discourse, node: Node) -> Thing:
         other = d.last_named  # "ask Bob if he is free; if so, tell Alice, if not, tell her ..."
         if other is not None and d.may_be(other, node.start, node.end):
             return replace(other, here=d.with_person == other.value)
+    host = None if d.is_plural(node) else owner_gone_to(d)
+    if host is not None:
+        return host
     if d.person is not None:
         d.called_so(d.person, node.start, node.end)
         met = d.person.here or d.with_person == d.person.value
@@ -413,6 +416,16 @@ def person_pronoun(d: Discourse, node: Node) -> Thing:
     if d.last_named is not None and d.with_person is None and not d.is_plural(node):
         return d.last_named  # somebody named in the other branch
     return Thing(d.with_person or Text(ANYONE), person=True, here=True)
+
+
+def owner_gone_to(d: Discourse) -> Thing | None:
+    """Whoever's office the robot has gone to, where it has left somebody it does not know: "ask the
+    visitor ..., go to Alice's office and tell her ..."."""
+    left = d.person is not None and not d.person.known and d.with_person is None
+    if not left or d.at is None or d.at != d.place:
+        return None
+    owner = owner_of(d)
+    return None if owner is None else Thing(owner, known=True, person=True, here=True)
 
 
 @meaning("person_group")

@@ -105,8 +105,26 @@ def fetch_person(d: Discourse, node: Node) -> Steps:
     source: Where | None = d.get(node, "source")
     if source is not None and source.place is not None:
         thing = replace(thing, place=source.place, here=False)
+    place = d.place
+    also = led_before(d) if node.production.fixed.get("too") else None
+    steps = meet(d, replace(thing, here=False)) or look_for(d, thing)
+    if also is not None:
+        return [*steps, lead(d, thing, also)]
     d.fetched = lead(d, replace(thing, here=False), d.start())
-    return [*(meet(d, replace(thing, here=False)) or look_for(d, thing)), d.fetched]
+    d.place = place  # "take Alice to room 3, then get Bob and bring him there, too"
+    return [*steps, d.fetched]
+
+
+def led_before(d: Discourse) -> Value | None:
+    """Where somebody was led last: "take Alice to room 3, then fetch Bob, too"."""
+    led = [
+        each
+        for each in nodes(tuple(d.done))
+        if isinstance(each, Call)
+        and each.method == "guide"
+        and each.arguments["place"] != d.start()
+    ]
+    return led[-1].arguments["place"] if led else None
 
 
 @meaning("guide_nowhere")

@@ -116,6 +116,14 @@ def place_there(d: Discourse, node: Node) -> Value:
     return d.place
 
 
+@meaning("place_answered")
+def place_answered(d: Discourse, node: Node) -> Value:
+    """ "the place they chose": what was answered last, if that was where somebody wants to go."""
+    if d.answer is None or d.place != Recall(d.answer):
+        raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
+    return d.place
+
+
 def before_fetching(d: Discourse, node: Node) -> Value:
     """ "If there is none in the lab, get one from the store and bring it there": to where it was
     looked for in vain, or where the robot was sent, not to whoever speaks."""

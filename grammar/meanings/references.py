@@ -64,6 +64,7 @@ def nouns_of(d: Discourse, question: Node, options: tuple[str, ...]) -> frozense
         found.update(names.get(word, ()))
     if "wh" in question.parts and len(said) > 1 and said[-1] not in d.language.closed:
         found.add(singular(said[-1], d.language))
+    found.update(question.production.fixed.get("called", ()))
     for part in (question.parts.get("noun"), _asked_for(d, question)):
         if part is not None:
             found.add(singular(d.norms(part.start, part.end)[-1], d.language))

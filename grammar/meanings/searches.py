@@ -73,3 +73,15 @@ def just_looked_for(d: Discourse, thing: Thing | None) -> Condition | None:
             return None
     d.done.pop()
     return condition
+
+
+def just_awaited(d: Discourse, thing: Thing) -> Condition | None:
+    """Whether somebody has come in the time that the step before waits for them: "wait five minutes
+    for Bob. If he has not come, ..."."""
+    last = d.done[-1] if d.done else None
+    if not isinstance(last, Call) or last.method != "wait_for" or "timeout" not in last.arguments:
+        return None
+    if last.arguments["thing"] != thing.value or thing.place not in (None, d.at):
+        return None
+    d.done.pop()
+    return Holds(Ask("wait_for", last.arguments))

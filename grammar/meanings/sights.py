@@ -12,6 +12,7 @@ from grammar.meanings.nouns import described
 from grammar.meanings.places import place_called_after, sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report, told_report
+from grammar.meanings.surveys import in_loop
 from grammar.naming import place_called, some, the
 from grammar.plan import Ask, Call, Holds, If, Recall, Remember, Text, Value
 from grammar.wordforms import plural, singular
@@ -21,6 +22,9 @@ from grammar.wordforms import plural, singular
 def names_here(d: Discourse, node: Node) -> Report:
     """ "who is in the lobby?", "the name of the person in the kitchen"."""
     person: Thing | None = d.get(node, "person_ref")
+    come = None if person is not None or "mods" in node.parts else who_has_come(d)
+    if come is not None:
+        return come
     if person is None:
         person = described(d, ANYONE, node)
         d.person = Thing(Text(ANYONE), person.place, person=True, here=True)
@@ -33,6 +37,36 @@ def names_here(d: Discourse, node: Node) -> Report:
     elif person.here or d.with_person == person.value:  # wherever that is by now
         person = replace(person, place=None)
     return Report("people_seen", Ask("people"), person.place, name="names")
+
+
+@meaning("who_came")
+def who_came(d: Discourse, node: Node) -> Report:
+    """ "who has come"."""
+    come = who_has_come(d)
+    if come is None:
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("not_understood", part=words))
+    return come
+
+
+def who_has_come(d: Discourse) -> Report | None:
+    """Whoever was met: by the name they gave, or as a visitor."""
+    if d.visitor is None:
+        return None
+    survey = survey_named_so(d, "name")
+    if survey is not None:
+        return Report("is_here", Recall(survey), about_here=False, name="name")
+    words = (("thing", some(d.called(d.visitor.text), d.language)),)
+    return Report("somebody_here", words=words, about_here=False)
+
+
+def survey_named_so(d: Discourse, noun: str) -> str | None:
+    """The variable with the one answer to a question for a name."""
+    for survey in reversed(d.surveys):
+        if noun in survey.nouns and survey.call.save_as and not in_loop(d, survey.call):
+            name: str = survey.call.save_as
+            return name
+    return None
 
 
 @meaning("seen_here")

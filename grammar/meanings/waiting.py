@@ -10,7 +10,7 @@ import msgspec
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.inference import takes_time
-from grammar.meanings.branches import claim_of, meet_there
+from grammar.meanings.branches import claim_of, if_, meet_there
 from grammar.meanings.conditions import condition_of, negated
 from grammar.meanings.deliveries import inside
 from grammar.meanings.finding import speak_to
@@ -44,6 +44,9 @@ LOOK_EVERY: Final = 10
 @meaning("when")
 def when(d: Discourse, node: Node) -> Steps:
     """ "when somebody comes, ...": wait for it, then do it; "whenever": again and again."""
+    if waited_in_time(d) and not node.production.fixed.get("always"):
+        whether: Steps = if_(d, node)
+        return whether
     named_before(d, node)
     person = d.person
     before, condition = condition_of(d, node)
@@ -55,6 +58,13 @@ def when(d: Discourse, node: Node) -> Steps:
     if node.production.fixed.get("always"):
         return each_time(before, condition, body)
     return [*awaited(before, condition), *body]
+
+
+def waited_in_time(d: Discourse) -> bool:
+    """Whether the step before waits only for some time: "wait five minutes for Bob. If he comes,
+    ..." asks then whether he did."""
+    last = d.done[-1] if d.done else None
+    return isinstance(last, Call) and _waits(last) and "timeout" in last.arguments
 
 
 def each_time(before: Steps, condition: Condition, body: Steps) -> Steps:

@@ -1,0 +1,159 @@
+"""What is said of all that was said before: "do that again", "the same for Bob", "stop at noon"."""
+
+from __future__ import annotations
+
+from grammar.chart import Node
+from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, as_value
+from grammar.meanings.conditions import condition_of
+from grammar.meanings.control import guard_finds
+from grammar.meanings.loops import looped, one_round
+from grammar.meanings.places import kind_places
+from grammar.meanings.registry import meaning
+from grammar.meanings.waiting import awaited
+from grammar.plan import (
+    Ask,
+    Call,
+    ForEach,
+    Forever,
+    If,
+    Number,
+    Recall,
+    Repeat,
+    RepeatUntil,
+    Step,
+    Text,
+    Value,
+    While,
+)
+from grammar.tidy import nodes, replaced
+
+
+def all_before(d: Discourse, *, keep: bool = False) -> tuple[Step, ...]:
+    """The steps so far, which "do that ..." speaks of; they are taken out of the sequence, unless
+    they are done besides."""
+    if not d.done:
+        raise NotUnderstood(d.language.phrase("repeat_what"))
+    before = tuple(one_round(guard_finds(d, d.done)))
+    if not keep:
+        d.done.clear()
+    return before
+
+
+@meaning("ended")
+def ended(d: Discourse, node: Node) -> Steps:
+    """ "stop at noon", "stop after the third visitor": the end of what goes on, or as often as all
+    that was said before is done; of anything else, a stop when it is so far."""
+    often: Node = d.get(node, "loop")
+    last = d.done[-1] if d.done else None
+    if isinstance(last, Forever):
+        d.done.pop()
+        return looped(d, often, lambda: list(last.steps))
+    if "times" in often.parts:
+        return looped(d, often, lambda: list(all_before(d)))
+    looking, condition = condition_of(d, often)
+    return [*awaited(looking, condition), Call("stop")]
+
+
+@meaning("do_that_times")
+def do_that_times(d: Discourse, node: Node) -> Steps:
+    """ "do that three times": all that was said before, so often in all."""
+    return [Repeat(as_value(d.get(node, "times")), all_before(d))]
+
+
+@meaning("do_that_more")
+def do_that_more(d: Discourse, node: Node) -> Steps:
+    """ "do that three more times": once it was said to be done already."""
+    return [Repeat(Number(int(d.get(node, "times")) + 1), all_before(d))]
+
+
+@meaning("do_that_again")
+def do_that_again(d: Discourse, node: Node) -> Steps:
+    """ "and again", "repeat that": once more."""
+    return [Repeat(as_value(d.get(node, "times", 2)), all_before(d))]
+
+
+@meaning("do_that_until")
+def do_that_until(d: Discourse, node: Node) -> Steps:
+    looking, condition = condition_of(d, node)
+    return [RepeatUntil(condition, (*all_before(d), *looking))]
+
+
+@meaning("do_that_while")
+def do_that_while(d: Discourse, node: Node) -> Steps:
+    looking, condition = condition_of(d, node)
+    return [*looking, While(condition, (*all_before(d), *looking))]
+
+
+@meaning("do_that_forever")
+def do_that_forever(d: Discourse, node: Node) -> Steps:
+    return [Forever(all_before(d))]
+
+
+@meaning("same_for")
+def same_for(d: Discourse, node: Node) -> Steps:
+    """ "do the same for Bob": the steps before, with Bob in the place of the person before, and
+    what is his in the place of what was theirs; "for the next two visitors": that often more."""
+    if not d.done:
+        raise NotUnderstood(d.language.phrase("repeat_what"))
+    before = d.person
+    person: Thing = d.get(node, "person_ref")
+    if person.count is not None:
+        return [Repeat(Number(person.count), all_before(d, keep=True))]
+    if before is None or person.group is not None or not person.known:
+        raise NotUnderstood(d.language.phrase("one_person"))
+    steps = [replaced(step, before.value, person.value) for step in d.done]
+    lost = unknown_places(d, steps)
+    if lost:
+        raise NotUnderstood(d.language.phrase("unknown_place", name=lost[0]))
+    d.with_person = person.value if d.with_person == before.value else d.with_person
+    return steps
+
+
+def unknown_places(d: Discourse, steps: Steps) -> list[str]:
+    """Places of somebody that there are none of: "Bob's office", where only Alice has one."""
+    known = {each.name for each in d.lexicon.places}
+    return [
+        place.value
+        for each in nodes(tuple(steps))
+        if isinstance(each, Call | Ask)
+        and isinstance(place := each.arguments.get("place"), Text)
+        and place.value not in known
+    ]
+
+
+@meaning("only_if")
+def only_if(d: Discourse, node: Node) -> Steps:
+    """ "do that only if she is awake": all that was said before."""
+    before = all_before(d)
+    looking, condition = condition_of(d, node)
+    return [*looking, If(condition, before)]
+
+
+@meaning("loop_that")
+def loop_that(d: Discourse, node: Node) -> Steps:
+    """ "do that every hour": all that was said before."""
+    return looped(d, d.get(node, "loop"), lambda: list(all_before(d)))
+
+
+@meaning("same_at")
+def same_at(d: Discourse, node: Node) -> Steps:
+    """ "do the same in the kitchen", "do that for every office, too": the steps before, with the
+    place that they are about changed."""
+    kinds = d.get(node, "kinds")
+    steps = d.done[:]
+    old = next((each for each in reversed([*nodes(tuple(steps))]) if _is_place(d, each)), None)
+    if not steps or old is None:
+        raise NotUnderstood(d.language.phrase("repeat_what"))
+    assert isinstance(old, Text)
+    if kinds is None:
+        place: Value = d.get(node, "place")
+        d.went(place)
+        return [replaced(step, old, place) for step in steps]
+    variable = d.variable("place")
+    d.at = d.with_person = None
+    body = tuple(replaced(step, old, Recall(variable)) for step in steps)
+    return [ForEach(variable, kind_places(d, kinds), body)]
+
+
+def _is_place(d: Discourse, value: object) -> bool:
+    return isinstance(value, Text) and any(value.value == each.name for each in d.lexicon.places)

@@ -1,0 +1,103 @@
+"""Visitors: sent somewhere, or led to somebody of whom only they can tell who it is.
+
+"Ask who they want to see and take them to that person's office": the question then offers the names
+of those who have an office, and the answer is a part of the name of the place.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import replace
+from typing import Final
+
+import msgspec
+
+from grammar.chart import Node
+from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, Where
+from grammar.meanings.finding import speak_to
+from grammar.meanings.questions import ask
+from grammar.meanings.references import survey_named
+from grammar.meanings.registry import meaning
+from grammar.meanings.reports import found_out
+from grammar.meanings.sights import names_here
+from grammar.meanings.surveys import Survey, replacing
+from grammar.naming import place_called
+from grammar.plan import Items, Recall, Sentence, Text, Value
+from grammar.tidy import nodes
+
+SOMEBODY: Final = "person"
+"""What an answer is called that tells whom somebody wants to see."""
+
+
+@meaning("send_person")
+def send_person(d: Discourse, node: Node) -> Steps:
+    """ "send her to the reception": tell her to go there."""
+    person: Thing = d.get(node, "person_ref")
+    spot: Where = d.get(node, "spot")
+    if spot.place is None:
+        raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
+    called: Value | str = spot.place
+    if isinstance(spot.place, Text):
+        called = place_called(spot.place.value, d.lexicon, d.language)
+    return speak_to(d, person, [d.say("please_go", place=called)])
+
+
+@meaning("find_name")
+def find_name(d: Discourse, node: Node) -> Steps:
+    """ "find out their name": a visitor is asked; of others it is told who is seen."""
+    if d.visitor is not None:
+        return ask(d, node)
+    return found_out(d, names_here(d, node), None, back=True)
+
+
+@meaning("place_of_answer")
+def place_of_answer(d: Discourse, node: Node) -> Value:
+    """ "that person's office", of whoever was named in an answer."""
+    part = node.parts.get("noun")
+    if part is not None:
+        survey = survey_named(d, part.start, part.end)
+    else:
+        survey = next((each for each in reversed(d.surveys) if SOMEBODY in each.nouns), None)
+    owners, ending = owners_of(d, d.get(node, "kind"))
+    if survey is None or survey.call.save_as is None or not owners:
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(
+            d.language.phrase("not_understood", part=words), gap=(node.start, node.end)
+        )
+    offer(d, survey, owners)
+    if part is not None:
+        d.resolved.update(range(part.start, part.end))
+    d.place = Sentence((Recall(survey.call.save_as), Text(ending)))
+    return d.place
+
+
+def owners_of(d: Discourse, kind: str | None) -> tuple[tuple[str, ...], str]:
+    """Those after whom places of a kind are called, and what their names have behind theirs:
+    "'s office"."""
+    places = d.lexicon.place_kinds.get(kind, ()) if kind else d.lexicon.places
+    endings: dict[str, list[str]] = defaultdict(list)
+    for place in places:
+        for person in d.lexicon.people:
+            if place.name.lower().startswith(person.name.lower() + d.language.speech["possessive"]):
+                endings[place.name[len(person.name) :]].append(person.name)
+    if not endings:
+        return (), ""
+    ending = max(endings, key=lambda each: len(endings[each]))
+    return tuple(endings[ending]), ending
+
+
+def offer(d: Discourse, survey: Survey, names: tuple[str, ...]) -> None:
+    """Let a question that was asked openly be answered with one of some names."""
+    if survey.options:
+        return
+    options = Items(tuple(map(Text, names)))
+    call = msgspec.structs.replace(
+        survey.call, arguments={**survey.call.arguments, "options": options}
+    )
+    if not any(each is survey.call for each in nodes(tuple(d.done))):
+        raise NotUnderstood(d.language.phrase("too_complicated"))
+    d.done[:] = [
+        call if each is survey.call else replacing(each, survey.call, [call]) for each in d.done
+    ]
+    at = d.surveys.index(survey)
+    d.surveys[at] = replace(survey, call=call, options=names)
