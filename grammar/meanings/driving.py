@@ -95,7 +95,11 @@ def look_in(d: Discourse, node: Node) -> Steps:
 @meaning("go_find")
 def go_find(d: Discourse, node: Node) -> Steps:
     """ "go to the kitchen to find the cup"."""
-    going = go_to(d, node)
+    return there_to(d, node, go_to(d, node))
+
+
+def there_to(d: Discourse, node: Node, going: Steps) -> Steps:
+    """The way to somewhere or to somebody, and what is done there."""
     d.done.extend(going)  # what is done there may look at where it was gone to
     then: Steps = d.build(node.parts["then"])
     if d.done[-len(going) :] != going:
@@ -237,7 +241,8 @@ def go_person(d: Discourse, node: Node) -> Steps:
     person: Thing = d.get(node, "person_ref")
     if is_me(person):
         return come_back(d, node)
-    return look_for(d, where_sent(d, person))
+    going = look_for(d, where_sent(d, person))
+    return there_to(d, node, going) if "then" in node.parts else going
 
 
 @meaning("move")

@@ -107,8 +107,11 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
             noun = not clitic and _noun_follows(d, at + 1, end, data)
             possessed = word in data["possessives"] and noun
             impersonal = _begins(d, at, end, data.get("impersonal", ()))
-            before = None if person.me else d.one_before(person, at + number)
-            another = not person.me and _of_another(d, start, at, possessed, data)
+            another = not person.me and (
+                _of_another(d, start, at, possessed, data) or _of_thing(d, start, at, end, data)
+            )
+            named = not (person.me or impersonal or another)
+            before = d.one_before(person, at + number) if named else None
             if before and not possessed and before not in pieces:
                 changed[number] = before
             another = (
@@ -207,6 +210,25 @@ def _of_another(
             gender = d.gender(at, at + 1)
             return gender is None or d.gender_of(token.norm, gender) == gender
     return False
+
+
+def _of_thing(d: Discourse, start: int, at: int, end: int, data: Mapping[str, Any]) -> bool:
+    """Whether the pronoun here may mean a thing that a clause before it is about, by the gender of
+    its article: "la réunion est annulée et elle aura lieu demain"; who must or can do something is
+    somebody."""
+    genders: Mapping[str, str] = data.get("articles", {})
+    gender = d.gender(at, at + 1)
+    verb = next((each for each in d.norms(at + 1, end) if each not in data["between"]), "")
+    if gender is None or verb in data.get("duties", ()):
+        return False
+    begins = [start]
+    for position in range(start, at):
+        word = d.tokens[position].norm
+        if position == begins[-1] and word in data["clause_joins"]:
+            begins[-1] = position + 1  # "qu'il ..."
+        elif word == COMMA or word in data["clause_joins"]:
+            begins.append(position + 1)
+    return any(genders.get(d.tokens[each].norm) == gender for each in begins if each < at)
 
 
 def _before_verb(d: Discourse, at: int, end: int, data: Mapping[str, Any]) -> bool:

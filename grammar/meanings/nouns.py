@@ -301,6 +301,13 @@ def thing_something(d: Discourse, node: Node) -> Thing:
 
 @meaning("thing_it")
 def thing_it(d: Discourse, node: Node) -> Thing:
+    """ "it"; where a language has one word for things and people, whatever was spoken of last."""
+    person = d.person
+    if node.production.fixed.get("or_whom") and person is not None and not d.thing_last:
+        genders = d.language.speech.get("object_genders", {})
+        gender = genders.get(d.tokens[node.start].norm)
+        if gender is None or d.gender_of(person.text, gender) == gender:
+            return person_pronoun(d, node)
     if d.thing is not None:
         if d.thing.several and not d.is_plural(node):  # "bring one of them"
             return replace(d.thing, count=None, every=False, pronoun=True)

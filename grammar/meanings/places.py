@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import Any, Final
 
@@ -53,7 +54,9 @@ def only_taken_apart(d: Discourse, node: Node) -> None:
 
 @meaning("all_places")
 def all_places(d: Discourse, node: Node) -> Value:
-    """ "every office but Bob's", "the other labs", "the first two wards"."""
+    """ "every office but Bob's", "the other labs", "the first two wards", "offices 1 to 4"."""
+    if "place" in node.parts:  # "the kitchen and the lounge"
+        return Items((d.get(node, "place"), *d.get(node, "place_list")))
     kind: str | None = d.get(node, "kind") or d.get(node, "kinds")
     fixed = node.production.fixed
     but: list[Value | None] = [d.get(node, "but"), *(d.get(node, "place_list") or [])]
@@ -66,6 +69,8 @@ def all_places(d: Discourse, node: Node) -> Value:
             raise NotUnderstood(d.language.phrase("which_places"))
         del left[position]
         return Items(tuple(Text(each.name) for each in left))
+    if "last" in node.parts:
+        return numbered(d, str(kind), range(int(d.get(node, "first")), int(d.get(node, "last")) + 1))
     if but == [None] and number is None and not fixed.get("other"):
         return kind_places(d, kind)
     if fixed.get("other"):
@@ -82,22 +87,29 @@ def all_places(d: Discourse, node: Node) -> Value:
     return Items(tuple(names))
 
 
+def numbered(d: Discourse, kind: str, numbers: range) -> Value:
+    """The places of a kind whose names end with some numbers."""
+    ends = {place.name.split()[-1]: place.name for place in d.lexicon.place_kinds[kind]}
+    if not numbers or any(str(number) not in ends for number in numbers):
+        raise NotUnderstood(d.language.phrase("which_places"))
+    return Items(tuple(Text(ends[str(number)]) for number in numbers))
+
+
 @meaning("place_own")
 def place_own(d: Discourse, node: Node) -> Value:
     """ "his office", after Bob: Bob's office; of nobody by name, the only office there is."""
     kind = d.get(node, "kind")
-    mark = d.language.speech["possessive"]
     said: Thing | None = d.get(node, "owner")
     who = d.person if said is None else said
     if who is not None and isinstance(who.group, Items):  # for each of them anew
         who = replace(who, value=who.group.items[-1])
-    owner = who.text.lower() if who is not None and who.known else None
+    owner = who.text if who is not None and who.known else None
     places = d.lexicon.place_kinds[kind]
-    own = [each for each in places if owner and each.name.lower().startswith(owner + mark)]
+    own = [each for each in places if owner and is_of(d, each.name, owner)]
     if owner and not own:
-        words = f"{who.text if who else ''}{mark}{kind}"
+        words = d.words(node.start, node.end)
         raise NotUnderstood(
-            d.language.phrase("unknown_place", name=words),
+            d.language.phrase("unknown_place", name=f"{words} ({owner})"),
             tuple(each.name for each in places[:3]),
             (node.start, node.end),
         )
@@ -191,10 +203,7 @@ def place_of_owner(d: Discourse, node: Node) -> Value:
 
 
 def place_called_after(d: Discourse, owner: str, node: Leaf | Node) -> Value:
-    mark = d.language.speech["possessive"]
-    own = [
-        each.name for each in d.lexicon.places if each.name.lower().startswith(owner.lower() + mark)
-    ]
+    own = [each.name for each in d.lexicon.places if is_of(d, each.name, owner)]
     if not own:
         raise unknown_place(d, d.words(node.start, node.end), node)
     if len(own) > 1:
@@ -356,11 +365,18 @@ def kind_places(d: Discourse, kind: str | Value | None) -> Value:
 def owner_of(d: Discourse) -> Text | None:
     """Whose place was spoken of last: Bob, after "Bob's office"."""
     if isinstance(d.place, Text):
-        mark = d.language.speech["possessive"]
         for person in d.lexicon.people:
-            if d.place.value.lower().startswith(person.name.lower() + mark):
+            if is_of(d, d.place.value, person.name):
                 return Text(person.name)
     return None
+
+
+def is_of(d: Discourse, place: str, owner: str) -> bool:
+    """Whether a place is called after somebody: "Bob's office", "bureau de Bob"."""
+    if place.lower().startswith(owner.lower() + d.language.speech["possessive"]):
+        return True
+    forms: list[str] = d.language.speech.get("owned_places", [])
+    return any(re.search(form.format(owner=re.escape(owner)), place, re.I) for form in forms)
 
 
 def listed(d: Discourse, node: Node) -> list[Thing]:
