@@ -327,7 +327,11 @@ class Discourse:
     def may_be(self, person: Thing, start: int, end: int) -> bool:
         """Whether a pronoun may stand for a person, by how that person was spoken of before."""
         gender = self.gender(start, end)
-        return gender is None or self.gender_of(person.text, gender) == gender
+        return gender is None or self.may_have(person, gender)
+
+    def may_have(self, person: Thing, gender: str) -> bool:
+        """Whether a person may be spoken of as a "he" or a "she"."""
+        return self.gender_of(person.text, gender) == gender
 
     def gender_of(self, name: str, otherwise: str = "") -> str:
         """Whether somebody is a "he" or a "she": as was said, or as most of that name are."""

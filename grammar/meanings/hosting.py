@@ -8,7 +8,8 @@ from grammar.chart import Node
 from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, Where
 from grammar.meanings.driving import go_to
 from grammar.meanings.finding import meet, named, speak_to, where_sent
-from grammar.meanings.people import guide, lead, led, speaks_of_things
+from grammar.meanings.nouns import means_thing
+from grammar.meanings.people import guide, lead, led
 from grammar.meanings.registry import meaning
 from grammar.meanings.things import deliver
 from grammar.plan import Call, Text, Value
@@ -35,7 +36,7 @@ def introduce(d: Discourse, node: Node) -> Steps:
 @meaning("guide_to_person")
 def guide_to_person(d: Discourse, node: Node) -> Steps:
     """ "take her to the man in the study": to where he is. Asks for a place that is not said."""
-    things = d.thing_last and speaks_of_things(d, node.parts["person_ref"])
+    things = means_thing(d, node.parts["person_ref"])
     thing = None if things else led(d, node)
     other: Thing = d.get(node, "other")
     if things and d.thing is not None:

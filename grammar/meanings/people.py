@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from grammar.chart import Leaf, Node
+from grammar.chart import Node
 from grammar.discourse import (
     ANYONE,
     Ambiguous,
@@ -16,7 +16,7 @@ from grammar.discourse import (
     as_value,
 )
 from grammar.meanings.finding import look_for, meet, named, speak_to, where_sent
-from grammar.meanings.nouns import is_me
+from grammar.meanings.nouns import is_me, means_thing
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.speaking import spoken
@@ -31,7 +31,7 @@ def guide(d: Discourse, node: Node) -> Steps:
     """Lead a person to a place; go and find them first if they are somebody by name."""
     pronoun = node.parts.get("person_ref")
     carried = not leads_people_only(d, node)
-    if pronoun is not None and carried and d.thing_last and speaks_of_things(d, pronoun):
+    if pronoun is not None and carried and means_thing(d, pronoun):
         return carry_it(d, node)
     thing = led(d, node)
     source: Where | None = d.get(node, "source")
@@ -87,8 +87,7 @@ def lead(d: Discourse, person: Thing, place: Value) -> Call:
 def guide_back(d: Discourse, node: Node) -> Steps:
     """ "bring her back": to where the command was given."""
     pronoun = node.parts.get("person_ref")
-    carried = d.thing_last and not leads_people_only(d, node)
-    if pronoun is not None and carried and speaks_of_things(d, pronoun):
+    if pronoun is not None and not leads_people_only(d, node) and means_thing(d, pronoun):
         return fetch_it(d)
     thing = led(d, node)
     steps = meet(d, thing)
@@ -99,7 +98,7 @@ def guide_back(d: Discourse, node: Node) -> Steps:
 def fetch_person(d: Discourse, node: Node) -> Steps:
     """ "fetch Dr Weber": bring them here; "..., and take them to radiology" is straight there."""
     pronoun = node.parts.get("person_ref")
-    if pronoun is not None and d.thing_last and speaks_of_things(d, pronoun):
+    if pronoun is not None and means_thing(d, pronoun):
         return fetch_it(d)
     thing = led(d, node)
     source: Where | None = d.get(node, "source")
@@ -149,11 +148,6 @@ def guide_nowhere(d: Discourse, node: Node) -> Steps:
             for place in d.lexicon.places
         ),
     )
-
-
-def speaks_of_things(d: Discourse, pronoun: Leaf | Node) -> bool:
-    """Whether a pronoun may stand for things as well as for people: "them"."""
-    return d.norms(pronoun.start, pronoun.end)[-1] in d.language.speech.get("things_too", ())
 
 
 def leads_people_only(d: Discourse, node: Node) -> bool:

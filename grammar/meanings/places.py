@@ -70,7 +70,7 @@ def all_places(d: Discourse, node: Node) -> Value:
         del left[position]
         return Items(tuple(Text(each.name) for each in left))
     if "last" in node.parts:
-        return numbered(d, str(kind), range(int(d.get(node, "first")), int(d.get(node, "last")) + 1))
+        return numbered(d, str(kind), int(d.get(node, "first")), int(d.get(node, "last")))
     if but == [None] and number is None and not fixed.get("other"):
         return kind_places(d, kind)
     if fixed.get("other"):
@@ -87,8 +87,9 @@ def all_places(d: Discourse, node: Node) -> Value:
     return Items(tuple(names))
 
 
-def numbered(d: Discourse, kind: str, numbers: range) -> Value:
+def numbered(d: Discourse, kind: str, first: int, last: int) -> Value:
     """The places of a kind whose names end with some numbers."""
+    numbers = range(first, last + 1)
     ends = {place.name.split()[-1]: place.name for place in d.lexicon.place_kinds[kind]}
     if not numbers or any(str(number) not in ends for number in numbers):
         raise NotUnderstood(d.language.phrase("which_places"))

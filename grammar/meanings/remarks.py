@@ -15,6 +15,7 @@ import msgspec
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, Where, as_value
+from grammar.meanings.nouns import gender_of_thing
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report
 from grammar.meanings.speaking import sentence_form
@@ -36,6 +37,10 @@ def remark(d: Discourse, node: Node) -> Steps:
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
     for name, part in node.parts.items():
         if name in SUBJECTS:
+            verb = d.tokens[part.end].spelled if part.end < node.end else ""
+            if verb in d.language.speech.get("no_verbs", ()):  # "donner à Bob" is no "Bob has"
+                words = d.words(node.start, node.end)
+                raise NotUnderstood(d.language.phrase("not_understood", part=words))
             with contextlib.suppress(NotUnderstood):  # it may speak of what nobody knows
                 d.build(part)
     if not node.production.fixed.get("own"):
@@ -104,6 +109,10 @@ def remark_where(d: Discourse, node: Node) -> Steps:
 def may_be_it(d: Discourse, node: Node) -> bool:
     """Whether the pronoun here may stand for the thing that was spoken of last: "er liegt auf dem
     Tisch", said of a scarf."""
+    gender = d.gender(node.start, node.start + 2)
+    if gender is not None and d.thing is not None and d.person is not None:
+        thing = gender_of_thing(d, d.thing) == gender
+        return thing and not d.may_have(d.person, gender)
     things = set(d.language.speech.get("things_too", ()))
     return d.thing_last and bool(things & set(d.norms(node.start, node.start + 2)))
 

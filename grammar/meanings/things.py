@@ -67,6 +67,8 @@ def find_several(d: Discourse, node: Node, thing: Thing) -> Steps:
 @meaning("grab")
 def grab(d: Discourse, node: Node) -> Steps:
     thing = noun_of(d, node)
+    if isinstance(d.meant_for, Delivery) and not thing.pronoun:  # "if there is no tea, get coffee"
+        return deliver(d, thing, d.meant_for.person, d.meant_for.spot)
     if thing.place is not None and thing.place != d.at:
         fetched = node.production.fixed.get("fetched")
         return deliver(d, thing, None, None) if fetched else pick_up(d, thing)
