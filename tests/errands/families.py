@@ -141,7 +141,7 @@ class Judged:
 def knowledge(world: str) -> Knowledge:
     """A built-in world, or a file of this folder; without its map, for nobody drives there."""
     file = FOLDER / world
-    return Knowledge(load_world(file if file.exists() else world, names_only=True))
+    return Knowledge(load_world(file if file.is_file() else world, names_only=True))
 
 
 def load(file: Path) -> list[Family]:
