@@ -377,7 +377,8 @@ class Slots:
             token = self.tokens[position]
             if token.norm in self._noun_joins and matches:
                 continue  # "glass of water"
-            if token.kind not in ("word", "quote") or token.norm in self.language.closed:
+            closed = token.norm in self.language.closed and not self._noun_after_all(at, position)
+            if token.kind not in ("word", "quote") or closed:
                 break
             if token.value is not None and position == at:
                 break  # a number is no noun
@@ -405,6 +406,17 @@ class Slots:
             base in verbs for base in plain_forms(word[: -len(ending)])
         )
         return doing and followed and before in self.language.speech.get("being", ())
+
+    def _noun_after_all(self, at: int, position: int) -> bool:
+        """Whether a function word is the noun of the same spelling: "the can of soup", but not "the
+        robot can see" and "the cup can you bring"."""
+        not_before = self.language.speech.get("closed_nouns", {}).get(self.tokens[position].norm)
+        if not_before is None or not position:
+            return False
+        after = self.tokens[position + 1] if position + 1 < len(self.tokens) else None
+        ends = after is None or after.kind == "mark" or after.norm in self.language.closed
+        introduced = position > at or self.tokens[position - 1].norm in self._judge.words.definite
+        return introduced and ends and (after is None or after.norm not in not_before)
 
     def _is_look(self, position: int) -> bool:
         """Whether a small letter shows that this is no noun but a word for how things look."""

@@ -172,6 +172,8 @@ def is_there(d: Discourse, thing: Thing, search: bool = False) -> Condition:
             return agreed
     known = just_looked_for(d, thing) or just_awaited(d, thing) or just_checked(d, thing)
     if known is None:
+        if search and thing.place is None and isinstance(d.at, Text):
+            thing = replace(thing, place=d.at)  # "go to the kitchen and if you find a cup, ..."
         elsewhere = thing.place is not None and thing.place != d.at
         arguments: dict[str, Value] = {"thing": sought(d, thing)}
         if thing.place is not None and (elsewhere or search):

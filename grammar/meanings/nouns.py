@@ -182,6 +182,8 @@ def thing(d: Discourse, node: Node) -> Thing:
         one = name if called else singular(name, d.language)  # Jonas is no plural
         known = head.slot in ("object", "furniture")
         one = name if known else one
+        if known and "adjectives" in node.parts and is_short_for(d, words, name):
+            one, known = words, False  # "apple juice" is no orange juice
         many = words not in (one, name) or one != name
         one = instead_of_one(d, node, one)
         if not known and node.end == head.end and is_strange_name(d, node.start, node.end):
@@ -202,6 +204,11 @@ def thing(d: Discourse, node: Node) -> Thing:
     )
     d.thing, d.thing_last = found, True
     return found
+
+
+def is_short_for(d: Discourse, words: str, name: str) -> bool:
+    """Whether a name is called by its last words only: "juice" for "orange juice"."""
+    return name != words and name.endswith(f" {singular(words, d.language)}")
 
 
 def is_strange_name(d: Discourse, start: int, end: int) -> bool:

@@ -283,12 +283,26 @@ def _is_numbered(name: str) -> bool:
 @meaning("where")
 def where(d: Discourse, node: Node) -> Where:
     furniture = d.get(node, "furniture")
+    if furniture is not None:
+        furniture = piece_called(d, furniture)
     place = d.get(node, "place_at") or d.get(node, "place")
     if place is None and "beside" in node.parts:  # "the sofa by the window"
         place = home_of(d, d.get(node, "beside"))
     if place is None and furniture:
         place = home_of(d, furniture)
     return Where(place, furniture)
+
+
+def piece_called(d: Discourse, furniture: str) -> str:
+    """The one piece of the world that goes by a word for this furniture: "trash" for its bin; else
+    what any furniture of the kind is called."""
+    words = d.language.lists["furniture"].get(furniture, ())
+    pieces = {
+        piece.name
+        for piece in d.lexicon.furniture
+        if any(d.language.tokens_of(name) in words for name in (piece.name, *piece.aliases))
+    }
+    return furniture if furniture in pieces or len(pieces) != 1 else pieces.pop()
 
 
 @meaning("where_it")

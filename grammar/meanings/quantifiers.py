@@ -159,10 +159,10 @@ def all_of(d: Discourse, part: Node) -> bool:
     head = part.parts.get("head")
     if d.tokens[part.start].norm not in d.language.speech.get("definite", ()) or head is None:
         return False
-    last = d.tokens[head.end - 1].norm
+    said = d.noun_words(head.start, head.end)
     if isinstance(head, Leaf) and head.slot == "object" and said_as_named(d, head):
         return False  # "the chips"
-    if "superlative" in part.parts or singular(last, d.language) == last:
+    if "superlative" in part.parts or singular(said, d.language) == said:
         return False
     before = d.thing, d.thing_last
     thing: Thing = d.build(part)

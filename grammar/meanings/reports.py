@@ -58,15 +58,22 @@ class Report:
     """What it says to be there or not."""
     about_here: bool = True
     """Whether it is about where the robot is, and so has to be found out there."""
+    looked: bool = False
+    """Whether it tells all that there is."""
 
 
 @meaning("report")
 def report(d: Discourse, node: Node) -> Steps:
+    receiver, info = node.parts.get("person_ref"), node.parts["info"]
+    found: Report | Steps | None = None
+    if receiver is not None and info.start < receiver.start:
+        found = d.get(node, "info")  # "their" is not whom it is told to after that
     person: Thing | None = d.get(node, "person_ref")
     person_at: Where | None = d.get(node, "person_at")
     if person is not None and person_at is not None:  # "tell Bob the time in the kitchen"
         person = replace(person, place=person_at.place, here=False)
-    found: Report | Steps = d.get(node, "info")
+    if found is None:
+        found = d.get(node, "info")
     if isinstance(found, list):
         return speak_to(d, person, found)
     fixed = node.production.fixed
@@ -80,7 +87,11 @@ def found_out(d: Discourse, found: Report, person: Thing | None, *, back: bool) 
     asked_by_me = person is None or is_me(person)
     if asked_by_me and found == d.report_asked and d.done and d.done[-1] == d.report_step:
         return []  # "check who is there and tell me their names"
+    if found is d.report_asked and not asked_by_me and d.done and d.done[-1] is d.report_step:
+        return retold(d, person)  # "see what is on the desk and tell Alex what is there"
     d.report_asked = found
+    if asked_by_me:
+        not_yet_back(d, found)
     steps: Steps = []
     if found.place is not None and found.place != d.at:
         d.start()
@@ -115,6 +126,15 @@ def found_out(d: Discourse, found: Report, person: Thing | None, *, back: bool) 
         steps.append(Remember(name, found.value))
         found = replace(found, value=Recall(name))
     return [*steps, *told(d, found, person)]
+
+
+def not_yet_back(d: Discourse, found: Report) -> None:
+    """ "go to the lab, come back and tell me who is there": seen there, and told here."""
+    seen_there = found.about_here and found.value is not None and found.place is None
+    gone = d.done[-2] if len(d.done) > 1 and d.done[-1] == news.BACK else None
+    if seen_there and isinstance(gone, Call) and gone.method == "goto" and gone != news.BACK:
+        d.done.pop()
+        d.went(gone.arguments["place"])
 
 
 def told(d: Discourse, found: Report, person: Thing | None) -> Steps:

@@ -74,6 +74,8 @@ def seen_here(d: Discourse, node: Node) -> Report:
     place = described(d, "", node)
     if place.furniture:
         return things_on(d, place)
+    if place.place is None and isinstance(d.report_asked, Report) and d.report_asked.looked:
+        return d.report_asked  # "see what is on the desk and tell Alex what is there"
     return Report("objects_seen", Ask("objects"), place.place, name="things")
 
 
@@ -90,7 +92,7 @@ def things_on(d: Discourse, place: Thing) -> Report:
         Remember(words, d.sentence("nothing_there", where=where)),
         If(Holds(Ask("sees", {"thing": one})), (look,)),
     )
-    return Report("only", Recall(words), place.place, before=before)
+    return Report("only", Recall(words), place.place, before=before, looked=True)
 
 
 @meaning("kind_seen")

@@ -18,7 +18,7 @@ from grammar.meanings.finding import (
     where_sent,
 )
 from grammar.meanings.nouns import described, is_me, thing_it
-from grammar.meanings.places import home_of, kind_places, place_there, sought
+from grammar.meanings.places import home_of, kind_places, piece_called, place_there, sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.remarks import fetched_there, known_to_be
 from grammar.meanings.reports import Report, found_out
@@ -213,11 +213,10 @@ def handed_there(d: Discourse, thing: Thing, person: Thing) -> Thing:
 @meaning("throw_away")
 def throw_away(d: Discourse, node: Node) -> Steps:
     """ "throw the sponge away": into the bin that the world has."""
-    words = d.language.lists["furniture"].get("bin", ())
-    for piece in d.lexicon.furniture:
-        if any(d.language.tokens_of(name) in words for name in (piece.name, *piece.aliases)):
-            return deliver(d, d.get(node, "thing"), None, Where(home_of(d, piece.name), piece.name))
-    raise NotUnderstood(d.language.phrase("no_bin"))
+    piece = piece_called(d, "bin")
+    if all(each.name != piece for each in d.lexicon.furniture):
+        raise NotUnderstood(d.language.phrase("no_bin"))
+    return deliver(d, d.get(node, "thing"), None, Where(home_of(d, piece), piece))
 
 
 @meaning("cannot_put")
@@ -334,6 +333,8 @@ def statement(d: Discourse, node: Node) -> Steps:
         thing = described(d, thing.text, node)
     if spot is not None:
         thing = replace(thing, place=spot.place, furniture=spot.furniture)
+    if thing.place is None and not thing.known and isinstance(d.at, Text):
+        thing = replace(thing, place=d.at)  # "go to the hall, there is a woman"
     if thing.place is not None:
         d.place = thing.place
         known_to_be(d, thing.value, thing.place)
