@@ -137,6 +137,8 @@ class Discourse:
     """The call that asked several who were found to say the same, and what they said."""
     resolved: set[int] = field(default_factory=set)
     """The tokens of free texts that stand for what is only known when the program runs."""
+    claimed_question: Any = None
+    """The step that answers somebody of whom it was only said that they have a question."""
     code: str | None = None
     heard: str | None = None
     surveys: list[Any] = field(default_factory=list)

@@ -71,11 +71,13 @@ def _in_plain_form(
     data = language.speech.get("gerunds", {"after": (), "joins": (), "ending": "-"})
     after, joins, ending = set(data["after"]), set(data["joins"]), str(data["ending"])
     rooms = data.get("rooms", ())  # "go to meeting room" is about no meeting of a room
+    counted = data.get("counted", ())  # "the number of waving people" are those who wave
     earlier = False
     for at, token in enumerate(tokens):
         before = tokens[at - 1].norm if at else ""
         named = at + 1 < len(tokens) and tokens[at + 1].norm in rooms
-        called_for = before in after or (earlier and before in joins)
+        number = at > 1 and tokens[at - 2].norm in counted
+        called_for = (before in after and not number) or (earlier and before in joins)
         verb = None
         if token.norm.endswith(ending) and called_for and not named:
             verb = next(

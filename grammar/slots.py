@@ -18,6 +18,7 @@ from grammar.names import Names, Trie
 from grammar.numerals import Numerals
 from grammar.slips import plain_forms
 from grammar.tokens import COLON, COMMA, STOP, Token
+from grammar.wordforms import singular
 
 FREE_WORD: Final = 1.0
 """Cost of a word that only an open slot understands."""
@@ -388,11 +389,15 @@ class Slots:
                 break
             if position == at and self._is_doing(at):
                 break
+            before = doubt
             doubt += MISSPELT_NOUN if position in self.corrections else 0.0
             if self._is_look(position):
                 continue  # "der blaue oder der rote Hefter": no noun ends with an adjective
             length = position + 1 - at
-            matches.append((position + 1, FREE_WORD * length + doubt, None))
+            several = singular(token.norm, self.language) in self.language.words  # "snacks"
+            matches.append(
+                (position + 1, FREE_WORD * length + (before if several else doubt), None)
+            )
         named = {end for slot in ("person", "place") for end in self._named(slot, at)}
         return [match for match in matches if match[0] not in named]  # a name is no thing
 

@@ -22,6 +22,7 @@ from grammar.meanings.loops import for_each_of_them, looped
 from grammar.meanings.nouns import is_me
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
+from grammar.meanings.reports import counted_alone, tell_speaker
 from grammar.meanings.searches import search_in
 from grammar.meanings.waiting import wait_until
 from grammar.plan import Ask, Both, Call, Either, Holds, If, Items, Not, Number, Repeat, Text, Value
@@ -231,6 +232,8 @@ def come_back(d: Discourse, node: Node) -> Steps:
     if d.origin is not None and d.at is None and not d.done and not d.in_loop:
         d.went(Text(d.origin))
         return [Call("goto", {"place": Text(d.origin)})]
+    if counted_alone(d):
+        return tell_speaker(d)
     start = d.start()
     d.went(start)
     return [Call("goto", {"place": start})]

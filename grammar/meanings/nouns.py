@@ -391,6 +391,7 @@ def person_kind(d: Discourse, node: Node) -> Thing:
         here=bool(node.production.fixed.get("here")),
         plural=bool(node.production.fixed.get("plural")) or kind_in_plural(d, node),
         every=bool(node.production.fixed.get("plural")),
+        noun=kind,
     )
     for each in d.lexicon.people:  # "the person named Alice" is Alice
         if found.text == f"{kind} named {each.name}":

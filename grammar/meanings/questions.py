@@ -456,6 +456,8 @@ def answer(d: Discourse, node: Node) -> Steps:
     bare = node.production.fixed.get("it") or not node.parts
     if bare and any(each == steps[0] for each in nodes(tuple(d.done[-1:]))):
         return []  # "the girl has a question, answer it"
+    if answered_already(d, node, person):
+        return []
     spot: Where | None = d.get(node, "from") or d.get(node, "where")
     if person is None and spot is None and known is None and d.person is not None:
         elsewhere = d.person.place is not None and d.person.place != d.at and not d.person.plural
@@ -472,7 +474,17 @@ def answer(d: Discourse, node: Node) -> Steps:
             d.went(spot.place)
             return [Call("goto", {"place": spot.place}), *steps]
         return [*steps]
-    return speak_to(d, person, [*steps])
+    speaking = speak_to(d, person, [*steps])
+    d.claimed_question = speaking[-1] if node.production.fixed.get("claimed") else None
+    return speaking
+
+
+def answered_already(d: Discourse, node: Node, person: Thing | None) -> bool:
+    """ "the girl has a question, answer whatever she asks": it is the same."""
+    claimed = d.claimed_question
+    just = claimed is not None and bool(d.done) and d.done[-1] is claimed
+    same = person is None or person.pronoun or (d.person and person.value == d.person.value)
+    return just and not node.production.fixed.get("claimed") and bool(same)
 
 
 @meaning("listen")

@@ -31,6 +31,7 @@ from grammar.plan import (
     Recall,
     Remember,
     Step,
+    Text,
     Truth,
     Value,
 )
@@ -75,11 +76,31 @@ def report(d: Discourse, node: Node) -> Steps:
     if found is None:
         found = d.get(node, "info")
     if isinstance(found, list):
-        return speak_to(d, person, found)
+        return found_for(d, person, found)
     fixed = node.production.fixed
     d.report_open = person is None and bool(fixed.get("open", not fixed.get("to_me")))
     d.report_counts = person is None and bool(fixed.get("counted"))
     return found_out(d, found, person, back=bool(fixed.get("to_me")) or is_me(person))
+
+
+def found_for(d: Discourse, person: Thing | None, found: Steps) -> Steps:
+    """A search whose end is told: to whom it is for, where they are, and not to the speaker."""
+    search = found[-1] if found else None
+    if (
+        person is None
+        or is_me(person)
+        or not isinstance(search, If)
+        or news.BACK not in search.then
+    ):
+        return speak_to(d, person, found)
+
+    def told_there(steps: tuple[Step, ...]) -> tuple[Step, ...]:
+        at = steps.index(news.BACK)
+        d.at = d.with_person = None
+        return (*steps[:at], *speak_to(d, person, list(steps[at + 1 :])))
+
+    then, otherwise = told_there(search.then), told_there(search.otherwise)
+    return [*found[:-1], If(search.condition, then, otherwise)]
 
 
 def found_out(d: Discourse, found: Report, person: Thing | None, *, back: bool) -> Steps:
@@ -185,7 +206,20 @@ def known_words(d: Discourse) -> Steps:
 @meaning("tell_that")
 def tell_that(d: Discourse, node: Node) -> Steps:
     """ "and tell Alice how many there are": what was found out before, told to somebody else."""
-    return told_again(d, d.get(node, "person_ref"))
+    person = d.get(node, "person_ref")
+    if node.production.fixed.get("seen") and looks_around(d):
+        from grammar.meanings.sights import seen_around
+
+        return found_out(d, seen_around(d), person, back=person is None or is_me(person))
+    return told_again(d, person)
+
+
+def looks_around(d: Discourse) -> bool:
+    """Whether the robot is where it was sent to look, and has told nothing of it: "look at the desk
+    and tell Bob what you saw"."""
+    untold = d.report is None and d.answer is None and d.code is None and d.claim is None
+    ways = [each for each in nodes(tuple(d.done)) if isinstance(each, Call)]
+    return untold and isinstance(d.at, Text) and [each.method for each in ways] == ["goto"]
 
 
 def told_again(d: Discourse, person: Thing | None) -> Steps:
@@ -318,12 +352,27 @@ def summed_at_end(d: Discourse) -> Steps:
 
     at = last_round(d)
     found: Report | None = d.report
+    if at is None and counted_alone(d):
+        return tell_speaker(d)
     if at is None or at != len(d.done) - 1 or found is None or not d.report_counts:
         return []
     if found.name != "count" or not any(each is d.report_step for each in nodes(d.done[at])):
         return []
     told = summed_or_said(d, found)
     return [*told.first, *news.go_back(d, []), *told.words]
+
+
+def counted_alone(d: Discourse) -> bool:
+    """Whether the last step is to say a number where nobody is who asked for it: "go to the lab and
+    count the people"."""
+    found: Report | None = d.report
+    counted = found is not None and found.name == "count" and d.report_counts
+    return (
+        counted
+        and bool(d.done)
+        and d.done[-1] is d.report_step
+        and d.at not in (None, Recall(START))
+    )
 
 
 def summed_or_said(d: Discourse, found: Report) -> news.Told:

@@ -79,6 +79,13 @@ def seen_here(d: Discourse, node: Node) -> Report:
     return Report("objects_seen", Ask("objects"), place.place, name="things")
 
 
+def seen_around(d: Discourse) -> Report:
+    """All that is to be seen where the robot is."""
+    if d.at_furniture:
+        return things_on(d, Thing(Text(""), d.at, d.at_furniture))
+    return Report("objects_seen", Ask("objects"), None, name="things", looked=True)
+
+
 def things_on(d: Discourse, place: Thing) -> Report:
     """ "what is on the bed?": all that is on it, or that there is nothing."""
     thing = replace(place, value=Text(d.language.phrase("objects")))
@@ -197,8 +204,9 @@ def counted_info(d: Discourse, node: Node) -> Report:
 def count_report(d: Discourse, thing: Thing) -> Report:
     phrase_words = d.called(thing.text)
     spot = _spot_words(d, thing)
-    noun, _, rest = phrase_words.partition(" ") if thing.person else (phrase_words, "", "")
-    things = f"{plural(noun, d.language)} {rest}".strip()
+    noun = d.called(thing.noun) if thing.person and thing.noun in thing.text else ""
+    noun = noun or (phrase_words.split()[0] if thing.person else phrase_words)
+    things = phrase_words.replace(noun, plural(noun, d.language), 1)
     looked_for = sought(d, thing)
     count = Ask("count", {"thing": looked_for})
     if thing.furniture and isinstance(looked_for, Text):  # "cups on the table"
