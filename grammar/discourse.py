@@ -147,6 +147,9 @@ class Discourse:
     """Steps that a condition needs before it can be checked."""
     visitor: Thing | None = None
     """Somebody nobody knows who was met or waited for: "they", told to somebody by name."""
+    on_duty: str = ""
+    """Whether the robot is to "guard" a place or to "stay" there: "when somebody comes" is then
+    each time, or only "if anybody comes"."""
     met: Meeting | None = None
     """Who or what the last condition was about."""
     missing: Thing | None = None

@@ -304,8 +304,14 @@ class Judge:
             return None  # "welcome to our hospital"
         if greeting and behind < end and self.tokens[behind].norm in words.not_greeting:
             return doubt(behind, "said_or_done")
+        greeted = {
+            at
+            for first in range(start + 1, end)
+            if self.joined(first, start)
+            for at in range(first, first + self.greeting(first))
+        }  # "3, 2, 1, happy new year"
         for at in range(max(behind, start + 1), end):
-            if self.tokens[at].norm in words.manners:
+            if self.tokens[at].norm in words.manners and at not in greeted:
                 return doubt(at, "said_or_done")
         whole = greeting or first in words.verbs or self.begins(words.messages, start)
         if words.clauses and node.means == "say_that" and not whole:

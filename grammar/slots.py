@@ -234,11 +234,13 @@ class Slots:
         cost = ASKED_IN_TEXT if self._judge.asks(at, len(self.tokens)) else 0.0
         if self._judge.given_to(at) or self._never_first(at):
             cost += RECEIVER_IN_TEXT
-        greeted = at + self._judge.complete_greeting(at)
+        greeted = {at + self._judge.complete_greeting(at)} - {at}
         for position in range(at, len(self.tokens)):
             token = self.tokens[position]
-            if position == greeted > at:
+            if position in greeted:
                 cost += BEHIND_GREETING
+            if position > at and self._judge.joined(position, at):  # "3, 2, 1, happy new year"
+                greeted.add(position + self._judge.complete_greeting(position))
             if token.kind == "mark":
                 if position == at:
                     return []

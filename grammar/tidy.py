@@ -62,7 +62,7 @@ def _scoped(steps: tuple[Step, ...], known: frozenset[str]) -> tuple[Step, ...]:
     for step in steps:
         if done and isinstance(done[-1], Forever):
             # What follows a loop without end would never be done: it belongs to each round.
-            done[-1] = _in_each_round(done[-1], step)
+            done[-1] = in_each_round(done[-1], step)
             continue
         done.append(step)
         while (missing := _missing(done[-1], bound[-1])) is not None:
@@ -270,7 +270,7 @@ def replaced(part: Any, old: Value, new: Value) -> Any:
     return part
 
 
-def _in_each_round(loop: Forever, step: Step) -> Forever:
+def in_each_round(loop: Forever, step: Step) -> Forever:
     """A loop without end with one more step: before its pause, and said to somebody who is looked
     for only if they are found: "every two hours look for Bob and ask him how he is"."""
     body = list(loop.steps)

@@ -132,6 +132,9 @@ def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
     said_there = d.tokens[node.end - 1].norm in d.language.speech.get("there", ())
     if said_there and thing.place is None and d.at == Recall(START) and d.place is not None:
         thing = replace(thing, place=d.place)  # the robot has come back from there meanwhile
+    if thing.person and thing.count is not None:  # "five people are there"
+        many = _so_many(d, thing, thing.count, ">=")
+        return negated(many) if node.production.fixed.get("no") else many
     if isinstance(thing.group, Items):
         result = _each_of_them(d, node, thing.group.items, search)
     else:
@@ -263,17 +266,22 @@ def counted(d: Discourse, node: Node) -> Condition:
     spot: Where | None = d.get(node, "where")
     if spot is not None:
         thing = replace(thing, place=spot.place, furniture=spot.furniture)
+    operator = d.get(node, "operator", "==")
+    if operator in ("<", "<=") and not thing.person:  # "..., bring one": for where they are short
+        d.lacking = replace(thing, place=thing.place or d.at)
+    return _so_many(d, thing, int(d.get(node, "count")), operator)
+
+
+def _so_many(d: Discourse, thing: Thing, number: int, operator: str) -> Compare:
+    """Whether there are so many of somebody or something, where the robot has to go for that."""
     if thing.place is not None and thing.place != d.at:
         d.went(thing.place)
         d.pending.append(Call("goto", {"place": thing.place}))
     if thing.person:
+        thing = replace(thing, count=None)
         d.person = replace(thing, plural=True, place=None, here=True)
-    operator = d.get(node, "operator", "==")
-    if operator in ("<", "<=") and not thing.person:  # "..., bring one": for where they are short
-        d.lacking = replace(thing, place=thing.place or d.at)
-    return Compare(
-        Ask("count", {"thing": sought(d, thing)}), operator, Number(int(d.get(node, "count")))
-    )
+        d.last_counted = d.person
+    return Compare(Ask("count", {"thing": sought(d, thing)}), operator, Number(number))
 
 
 def counted_thing(d: Discourse, node: Node) -> Thing:

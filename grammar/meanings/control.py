@@ -12,10 +12,11 @@ from grammar.meanings.finding import go, not_found
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import summed_at_end
 from grammar.meanings.rounds import in_round
+from grammar.meanings.stops import gone_to, said_at_each
 from grammar.meanings.things import goes_on
 from grammar.meanings.volunteers import guard_found
 from grammar.meanings.waiting import until_then
-from grammar.plan import Ask, Call, Holds, If, Not, Recall, Remember, Step, Text, Try, Value
+from grammar.plan import Ask, Call, Holds, If, Items, Not, Recall, Remember, Step, Text, Try, Value
 from grammar.tidy import mentions
 
 NEEDS_IT: Final = frozenset({"grab", "put", "give", "guide", "follow", "describe"})
@@ -34,6 +35,7 @@ def steps(d: Discourse, node: Node) -> Steps:
         each: Node | None = node
         further: list[Node] = []
         joint = "stop"
+        places: Items | None = None
         while each is not None:
             before = len(d.done)
             first = each.parts["first"]
@@ -52,6 +54,8 @@ def steps(d: Discourse, node: Node) -> Steps:
                 continue
             first, beside = side_by_side(d, first)
             d.done.extend(in_branch(d, first) or in_round(d, first))
+            new = d.done[before:]
+            places = gone_to(d, first, new) or said_at_each(d, places, new)
             clauses.append((joint, len(d.done) - before))
             joint = str(each.production.fixed.get("joint", "and"))
             rest, beyond = each.parts.get("rest"), each.parts.get("further")

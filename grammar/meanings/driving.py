@@ -40,6 +40,7 @@ def go_to(d: Discourse, node: Node) -> Steps:
         place = place_before(d)  # "take them there, then go back there": to where you were
     d.went(place)
     d.at_furniture = spot.furniture
+    d.on_duty = str(node.production.fixed.get("duty", ""))
     return [Call("goto", {"place": place})]
 
 
@@ -308,6 +309,8 @@ def wait_for(d: Discourse, node: Node) -> Steps:
         d.with_person = thing.value
         d.visitor = d.visitor if thing.known else thing
     if thing.count is not None:
+        if thing.person:  # they are all here then
+            d.person = d.last_counted = replace(thing, count=None, place=None, here=True)
         return [*steps, Repeat(Number(thing.count), (Call("wait_for", arguments),))]
     return [*steps, Call("wait_for", arguments)]
 

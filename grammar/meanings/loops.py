@@ -37,7 +37,7 @@ from grammar.plan import (
     Value,
     While,
 )
-from grammar.tidy import mentions, nodes
+from grammar.tidy import in_each_round, mentions, nodes
 
 HOLDS: Final = frozenset({"goto", "dock", "show", "emotion", "wait"})
 """Methods after which something goes on by itself: "stay in the lobby until noon"."""
@@ -72,7 +72,7 @@ def until(d: Discourse, node: Node) -> Steps:
 
 def done_until(d: Discourse, body: Steps, looking: Steps, condition: Condition) -> Steps:
     """Steps again and again until something is so; what goes on by itself only until then."""
-    condition = at_least(condition)
+    condition, body = at_least(condition), one_round(body)
     if body == wait_until(condition):  # "wait for me until I am back"
         return [*looking, *body]
     if _only_seeks(body, condition):  # "keep looking for Noah until you find him"
@@ -139,8 +139,9 @@ def so_often(d: Discourse, times: Leaf | Node, make: Callable[[], Steps]) -> Ste
     assert isinstance(times, Node)
     body = each_who_comes(d, make)
     if stays(body):  # "stay in the lobby until five visitors have come"
-        coming = Call("wait_for", {"thing": as_value(d.get(times, "kind", ANYONE))})
-        return [*held(body), Repeat(number, (coming,))]
+        who = Thing(as_value(d.get(times, "kind", ANYONE)), person=True, plural=True, here=True)
+        d.person = d.last_counted = who
+        return [*held(body), Repeat(number, (Call("wait_for", {"thing": who.value}),))]
     return there_first([Repeat(number, tuple(body))])
 
 
@@ -173,6 +174,7 @@ def watched(d: Discourse, node: Node) -> Steps:
     if place is not None:
         going = go(d, place)
         d.looked_in = place
+        d.on_duty = "guard"
         return [*going, *d.build(node.parts["steps"])]
     thing = noun_of(d, node)
     going = []
@@ -210,10 +212,10 @@ def looped(d: Discourse, often: Node, build: Callable[[], Steps]) -> Steps:
     if "while_condition" in often.parts:
         looking, condition = condition_of(d, often, "while_condition")
         meet_there(d, d.met)
-        body = each_who_comes(d, make)
+        body = each_who_comes(d, make, at_once="pause" in often.parts)
         return [*looking, While(condition, (*_paced(d, often, body), *looking))]
     if "condition" in often.parts:
-        body = each_who_comes(d, make)
+        body = each_who_comes(d, make, at_once="pause" in often.parts)
         looking, condition = condition_of(d, often)
         return done_until(d, _paced(d, often, body), looking, condition)
     if "times" in often.parts:
@@ -227,8 +229,15 @@ def looped(d: Discourse, often: Node, build: Callable[[], Steps]) -> Steps:
 def one_round(body: Steps) -> Steps:
     """The steps of one round, where they alone would go on without end: "greet everybody who comes
     in until five"."""
-    last = body[-1] if body else None
-    return [*body[:-1], *last.steps] if isinstance(last, Forever) else body
+    steps: Steps = []
+    for step in body:
+        last = steps[-1] if steps else None
+        if isinstance(last, Forever):  # what follows it belongs to each of its rounds
+            steps[-1] = in_each_round(last, step)
+        else:
+            steps.append(step)
+    last = steps[-1] if steps else None
+    return [*steps[:-1], *last.steps] if isinstance(last, Forever) else steps
 
 
 def _paced(d: Discourse, often: Node, body: Steps) -> Steps:
@@ -244,7 +253,7 @@ def _lasting(d: Discourse, often: Node, make: Callable[[], Steps]) -> Steps:
     which a program can tell to the minute."""
     lasting = float(d.get(often, "lasting"))
     pause = A_MINUTE * 60 if "hourly" in often.parts else d.get(often, "pause")
-    body = each_who_comes(d, make)
+    body = each_who_comes(d, make, at_once=pause is not None)
     if pause is not None:
         rounds = Number(max(1, round(lasting / float(pause))))
         return [Repeat(rounds, tuple(_paced(d, often, body)))]
@@ -299,6 +308,8 @@ def forever(d: Discourse, node: Node) -> Steps:
 def for_each_place(d: Discourse, node: Node) -> Steps:
     """ "for every office, go there and ...", "in all wards, ..." ("in" means going there)."""
     kind = d.get(node, "kinds")
+    if d.get(node, "same", kind) != kind:  # "from office to kitchen"
+        raise NotUnderstood(d.language.phrase("which_places"))
     listed: list[Value] | None = d.get(node, "place_list")
     items: Value = Items((d.get(node, "place"), *listed)) if listed else kind_places(d, kind)
     return each_place(d, items, node.parts.get("steps"), bool(node.production.fixed.get("go")))
@@ -335,6 +346,9 @@ def each_place(d: Discourse, items: Value, steps: Leaf | Node | None, goes: bool
 @meaning("for_each_of_them")
 def for_each_of_them(d: Discourse, node: Node) -> Steps:
     """ "go to the lobby and to ward 3, and in each of them ...": done at all these."""
+    stops = toured(d)
+    if stops:
+        return at_each_stop(d, stops, node.parts["steps"])
     going: list[Call] = []
     while d.done and isinstance(d.done[-1], Call) and _goes_to_name(d.done[-1]):
         last = d.done.pop()
@@ -348,6 +362,33 @@ def for_each_of_them(d: Discourse, node: Node) -> Steps:
         raise NotUnderstood(d.language.phrase("which_places"))
     places = Items(tuple(call.arguments["place"] for call in going))
     return each_place(d, places, node.parts["steps"], goes=True)
+
+
+def toured(d: Discourse) -> list[Call]:
+    """The last steps that lead one person from place to place, if there are several."""
+    stops: list[Call] = []
+    for step in reversed(d.done):
+        if not isinstance(step, Call) or step.method != "guide":
+            break
+        if stops and step.arguments["person"] != stops[0].arguments["person"]:
+            break
+        stops.insert(0, step)
+    return stops if len(stops) > 1 else []
+
+
+def at_each_stop(d: Discourse, stops: list[Call], steps: Leaf | Node) -> Steps:
+    """ "show her the library and the lounge. At each stop say ...": with her there."""
+    del d.done[-len(stops) :]
+    here = Recall(d.variable("place"))
+    last = d.place
+    d.at = d.place = here
+    outer, d.in_loop = d.in_loop, True
+    body = d.build(steps)
+    d.in_loop = outer
+    d.at = d.place = last
+    leading = Call("guide", {**stops[0].arguments, "place": here})
+    places = Items(tuple(each.arguments["place"] for each in stops))
+    return [ForEach(here.name, places, (leading, *body))]
 
 
 def _goes_to_name(step: Call) -> bool:

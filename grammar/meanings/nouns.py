@@ -533,7 +533,9 @@ def person_coming(d: Discourse, node: Node) -> Thing:
 
 @meaning("person_first")
 def person_first(d: Discourse, node: Node) -> Thing:
-    """ "the first visitor you meet": whoever comes first."""
+    """ "the first visitor you meet": whoever comes first; on guard, each of them."""
+    if d.on_duty == "guard" and node.production.fixed.get("whoever"):
+        return person_coming(d, node)
     kind = str(d.get(node, "kind_of_person", ANYONE))
     found = replace(by_furniture(d, described(d, kind, node)), person=True, first=True)
     d.person, d.thing_last = replace(found, first=False, place=None, here=True), False

@@ -244,10 +244,23 @@ def each_named(d: Discourse, group: Value, person: Thing, one: One) -> Steps:
     """Each of several people whom the world knows."""
     who = Recall(d.variable("person"))
     d.at = None
+    fetched = d.done[-1] if d.done and fetches(d, d.done[-1], group) else None
     body = round_of_steps(d, lambda: one(Thing(who, known=True, person=True)))
+    if fetched is not None and any(leads(each) for each in nodes(tuple(body))):
+        d.done.remove(fetched)  # "get Alice and Bob and take them to the lounge": not here first
     d.at = d.with_person = None
     d.person, d.thing_last = person, False
     return [ForEach(who.name, group, tuple(body))]
+
+
+def fetches(d: Discourse, step: Step, group: Value) -> bool:
+    """Whether a step does nothing but bring these people to the speaker."""
+    round_of_them = isinstance(step, ForEach) and step.items == group
+    return round_of_them and any(each is d.fetched for each in nodes(step))
+
+
+def leads(step: object) -> bool:
+    return isinstance(step, Call) and step.method == "guide"
 
 
 def each_met(d: Discourse, person: Thing, one: One) -> Steps:

@@ -102,6 +102,10 @@ def same_for(d: Discourse, node: Node) -> Steps:
     if before is None or person.group is not None or not person.known:
         raise NotUnderstood(d.language.phrase("one_person"))
     steps = [replaced(step, before.value, person.value) for step in d.done]
+    first = next((at for at, step in enumerate(d.done) if step != steps[at]), None)
+    if first is None:  # nothing was said to be done for anybody
+        raise NotUnderstood(d.language.phrase("repeat_what"))
+    steps = steps[first:]
     lost = unknown_places(d, steps)
     if lost:
         raise NotUnderstood(d.language.phrase("unknown_place", name=lost[0]))

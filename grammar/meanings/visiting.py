@@ -14,15 +14,17 @@ import msgspec
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, Where
-from grammar.meanings.finding import speak_to
+from grammar.meanings.finding import meet, speak_to
+from grammar.meanings.people import lead, led
 from grammar.meanings.questions import ask
 from grammar.meanings.references import survey_named
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import found_out
 from grammar.meanings.sights import names_here
 from grammar.meanings.surveys import Survey, replacing
+from grammar.meanings.waiting import moment
 from grammar.naming import place_called
-from grammar.plan import Items, Recall, Sentence, Text, Value
+from grammar.plan import Call, Items, Recall, Sentence, Text, Value
 from grammar.tidy import nodes
 
 SOMEBODY: Final = "person"
@@ -40,6 +42,41 @@ def send_person(d: Discourse, node: Node) -> Steps:
     if isinstance(spot.place, Text):
         called = place_called(spot.place.value, d.lexicon, d.language)
     return speak_to(d, person, [d.say("please_go", place=called)])
+
+
+@meaning("tour")
+def tour(d: Discourse, node: Node) -> Steps:
+    """ "show the visitor the library, then the lounge": to one after the other."""
+    person = led(d, node)
+    steps = meet(d, person)
+    return [*steps, *(lead(d, person, place) for place in d.get(node, "stops"))]
+
+
+@meaning("tour_goes_on")
+def tour_goes_on(d: Discourse, node: Node) -> Steps:
+    """ "finish at the reception": with whoever was led before."""
+    spot: Where = d.get(node, "spot")
+    guest = next(
+        (
+            each.arguments["person"]
+            for each in reversed([*nodes(tuple(d.done))])
+            if isinstance(each, Call) and each.method == "guide"
+        ),
+        None,
+    )
+    if guest is None or spot.place is None:
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(
+            d.language.phrase("not_understood", part=words), gap=(node.start, node.end)
+        )
+    return [lead(d, Thing(guest, person=True, here=True), spot.place)]
+
+
+@meaning("guard")
+def guard(d: Discourse, node: Node) -> Steps:
+    """ "keep watch": to stay, for what is to be done whenever somebody comes."""
+    d.on_duty = "guard"
+    return moment(d, node)
 
 
 @meaning("find_name")

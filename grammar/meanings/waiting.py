@@ -54,10 +54,44 @@ def when(d: Discourse, node: Node) -> Steps:
     waited = Call("wait_for", {"thing": person.value}) if person is not None else None
     if d.done[-1:] == [waited] and wait_until(condition) == [waited]:
         d.done.pop()  # "wait for the doctor, and when she comes, ..."
+    if not before and waited_for_them(d, node, condition):
+        done: Steps = d.build(node.parts["then"])
+        return done
     body: Steps = d.build(node.parts["then"])
-    if node.production.fixed.get("always"):
+    if node.production.fixed.get("always") or _is_duty(d, node, condition):
         return each_time(before, condition, body)
     return [*awaited(before, condition), *body]
+
+
+def _is_duty(d: Discourse, node: Node, condition: Condition) -> bool:
+    """Whether it is to be done for whoever comes, for the robot stands guard or stays somewhere:
+    "guard the store. If anybody comes, tell them ..."."""
+    wait = wait_until(condition)
+    if not d.on_duty or not (isinstance(wait[-1], Call) and _waits(wait[-1])):
+        return False
+    part = node.parts["condition"]
+    anybody = d.language.words_called("any_words") & set(d.norms(part.start, part.end))
+    return d.on_duty == "guard" or bool(anybody)
+
+
+def waited_for_them(d: Discourse, node: Node, condition: Condition) -> bool:
+    """Whether the step before has waited for this already: "wait until there are five people. When
+    they are there, ..."."""
+    match d.done[-1] if d.done else None:
+        case While(Compare(Ask("count") as count, _, number) as short, steps) if _only_waits(steps):
+            if short == negated(at_least(condition)):
+                return True
+        case Repeat(number, (Call("wait_for", arguments),)):
+            count = Ask("count", arguments)
+        case _:
+            return False
+    if condition == Compare(count, "==", number):
+        return True
+    part = node.parts["condition"]
+    words = set(d.norms(part.start, part.end))
+    them = d.language.words_called("all_of_them")
+    seen = condition.value if isinstance(condition, Holds) else None
+    return isinstance(seen, Ask) and seen.method == "sees" and bool(words & them)
 
 
 def waited_in_time(d: Discourse) -> bool:
