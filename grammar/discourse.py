@@ -99,6 +99,8 @@ class Discourse:
     """How many sequences the present one is in, itself included."""
     done: Steps = field(default_factory=list)
     """The steps so far of the sequence that is being made."""
+    begins: list[int] = field(default_factory=list)
+    """Where among them each clause so far begins."""
     needs_start: bool = False
     thing: Thing | None = None
     person: Thing | None = None
@@ -478,12 +480,13 @@ class Discourse:
     def sequence(self, make: Callable[[], None]) -> Steps:
         """The steps that `make` adds to `done`, as a sequence of their own."""
         outer, self.done = self.done, []
+        begins, self.begins = self.begins, []
         self.depth += 1
         try:
             make()
             return self.done
         finally:
-            self.done = outer
+            self.done, self.begins = outer, begins
             self.depth -= 1
 
 

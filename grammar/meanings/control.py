@@ -38,6 +38,7 @@ def steps(d: Discourse, node: Node) -> Steps:
         places: Items | None = None
         while each is not None:
             before = len(d.done)
+            d.begins.append(before)
             first = each.parts["first"]
             assert isinstance(first, Node)
             relative = d.tokens[first.start].norm in d.language.speech.get("relative", ())

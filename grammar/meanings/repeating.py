@@ -105,7 +105,7 @@ def same_for(d: Discourse, node: Node) -> Steps:
     first = next((at for at, step in enumerate(d.done) if step != steps[at]), None)
     if first is None:  # nothing was said to be done for anybody
         raise NotUnderstood(d.language.phrase("repeat_what"))
-    steps = steps[first:]
+    steps = steps[max(begin for begin in (0, *d.begins) if begin <= first) :]
     lost = unknown_places(d, steps)
     if lost:
         raise NotUnderstood(d.language.phrase("unknown_place", name=lost[0]))
