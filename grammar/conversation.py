@@ -85,7 +85,7 @@ class _Turn:
             answered = self._answered(answer_to(self.text, question, self.language, loosely=True))
             if answered is not None:
                 return answered
-        gone_on = self._gone_on()
+        gone_on = self._gone_on() or self._hanging_on(reader)
         if gone_on is not None:
             return gone_on
         if edit is not None and edit.kind in ("same", "add") and self.context.earlier is not None:
@@ -418,6 +418,18 @@ class _Turn:
         more = new.tokens[0].norm in joins and not self.context.carried_out
         return self._first_read(self._separate(each) if more else each for each in variants)
 
+    def _hanging_on(self, reader: Reader) -> Understanding | None:
+        """A command that can be read, but only makes sense after the one before, which waits to be
+        carried out: "tell me how many said yes"."""
+        plan = self.context.plan
+        if plan is None or self.context.carried_out or not reader.reads:
+            return None
+        whole = self._separate(self.text)
+        result = None if self._swallowed(whole) else self._read(whole, self.base)
+        if result is None or result.plan in (None, plan):
+            return None
+        return result
+
     def _in_that_manner(self, plain: Understanding) -> Understanding | None:
         """ "louder", while something to say waits for its approval: that is to be said louder."""
         if plain.plan is None or self.context.carried_out or not self._speaks():
@@ -440,11 +452,12 @@ class _Turn:
         return f"{self.context.text.rstrip(' .!?')}. {more.lstrip(' ,.')}"
 
     def _goes_on(self, new: Reader) -> bool:
-        """Whether words may go on with a sentence: "in the kitchen", "three times"."""
+        """Whether words may go on with a sentence: "in the kitchen", "three times", "ten"."""
         begins = self.language.speech["goes_on"]
-        return bool(new.tokens) and (
-            new.tokens[0].norm in begins or new.tokens[0].kind in ("number", "time")
-        )
+        if not new.tokens:
+            return False
+        number = any(end == new.last_word for end, _, _ in new.slots["{number}"](0))
+        return number or new.tokens[0].norm in begins or new.tokens[0].kind in ("number", "time")
 
     def _commands(self, said: str) -> bool:
         """Whether this is a command in itself."""

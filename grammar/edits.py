@@ -19,6 +19,8 @@ from grammar.pieces import (
     CORRECTABLE,
     NAMED,
     NOUNS,
+    NUMBERS,
+    PLACES,
     PRONOUNS,
     Piece,
     is_pieces,
@@ -244,10 +246,11 @@ class Sentence:
         away = words_listed(new.language, "from_words")
         words = new.content(piece.start, piece.end)
         best: Piece | None = None
-        best_score: tuple[bool, bool, bool, int] | None = None
+        best_score: tuple[bool, bool, bool, bool, int] | None = None
         for old in places:
-            alike = old.rule == piece.rule or (
-                everywhere and old.rule in NOUNS and piece.rule in NOUNS
+            alike = old.rule == piece.rule or any(
+                old.rule in kinds and piece.rule in kinds
+                for kinds in (PLACES, NUMBERS, *((NOUNS,) if everywhere else ()))
             )
             before = lead_words(self.reader, old)
             if not alike or taken.intersection(range(old.start, old.end)):
@@ -256,6 +259,7 @@ class Sentence:
                 continue  # "from the kitchen" is no other place to go to
             score = (
                 old.means not in PRONOUNS,
+                old.rule == piece.rule,
                 bool(lead) and before == lead,
                 bool(words & self.reader.content(old.start, old.end)),
                 old.start,

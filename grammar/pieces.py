@@ -16,8 +16,11 @@ if TYPE_CHECKING:
 
 CORRECTABLE: Final = (
     "place_ref",
+    "all_places",
     "person_ref",
     "thing",
+    "number",
+    "count",
     "length",
     "angle",
     "duration",
@@ -31,6 +34,9 @@ CORRECTABLE: Final = (
 """Rules and slots whose words can be put in the place of others."""
 NOUNS: Final = frozenset({"place_ref", "person_ref", "thing"})
 """Those of them that may stand for each other: "go to Alice" - "no, the kitchen"."""
+PLACES: Final = frozenset({"place_ref", "all_places"})
+"""Those that stand for each other wherever they are said: "every office" - "only Bob's"."""
+NUMBERS: Final = frozenset({"number", "count"})
 NAMED: Final = {"person": "person_ref"}
 """Slots for names, and the rule that they count as where none of it is around them."""
 PRONOUNS: Final = frozenset({"person_pronoun", "person_me", "thing_it", "place_there"})

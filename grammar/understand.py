@@ -327,6 +327,14 @@ class Reader:
             self.text[: self.tokens[first].start] + words + self.text[self.tokens[last - 1].end :]
         )
 
+    @property
+    def reads(self) -> bool:
+        """Whether rules can make something of all its words, whatever it would mean."""
+        try:
+            return self.chart().best("utterance") is not None
+        except (TooMuch, RecursionError):
+            return False
+
     @functools.cached_property
     def slots(self) -> dict[str, Slot]:
         return Slots(self.names, self.tokens, self.corrections).all()

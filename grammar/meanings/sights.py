@@ -27,7 +27,8 @@ def names_here(d: Discourse, node: Node) -> Report:
         return come
     if person is None:
         person = described(d, ANYONE, node)
-        d.person = Thing(Text(ANYONE), person.place, person=True, here=True)
+        away = person.place is not None
+        d.person = Thing(Text(ANYONE), person.place, person=True, plural=True, here=not away)
     elif "mods" in node.parts and not person.known:  # "the man's name in the bedroom"
         person = replace(person, place=described(d, "", node).place or person.place)
     elif person.here and isinstance(d.report_asked, Report):
