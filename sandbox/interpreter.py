@@ -13,6 +13,7 @@ All of it belongs to one thread but `kill`, which any thread may call at any tim
 
 from __future__ import annotations
 
+import atexit
 import bisect
 import json
 import os
@@ -403,17 +404,62 @@ class _Process:
 def diagnose(program: str, stub: str, seconds: float = 5.0) -> list[Diagnostic]:
     """What Monty's parser and type checker say of a program; nothing of it is run. Raises
     `Unavailable`."""
-    try:
-        return _diagnosed(program, stub, seconds)
-    except (monty.MontyError, RuntimeError, OSError) as error:
-        raise Unavailable(str(error)) from error
+    with CHECKER as kept:
+        try:
+            return _diagnosed(program, stub, kept.pool(seconds))
+        except monty.MontyCrashedError as error:
+            kept.close()
+            if not error.timed_out:
+                raise Unavailable(str(error)) from error
+            message = "CheckError: The program is too involved to be checked. Make it simpler"
+            return [Diagnostic(1, 1, "unsupported", message)]
+        except (monty.MontyError, RuntimeError, OSError) as error:
+            kept.close()
+            raise Unavailable(str(error)) from error
 
 
-def _diagnosed(program: str, stub: str, seconds: float) -> list[Diagnostic]:
+class Checker:
+    """The worker that checks programs, kept for the next one: to start it takes forty times as long
+    as a check."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._pool: monty.Monty | None = None
+        self._of: tuple[int, float] | None = None
+        """The process that it belongs to, which a fork is not, and its seconds for a check."""
+
+    def __enter__(self) -> Self:
+        self._lock.acquire()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._lock.release()
+
+    def pool(self, seconds: float) -> monty.Monty:
+        """The worker's pool; to be asked for under the lock."""
+        of = (os.getpid(), seconds)
+        if self._pool is None or self._of != of:
+            if self._of is not None and self._of[0] == of[0]:
+                self.close()
+            self._pool, self._of = monty.Monty(max_processes=1, request_timeout=seconds), of
+            self._pool.__enter__()
+        return self._pool
+
+    def close(self) -> None:
+        """Let go of the worker; the next check starts another."""
+        pool, self._pool = self._pool, None
+        if pool is not None and self._of is not None and self._of[0] == os.getpid():
+            pool.__exit__(None, None, None)
+
+
+CHECKER: Final = Checker()
+atexit.register(CHECKER.close)
+
+
+def _diagnosed(program: str, stub: str, pool: monty.Monty) -> list[Diagnostic]:
     # The name is looked up before anything else happens, and never found.
     guard = "program_starts_here"
     with (
-        monty.Monty(max_processes=1, request_timeout=seconds) as pool,
         pool.checkout(
             limits={"max_memory": 200_000_000},
             type_check=True,
@@ -436,11 +482,8 @@ def _diagnosed(program: str, stub: str, seconds: float) -> list[Diagnostic]:
                 for each in json.loads(error.display())
                 if each["severity"] == "error"
             ]
-        except monty.MontyCrashedError as error:
-            if not error.timed_out:
-                raise
-            message = "CheckError: The program is too involved to be checked. Make it simpler"
-            return [Diagnostic(1, 1, "unsupported", message)]
+        except monty.MontyCrashedError:
+            raise
         except monty.MontyError as error:
             frames: list[monty.Frame] = getattr(error, "traceback", list)()
             line = frames[-1].line - 1 if frames else 1

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import random
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import pytest
@@ -365,3 +366,9 @@ def test_lines_are_counted_as_python_counts_them() -> None:
 def test_half_a_sign_cannot_be_spoken() -> None:
     assert found("robot.say('\\ud83d')") == [(1, "error", "half-a-sign")]
     assert found("robot.say('\\U0001f44d')") == []
+
+
+def test_checks_of_several_threads_wait_for_each_other() -> None:
+    with ThreadPoolExecutor(4) as threads:
+        found = list(threads.map(lambda _: check("robot.dance()", stub()), range(8)))
+    assert all(len(each) == 1 and each[0].severity == "error" for each in found)

@@ -18,6 +18,7 @@ from robot_api.stub import stub
 from robot_api.values import Location
 from sandbox.check import check
 from sandbox.execution import Execution
+from sandbox.interpreter import CHECKER
 from sandbox.limits import Limits
 from tests.sandbox.ward import Ward, children
 
@@ -243,6 +244,7 @@ def test_a_process_that_something_else_ends_is_a_failure() -> None:
 
 @pytest.mark.parametrize("binary", ["/nowhere/monty", "/bin/false"])
 def test_a_sandbox_that_does_not_start(binary: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    CHECKER.close()  # the one that checks may be running already
     monkeypatch.setenv("MONTY_BIN", binary)
     outcome = Ward().run("robot.wait(1)")
     assert outcome.status == "failed"
