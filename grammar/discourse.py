@@ -180,6 +180,10 @@ class Discourse:
     """The answer that was last told of (`grammar.meanings.answers.Wanted`): "... that is"."""
     news: Any = None
     """What was told last of a poll or a round (`grammar.meanings.news.News`)."""
+    lookout: Any = None
+    """What a round looks for that nobody was told of (`grammar.meanings.lookouts.Lookout`)."""
+    such: str | None = None
+    """The variable with the place that was looked for, as the first that is so."""
     polled_for: str | None = None
     """What the last poll was to find out: "who", "many"."""
     taken_from: Where | None = None

@@ -18,6 +18,7 @@ import grammar.meanings.control
 import grammar.meanings.conversation
 import grammar.meanings.driving
 import grammar.meanings.facts
+import grammar.meanings.found_places
 import grammar.meanings.hosting
 import grammar.meanings.inquiries
 import grammar.meanings.loops
@@ -25,6 +26,7 @@ import grammar.meanings.messages
 import grammar.meanings.news
 import grammar.meanings.nouns
 import grammar.meanings.people
+import grammar.meanings.place_sets
 import grammar.meanings.places
 import grammar.meanings.questions
 import grammar.meanings.references

@@ -24,6 +24,7 @@ from grammar.meanings.answers import wanted as wanted_answer
 from grammar.meanings.deliveries import delivered_last
 from grammar.meanings.finding import noun_of
 from grammar.meanings.news import counted as counted_answers
+from grammar.meanings.news import in_round
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.searches import just_awaited, just_looked_for, searches
@@ -119,8 +120,8 @@ def is_seen(d: Discourse, node: Node) -> Condition:
 
 @meaning("is_found")
 def is_found(d: Discourse, node: Node) -> Condition:
-    """ "you find a cup": the robot drives about to look for it."""
-    return looked_for(d, node, search=True)
+    """ "you find a cup": the robot drives about to look for it, but not on a round."""
+    return looked_for(d, node, search=not in_round(d))
 
 
 def looked_for(d: Discourse, node: Node, search: bool) -> Condition:

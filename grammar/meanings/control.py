@@ -9,9 +9,11 @@ from grammar.discourse import Discourse, NotUnderstood, Steps, Thing
 from grammar.meanings.alternatives import exclusive, itself, side_by_side
 from grammar.meanings.branches import in_branch
 from grammar.meanings.finding import go, not_found
+from grammar.meanings.found_places import if_such
+from grammar.meanings.going_on import in_round
+from grammar.meanings.lookouts import told_at_last
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import summed_at_end
-from grammar.meanings.rounds import in_round
 from grammar.meanings.stops import gone_to, said_at_each
 from grammar.meanings.things import goes_on
 from grammar.meanings.volunteers import guard_found
@@ -66,13 +68,14 @@ def steps(d: Discourse, node: Node) -> Steps:
             if isinstance(beyond, Node):  # after the rest
                 further.append(beyond)
             each = rest if isinstance(rest, Node) else further.pop() if further else None
-        d.done[:] = until_then(d, d.done)
+        d.done[:] = if_such(d, until_then(d, d.done))
         if d.depth > 1 and not d.done and only_said(node):
             # "make sure there is a cup in each office": nothing is done there, so it was no remark.
             words = d.words(node.start, node.end)
             raise NotUnderstood(d.language.phrase("not_understood", part=words))
         if d.depth == 1:
             d.done.extend(summed_at_end(d))
+        d.done.extend(told_at_last(d))
         d.done[:] = exclusive(guard_finds(d, guard_found(speak_codes(d, d.done))))
 
     return d.sequence(make)

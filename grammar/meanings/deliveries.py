@@ -177,6 +177,16 @@ def inside(part: Leaf | Node | None) -> Iterator[Node]:
             yield from inside(each)
 
 
+def first_clause(clause: Node) -> Node:
+    """The first clause of what may be a sequence of them."""
+    first = clause
+    while first.production.means in (None, "steps") and first.parts:
+        first = next((each for each in first.parts.values() if isinstance(each, Node)), first)
+        if not any(isinstance(each, Node) for each in first.parts.values()):
+            break
+    return first
+
+
 def still_in_hand(d: Discourse, delivery: Delivery) -> Step | None:
     """The last step of a delivery, taken back, for what is said next may change it: "take it to the
     lab; if somebody is there, give it to them"."""

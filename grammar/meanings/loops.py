@@ -11,10 +11,11 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Meeting, NotUnderstood, Steps, Thing, as_value
 from grammar.meanings.branches import meet_there
 from grammar.meanings.conditions import FULL_HOUR, condition_of
+from grammar.meanings.deliveries import first_clause
 from grammar.meanings.finding import go, look_for, noun_of
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
-from grammar.meanings.rounds import told_after_round
+from grammar.meanings.rounds import same_round, told_after_round
 from grammar.meanings.surveys import until_answered
 from grammar.meanings.waiting import at_least, awaited, looking_up, there_first, wait_until
 from grammar.plan import (
@@ -312,7 +313,20 @@ def for_each_place(d: Discourse, node: Node) -> Steps:
         raise NotUnderstood(d.language.phrase("which_places"))
     listed: list[Value] | None = d.get(node, "place_list")
     items: Value = Items((d.get(node, "place"), *listed)) if listed else kind_places(d, kind)
-    return each_place(d, items, node.parts.get("steps"), bool(node.production.fixed.get("go")))
+    goes, body = bool(node.production.fixed.get("go")), node.parts.get("steps")
+    if goes and body is None and same_round(d, items):
+        return []
+    if goes and isinstance(body, Node) and comes_back(body):
+        d.done += each_place(d, items, None, goes)
+        after: Steps = d.build(body)
+        return after
+    return each_place(d, items, body, goes)
+
+
+def comes_back(body: Node) -> bool:
+    """ "visit the labs and come back and ...": what is done when all have been visited."""
+    first = first_clause(body)
+    return first.means == "come_back" or "back" in first.parts
 
 
 def each_place(d: Discourse, items: Value, steps: Leaf | Node | None, goes: bool) -> Steps:

@@ -65,6 +65,8 @@ class News:
     """Whether nobody was named whom to tell, so that whoever is named next is who was meant."""
     waiting: bool = False
     """Whether it is not told yet."""
+    whom: Thing | None = None
+    """Who wants to know it, if that was said before it was said to tell them."""
 
 
 # --- telling
@@ -96,6 +98,17 @@ def news(d: Discourse, node: Node) -> Steps:
         d.told = steps[-1]
     d.news = News(words, person is None and place is None)
     return steps
+
+
+@meaning("wants_to_know")
+def wants_to_know(d: Discourse, node: Node) -> Steps:
+    """ "Bob wants to know which labs are free, so go and tell him": told to him at last."""
+    person: Thing = d.get(node, "whom")
+    told: list[Told] = d.get(node, "told")
+    words = [step for each in told for step in each.words]
+    d.news = News(words, False, waiting=True, whom=person)
+    d.person, d.thing_last = person, False
+    return [step for each in told for step in each.first]
 
 
 def last_found(d: Discourse) -> Told:
@@ -137,6 +150,7 @@ def told_again(d: Discourse, person: Thing | None) -> Steps | None:
         d.news = replace(found, waiting=False)
         return [*go_back(d, []), *found.words]
     take_back(d, found)
+    d.news = replace(d.news, waiting=False)
     return speak_to(d, person, found.words)
 
 

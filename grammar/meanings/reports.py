@@ -206,7 +206,10 @@ def known_words(d: Discourse) -> Steps:
 @meaning("tell_that")
 def tell_that(d: Discourse, node: Node) -> Steps:
     """ "and tell Alice how many there are": what was found out before, told to somebody else."""
-    person = d.get(node, "person_ref")
+    person: Thing | None = d.get(node, "person_ref")
+    person_at: Where | None = d.get(node, "person_at")
+    if person is not None and person_at is not None:  # "go and tell him in his office"
+        person = replace(person, place=person_at.place, here=False)
     if node.production.fixed.get("seen") and looks_around(d):
         from grammar.meanings.sights import seen_around
 
@@ -224,6 +227,11 @@ def looks_around(d: Discourse) -> bool:
 
 def told_again(d: Discourse, person: Thing | None) -> Steps:
     """Tell somebody what was told or answered last."""
+    from grammar.meanings.lookouts import tell_lookout
+
+    of_round = tell_lookout(d, person)
+    if of_round is not None:
+        return of_round
     if news.told_at_end(d, person):
         return []
     again = news.told_again(d, person)
@@ -317,6 +325,9 @@ def checked(d: Discourse) -> Value | None:
 @meaning("found_told")
 def found_told(d: Discourse, node: Node | None = None) -> news.Told:
     """ "the result", "it", "what you found out": whatever was found out last."""
+    if d.lookout is not None:
+        told_of_round: news.Told = d.lookout.told(d)
+        return told_of_round
     told: news.News | None = d.news
     if told is not None:
         news.take_back(d, told)
@@ -398,6 +409,11 @@ def tell_me_that(d: Discourse, node: Node) -> Steps:
 
 
 def tell_speaker(d: Discourse) -> Steps:
+    from grammar.meanings.lookouts import tell_lookout
+
+    of_round = tell_lookout(d, None)
+    if of_round is not None:
+        return of_round
     if news.told_at_end(d, None):
         return []
     again = news.told_again(d, None)

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
 
 from msgspec.structs import replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
-from grammar.meanings.deliveries import inside
 from grammar.meanings.finding import speak_to
-from grammar.meanings.news import News, Told, go_back, last_found, polled, take_back
+from grammar.meanings.news import News, Told, asked_yet, go_back, last_found, polled, take_back
 from grammar.meanings.nouns import is_me, thing_it
 from grammar.meanings.places import kind_places, sought
 from grammar.meanings.registry import meaning
@@ -68,6 +66,16 @@ def last_round(d: Discourse) -> int | None:
         if isinstance(step, ForEach) and step.steps and goes_to(step.steps[0], step.variable):
             return at
     return None
+
+
+def same_round(d: Discourse, places: Value) -> bool:
+    """Whether these places were gone round just before, and what was found out is told already: "I
+    need to know which labs are free. Go round the labs and tell me"."""
+    at = last_round(d)
+    loop = None if at is None else d.done[at]
+    found: News | None = d.news
+    told = found is not None and d.done[len(d.done) - len(found.words) :] == found.words
+    return told and isinstance(loop, ForEach) and loop.items == places
 
 
 def round_of_visits(d: Discourse) -> int | None:
@@ -176,7 +184,7 @@ def _lines(d: Discourse, loop: ForEach) -> tuple[Steps, Steps]:
     noted = d.variable("found")
     if found.otherwise is not None:  # "see whether anybody is there": where there is somebody
         notes: Steps = [If(Holds(found.value), (Collect(noted, here),))]
-        words = _found_places(d, "which", noted)
+        words = found_places(d, "which", noted)
     else:
         seen = d.variable(found.name)
         line = Sentence((here, Text(": "), Recall(seen)))
@@ -253,6 +261,10 @@ class Trait:
     condition: Condition
     first: Steps
     """What finds it out, there."""
+    thing: Thing | None = None
+    """What has to be there, or must not be."""
+    denied: bool = False
+    """Whether it must not be there."""
 
 
 @meaning("trait_seen")
@@ -263,7 +275,8 @@ def trait_seen(d: Discourse, node: Node) -> Trait:
         thing = thing_it(d, node)
     looked_for = Text(ANYONE) if thing is None else sought(d, thing)
     seen: Condition = Holds(Ask("sees", {"thing": looked_for}))
-    return Trait(Not(seen) if node.production.fixed.get("no") else seen, [])
+    denied = bool(node.production.fixed.get("no"))
+    return Trait(Not(seen) if denied else seen, [], thing, denied)
 
 
 @meaning("trait_counted")
@@ -272,7 +285,7 @@ def trait_counted(d: Discourse, node: Node) -> Trait:
     thing: Thing = d.get(node, "thing")
     number = Number(int(d.get(node, "count")))
     count = Ask("count", {"thing": sought(d, thing)})
-    return Trait(Compare(count, d.get(node, "operator", "=="), number), [])
+    return Trait(Compare(count, d.get(node, "operator", "=="), number), [], thing)
 
 
 @meaning("trait_asked")
@@ -320,64 +333,7 @@ def for_each_place_such(d: Discourse, node: Node) -> Steps:
     return [round_of(d, kind_places(d, d.get(node, "kinds")), [*found_out], place.name)]
 
 
-# --- a round that goes on in the next sentence
-
-STAYS_OUTSIDE: Final = frozenset(
-    {
-        *("news", "round_count", "compared"),
-        *("come_back", "go", "go_places", "go_person", "go_find", "dock", "stop", "bring_too"),
-        *("for_each_place", "for_each_place_such", "for_each_of_them", "check_each_place"),
-        *("do_that_times", "do_that_again", "do_that_until", "do_that_while", "do_that_forever"),
-        *("same_for", "tell_that", "tell_me_that", "say_it", "reversed", "delayed", "bring_each"),
-        *("when", "repeat", "until", "while", "forever", "at_intervals", "corrected", "guide_list"),
-    }
-)
-"""Clauses that do not belong to a round in the sentence before."""
-OF_THE_ROUND: Final = frozenset({"is_seen", "is_found", "so", "answered", "trait_holds", "counted"})
-"""Conditions on what is found at each place."""
-
-
-def in_round(d: Discourse, clause: Node) -> Steps:
-    """The steps of a clause. "Go to every office. If somebody is there, ...": they belong to the
-    round in the sentence before, which may consist of nothing but going there."""
-    loop = d.done[-1] if d.done else None
-    if not isinstance(loop, ForEach) or not goes_on(d, loop, clause):
-        steps: Steps = d.build(clause)
-        return steps
-    d.done.pop()
-    here = Recall(loop.variable)
-    outer, d.done = d.done, list(loop.steps)
-    d.at = d.place = here
-    in_loop, d.in_loop = d.in_loop, True
-    try:
-        inner = [*d.done, *d.build(clause)]
-    finally:
-        d.done, d.in_loop = outer, in_loop
-    d.at = d.with_person = None
-    return [replace(loop, steps=tuple(inner))]
-
-
-def goes_on(d: Discourse, loop: ForEach, clause: Node) -> bool:
-    """Whether a clause belongs to the round before it."""
-    if not (loop.steps and goes_to(loop.steps[0], loop.variable)):
-        return False
-    first = clause
-    while first.production.means in (None, "steps") and first.parts:
-        first = next((each for each in first.parts.values() if isinstance(each, Node)), first)
-        if not any(isinstance(each, Node) for each in first.parts.values()):
-            break
-    if first.production.means == "if":
-        about = {each.production.means for each in inside(first.parts["condition"])}
-        return bool(about & OF_THE_ROUND) and not any(
-            isinstance(each.parts.get("place"), Leaf) for each in inside(first.parts["condition"])
-        )
-    if len(loop.steps) > 1 or first.production.means in STAYS_OUTSIDE:
-        return False
-    return not any(
-        each.production.means == "person_name"
-        for each in first.parts.values()
-        if isinstance(each, Node)
-    )
+# --- which places
 
 
 @meaning("places_told")
@@ -385,8 +341,20 @@ def places_told(d: Discourse, node: Node) -> Told:
     """ "which labs have no stapler", "how many offices are empty", "which of them are"."""
     named = any(name in node.parts for name in ("kinds", "place_list"))
     named = named or bool(node.production.fixed.get("all"))
+    if d.such is not None and not named and last_round(d) is not None:
+        return Told([d.say("it_is_there", place=Recall(d.such))], [])
+    trait_part = node.parts["place_trait"]
+    if (
+        not named
+        and isinstance(trait_part, Node)
+        and trait_part.means == "trait_asked"
+        and asked_yet(d)
+    ):
+        # "ask them whether they want coffee and tell me how many of them want coffee"
+        return polled(d, "many" if node.production.fixed.get("tell") == "many" else "who", None)
     if d.news is not None:  # what was checked on the round is told only as is said now
         take_back(d, d.news)
+    d.lookout = None
     at = last_round(d)
     if named and (at is None or not same_places(d, node, d.done[at])):
         at = None
@@ -407,16 +375,22 @@ def places_told(d: Discourse, node: Node) -> Told:
         d.done.insert(0, going.pop())
     else:
         going.append(round_of(d, places_of(d, node), [*trait.first, noted], place))
-    return Told(_found_places(d, str(node.production.fixed.get("tell", "which")), found), going)
+    return Told(found_places(d, str(node.production.fixed.get("tell", "which")), found), going)
 
 
 def same_places(d: Discourse, node: Node, loop: Step) -> bool:
     """Whether the places that are asked about are those that a round went to."""
     assert isinstance(loop, ForEach)
-    return bool(node.production.fixed.get("all")) or loop.items == places_of(d, node)
+    if node.production.fixed.get("all") or loop.items == places_of(d, node):
+        return True
+    kind = d.get(node, "kinds")
+    if not isinstance(kind, str) or not isinstance(loop.items, Items):
+        return False  # "go to offices 1 to 4 and tell me which offices are empty": of those
+    known = [Text(each.name) for each in d.lexicon.place_kinds[kind]]
+    return all(each in known for each in loop.items.items)
 
 
-def _found_places(d: Discourse, tell: str, found: str) -> Steps:
+def found_places(d: Discourse, tell: str, found: str) -> Steps:
     number = Length(Recall(found))
     if tell == "many":
         return [d.say("so_many_places", number=number)]

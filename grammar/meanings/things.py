@@ -29,6 +29,9 @@ from grammar.plan import Call, ForEach, Items, Recall, Text, Value
 
 @meaning("find")
 def find(d: Discourse, node: Node) -> Steps:
+    sought_for = node.parts.get("thing")
+    if d.such is not None and isinstance(sought_for, Node) and sought_for.means == "thing_it":
+        return []  # "I need an empty office. Go and find one": that is being done
     thing = noun_of(d, node)
     if isinstance(thing.group, Items):
         who = Recall(d.variable("person"))

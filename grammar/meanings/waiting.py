@@ -14,6 +14,7 @@ from grammar.meanings.branches import claim_of, if_, meet_there
 from grammar.meanings.conditions import condition_of, negated
 from grammar.meanings.deliveries import inside
 from grammar.meanings.finding import speak_to
+from grammar.meanings.news import in_round
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import known_words
@@ -43,7 +44,10 @@ LOOK_EVERY: Final = 10
 
 @meaning("when")
 def when(d: Discourse, node: Node) -> Steps:
-    """ "when somebody comes, ...": wait for it, then do it; "whenever": again and again."""
+    """ "when somebody comes, ...": wait for it, then do it; "whenever": again and again, but once
+    at each place of a round: "go round the labs, and whenever you find a cup, ..."."""
+    if node.production.fixed.get("always") and in_round(d):
+        return if_(d, node)
     if waited_in_time(d) and not node.production.fixed.get("always"):
         whether: Steps = if_(d, node)
         return whether

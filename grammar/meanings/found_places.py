@@ -1,0 +1,69 @@
+"""One place of several that is as it should be, and what is then done with it: "find an empty
+office, tell me which one it is, and take the guests there". If there is none, whoever said so hears
+that instead."""
+
+from __future__ import annotations
+
+from msgspec.structs import replace
+
+from grammar.chart import Node
+from grammar.discourse import Discourse, Steps
+from grammar.meanings.best_places import Such, first_such
+from grammar.meanings.news import News, go_back
+from grammar.meanings.registry import meaning
+from grammar.plan import Compare, If, Recall, Step, Text
+
+
+@meaning("find_such")
+def find_such(d: Discourse, node: Node) -> Steps:
+    """ "find an empty office", "check the labs until you find one that is free"."""
+    such = sought_place(d, node)
+    d.lookout = d.report = d.news = d.counted = d.checked = None
+    going, place, none = first_such(d, such)
+    d.such = place.name
+    d.at = d.place = place
+    missing = d.say("no_such_places")
+    if not node.production.fixed.get("ask"):
+        return [*going, If(none, (missing,))]
+    words: Steps = [If(none, (missing,), (d.say("it_is_there", place=place),))]
+    d.news = News(words, True)
+    d.told = words[-1]
+    return [*going, *go_back(d, going), *words]
+
+
+def sought_place(d: Discourse, node: Node) -> Such:
+    part = node.parts.get("place")
+    if part is not None:
+        d.taking_apart = True
+        try:
+            such: Such = d.build(part)
+        finally:
+            d.taking_apart = False
+        return such
+    place = d.variable("place")
+    before, d.at = d.at, Recall(place)
+    trait = d.get(node, "place_trait")
+    d.at = before
+    return Such(d.get(node, "kinds"), place, trait)
+
+
+def if_such(d: Discourse, done: Steps) -> Steps:
+    """Steps in which all that is done with a place that was looked for is done if there is one."""
+    for at, step in enumerate(done):
+        rest = done[at + 1 :]
+        if rest and is_such(d, step):
+            assert isinstance(step, If)
+            back = go_back(d, done[:at])
+            return [*done[:at], replace(step, then=(*back, *step.then), otherwise=tuple(rest))]
+    return done
+
+
+def is_such(d: Discourse, step: Step) -> bool:
+    """Whether a step only says that there is no such place."""
+    return (
+        isinstance(step, If)
+        and not step.otherwise
+        and isinstance(step.condition, Compare)
+        and step.condition.right == Text("")
+        and step.then == (d.say("no_such_places"),)
+    )

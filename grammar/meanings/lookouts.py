@@ -1,0 +1,176 @@
+"""Rounds of places to look for something there: "check every office for a stapler".
+
+What is then said decides what becomes of it: which places are named ("tell me which ones have
+none"), whether there is one anywhere, or what is done where it is so ("if there is one, ..."). If
+nothing is said, whoever sent the robot is told where it is so. What a search ends with ("... and
+bring it to me") ends with the first that is found.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from dataclasses import replace as replace_thing
+from typing import Final
+
+from msgspec.structs import replace
+
+from grammar.chart import Node
+from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, as_value
+from grammar.meanings.conditions import negated
+from grammar.meanings.finding import speak_to
+from grammar.meanings.news import News, Told, go_back, in_round, last_found
+from grammar.meanings.nouns import is_me
+from grammar.meanings.registry import meaning
+from grammar.meanings.rounds import Trait, found_places, last_round, round_of, same_round
+from grammar.meanings.searches import named_places, search_in
+from grammar.plan import Call, Collect, End, ForEach, If, Items, Recall, Remember, Value
+
+ABOUT_IT: Final = frozenset(
+    {"news", "tell_that", "tell_me_that", "tell_condition", "come_back", "look_now", "report"}
+)
+"""Clauses that say what is to be told of a round."""
+
+
+@dataclass(frozen=True)
+class Lookout:
+    """A round that looks for something at each place, and of which nothing was told yet."""
+
+    place: str
+    """What each place is called in it."""
+    places: Value
+    trait: Trait
+    thing: Thing | None
+    """What is looked for, if it is that it is there or not."""
+    depth: int
+    """In which sequence it was ordered."""
+    definite: bool
+    """Whether it is one thing, so that the search for it ends where it is: "the thermometer"."""
+    tell: str
+    """What is told if nothing else is asked for: "which", "any"; "all", if it has to be so
+    everywhere and only where it is not is news."""
+
+    def told(self, d: Discourse, tell: str = "") -> Told:
+        """At which places it is so."""
+        at = self.at(d)
+        if at is None:
+            raise NotUnderstood(d.language.phrase("which_places"))
+        loop = d.done[at]
+        assert isinstance(loop, ForEach)
+        found, condition = d.variable("found"), self.trait.condition
+        tell = tell or self.tell
+        if self.tell == "all":
+            condition, tell = negated(condition), "all"
+        noted = If(condition, (Collect(found, Recall(self.place)),))
+        d.done[at] = replace(loop, steps=(*loop.steps, *self.trait.first, noted))
+        d.done.insert(0, Remember(found, Items(())))
+        d.lookout = None
+        return Told(found_places(d, tell, found), [])
+
+    def at(self, d: Discourse) -> int | None:
+        """Where among the steps so far it is."""
+        at = last_round(d)
+        if at is None:
+            return None
+        loop = d.done[at]
+        return at if isinstance(loop, ForEach) and loop.variable == self.place else None
+
+    def acted_on(self, body: Steps) -> Steps:
+        """What is done at each place where it is so; nothing more is looked for where it was
+        somebody by name, or is taken away: "look in every ward for a wheelchair and bring it"."""
+        thing = self.thing
+        taken = thing is not None and Call("grab", {"thing": thing.value}) in body
+        if thing is not None and (taken or (thing.known and thing.person)):
+            body = [*body, End()]
+        return [*self.trait.first, If(self.trait.condition, tuple(body))]
+
+    def until_found(self, d: Discourse) -> None:
+        """Nothing but a search, after all, if it can be one."""
+        at, places = self.at(d), named_places(d, self.places)
+        d.lookout = None
+        if at is not None and places and self.thing is not None and not self.trait.denied:
+            d.done[at : at + 1] = search_in(d, self.thing, places)
+
+    def meet(self, d: Discourse) -> None:
+        """The scene at a place where it is so."""
+        if self.thing is not None and self.thing.person and not self.trait.denied:
+            d.person, d.with_person = replace_thing(self.thing, here=True), self.thing.value
+
+
+@meaning("round_check")
+def round_check(d: Discourse, node: Node) -> Steps:
+    """ "check every office for a stapler", "see whether each of the labs has a microscope"."""
+    places: Value = d.get(node, "kinds")
+    if same_round(d, places):
+        return []
+    place = d.variable("place")
+    before = d.thing
+    d.at = d.place = Recall(place)
+    trait: Trait = d.get(node, "place_trait")
+    d.at = d.with_person = None
+    d.answer = d.report = d.news = d.counted = d.checked = None
+    thing = trait.thing
+    if thing is None:
+        d.thing = before
+    elif thing.person:
+        d.person, d.thing_last = thing, False
+    else:
+        d.thing, d.thing_last = thing, True
+    tell = str(node.production.fixed.get("tell", "which"))
+    d.lookout = Lookout(place, places, trait, thing, d.depth, definite(d, node, thing), tell)
+    return [round_of(d, places, [], place)]
+
+
+def definite(d: Discourse, node: Node, thing: Thing | None) -> bool:
+    part = node.parts["place_trait"]
+    named = d.tokens[part.start].norm in d.language.speech.get("definite", ())
+    return thing is not None and (named or (thing.known and thing.person))
+
+
+@meaning("lookout_told")
+def lookout_told(d: Discourse, node: Node) -> Told:
+    """ "whether there is one", "where you saw one": of what was looked for."""
+    lookout: Lookout | None = d.lookout
+    if lookout is not None:
+        return lookout.told(d, str(node.production.fixed["tell"]))
+    if in_round(d):  # "if one has none, tell me which one"
+        return Told([d.say("such_places", places=as_value(d.at))], [])
+    if d.news is not None:
+        return last_found(d)
+    if d.such is None:
+        raise NotUnderstood(d.language.phrase("which_places"))
+    return Told([d.say("it_is_there", place=Recall(d.such))], [])
+
+
+def tell_lookout(d: Discourse, person: Thing | None) -> Steps | None:
+    """What a round was to find out, told to somebody; None if there is none to tell of."""
+    if d.lookout is None:
+        return None
+    words = d.lookout.told(d).words
+    d.news, d.told = News(words, person is None), words[-1]
+    if person is None or is_me(person):
+        return [*go_back(d, []), *words]
+    return speak_to(d, person, words)
+
+
+@meaning("look_now")
+def look_now(d: Discourse, node: Node) -> Steps:
+    """ "Is there a mug in the kitchen? Go and look ...": that is what is done already."""
+    if d.news is None and d.report is None and d.lookout is None and d.such is None:
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("not_understood", part=words))
+    return []
+
+
+def told_at_last(d: Discourse) -> Steps:
+    """What a round was to find out, at the end of a sequence in which nobody asked for it."""
+    waiting: News | None = d.news
+    if d.depth == 1 and waiting is not None and waiting.waiting and waiting.whom is not None:
+        return speak_to(d, waiting.whom, waiting.words)
+    lookout: Lookout | None = d.lookout
+    if lookout is None or lookout.depth != d.depth:
+        return []
+    at = lookout.at(d)
+    if at != len(d.done) - 1 or lookout.definite:
+        lookout.until_found(d)
+        return []
+    return tell_lookout(d, None) or []

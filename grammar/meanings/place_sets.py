@@ -1,0 +1,83 @@
+"""Several places spoken of at once by what their names have in common: "offices 1 to 4", "wards a
+and c", "Alice's and Bob's office"."""
+
+from __future__ import annotations
+
+from grammar.chart import Leaf, Node
+from grammar.discourse import Discourse, NotUnderstood
+from grammar.lexicon import Name, series_of
+from grammar.meanings.places import unknown_place
+from grammar.meanings.registry import meaning
+from grammar.plan import Items, Text, Value
+
+
+@meaning("places_numbered")
+def places_numbered(d: Discourse, node: Node) -> Value:
+    """ "offices 1 to 4", "copy rooms 1, 2 and 3", "wards a and c"."""
+    kind = str(d.get(node, "kind"))
+    numbered: dict[str, Name] = {}
+    for place in d.lexicon.place_kinds[kind]:
+        if series_of(place.name) is not None:
+            numbered.setdefault(place.name.lower().split()[-1], place)
+    first, last = str(d.get(node, "first")), d.get(node, "last")
+    wanted = [first, *(d.get(node, "rest") or [])] if last is None else _between(first, str(last))
+    missing = [each for each in wanted if each not in numbered]
+    if missing or not wanted:
+        raise unknown_place(d, f"{kind} {missing[0] if missing else first}", node)
+    return Items(tuple(Text(numbered[each].name) for each in wanted))
+
+
+def _between(first: str, last: str) -> list[str]:
+    """The numbers, or the letters, from one to another."""
+    if first.isdigit() and last.isdigit():
+        return [str(each) for each in range(int(first), int(last) + 1)]
+    if len(first) == len(last) == 1:
+        return [chr(each) for each in range(ord(first), ord(last) + 1)]
+    return []
+
+
+@meaning("owner_list")
+@meaning("tail_list")
+def rest_of_list(d: Discourse, node: Node) -> list[str]:
+    """ "2 and 3" of "offices 1, 2 and 3", "Bob's and Clara's" of "Alice's, Bob's and Clara's"."""
+    return [str(d.get(node, "first")), *(d.get(node, "rest") or [])]
+
+
+@meaning("tail")
+def tail(d: Discourse, node: Node) -> str:
+    """What tells a place from others of its kind: a number, also in words, or a letter."""
+    (part,) = node.parts.values()
+    assert isinstance(part, Leaf)
+    number = isinstance(part.value, int | float)
+    return f"{part.value:g}" if number else d.tokens[part.start].norm
+
+
+@meaning("places_owned")
+def places_owned(d: Discourse, node: Node) -> Value:
+    """ "Alice's, Bob's and Clara's offices"."""
+    kind, mark = str(d.get(node, "kind")), d.language.speech["possessive"]
+    known = {place.name.lower(): place.name for place in d.lexicon.place_kinds[kind]}
+    names: list[Value] = []
+    for owner in (d.get(node, "first"), *d.get(node, "rest")):
+        place = known.get(f"{owner}{mark}{kind}".lower())
+        if place is None:
+            raise unknown_place(d, f"{owner}{mark}{kind}", node)
+        names.append(Text(place))
+    return Items(tuple(names))
+
+
+@meaning("owner_name")
+def owner_name(d: Discourse, node: Node) -> str:
+    """ "Bob's", whose place is named behind others'."""
+    leaf = node.parts["person"]
+    assert isinstance(leaf, Leaf)
+    return d.one_of(leaf).name
+
+
+@meaning("places_listed")
+def places_listed(d: Discourse, node: Node) -> Value:
+    """ "the lobby and the kitchen": gone round like all places of a kind."""
+    places = (d.get(node, "place"), *d.get(node, "place_list"))
+    if not all(isinstance(each, Text) for each in places):
+        raise NotUnderstood(d.language.phrase("which_places"))
+    return Items(places)
