@@ -51,10 +51,25 @@ def no_thing(plan: Plan, lexicon: Lexicon, language: Language) -> tuple[str, str
         titles = language.speech.get("personal_titles", ()) if step.method in IN_HAND else ()
         if len(words) > 1 and words[0] in titles:  # "take Mrs Jones to radiology": a stranger
             return "unknown_person", thing.value.title()
+        if step.method == "give" and _treats(step, lexicon, language):
+            return "no_medicine", thing.value
         for phrase, names in listed.items():
             if any(_headed(words, language.tokens_of(name), language) for name in names):
                 return str(phrase), thing.value
     return None
+
+
+def _treats(giving: Call | Ask, lexicon: Lexicon, language: Language) -> bool:
+    """Whether medicine is to be given to somebody who is treated here: that is not for a robot."""
+    thing, person = giving.arguments.get("thing"), giving.arguments.get("person")
+    if not isinstance(thing, Text) or not isinstance(person, Text):
+        return False
+    words, treated = language.tokens_of(thing.value), language.speech.get("treated", ())
+    medicine = language.speech.get("medicine", ())
+    if not any(_headed(words, language.tokens_of(each), language) for each in medicine):
+        return False
+    kinds = {each.kind for each in lexicon.people if each.name == person.value}
+    return not kinds.isdisjoint(treated) or person.value.split()[0] in treated
 
 
 def out_of_range(plan: Plan, language: Language) -> str | None:

@@ -49,6 +49,8 @@ MOST_WORDS: Final = 150
 COMMA_PASSED_OVER: Final = 1.5
 FILLER_PASSED_OVER: Final = 0.1
 MOST_SUGGESTIONS: Final = 3
+EMERGENCY: Final = "emergency"
+"""The answer that matters more than why a sentence is refused."""
 SHORTEST_CORRECTED: Final = 4
 """Letters of a word that may be misspelt."""
 
@@ -178,6 +180,14 @@ class Reader:
     def understand(self) -> Understanding:
         if not self.tokens:
             return rejected(self.text, self.language.phrase("empty"), self.context)
+        understood = self._understood()
+        if understood.status == "rejected":
+            why = why_not(self.tokens, self.language, self.names.called)
+            if why == EMERGENCY:
+                return rejected(self.text, self.language.phrase(why), self.context)
+        return understood
+
+    def _understood(self) -> Understanding:
         no = forbidden(self.tokens, self.language)
         if no is not None:
             return rejected(self.text, self.language.phrase(no), self.context)

@@ -252,3 +252,24 @@ def test_nobody_is_taken_in_the_hand(language: str, sentence: str) -> None:
 def test_a_remark_is_never_all_that_is_done_somewhere() -> None:
     found = understand("make sure there is a cup in each office", WARD)
     assert found.status == "rejected" or "cup" in write_program(found.plan)
+
+
+@pytest.mark.parametrize(
+    ("language", "said", "answer"),
+    [
+        ("en", "fire!", "call for help at once"),
+        ("en", "somebody has collapsed in the lobby", "call for help at once"),
+        ("de", "Hilfe, es brennt!", "sofort Hilfe"),
+        ("fr", "au secours, il y a le feu", "tout de suite à l'aide"),
+    ],
+)
+def test_an_emergency_is_answered_first(language: str, said: str, answer: str) -> None:
+    found = understand(said, hospital(language), language)
+    assert found.status == "rejected" and answer in (found.message or "")
+
+
+def test_medicine_is_for_nurses_to_give() -> None:
+    given = understand("take the pills from the pharmacy and give them to the patient", WARD)
+    assert "Medical" in (given.message or "")
+    carried = understand("bring the pills from the pharmacy to the nurse", WARD)
+    assert carried.plan is not None
