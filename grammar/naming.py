@@ -62,6 +62,9 @@ class Naming:
                         first = " ".join(words[:start])
                         before = [self.called(first)] if first else []
                         after = words[start + length :]
+                        if known is self.looks and after and not (before or self.before_noun):
+                            # "red apron", a noun that has no other name
+                            return f"{self.called(' '.join(after))} {called}"
                         stays = self.before_noun or first in self.relations
                         told = [*before, called] if stays else [called, *before]
                         return " ".join((*told, *([self.called(" ".join(after))] if after else [])))

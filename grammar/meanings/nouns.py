@@ -310,7 +310,8 @@ def thing_something(d: Discourse, node: Node) -> Thing:
 @meaning("thing_it")
 def thing_it(d: Discourse, node: Node) -> Thing:
     """ "it"; where a language has one word for things and people, whichever it can mean."""
-    if node.production.fixed.get("or_whom") and d.person is not None and not means_thing(d, node):
+    somebody = d.person is not None or owner_of(d) is not None
+    if node.production.fixed.get("or_whom") and somebody and not means_thing(d, node):
         return person_pronoun(d, node)
     if d.thing is not None:
         if d.thing.several and not d.is_plural(node):  # "bring one of them"

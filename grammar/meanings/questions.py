@@ -166,6 +166,12 @@ def several_of_a_kind(d: Discourse, node: Node, person: Thing | None) -> Thing |
     return replace(person, value=Text(ANYONE), plural=True)
 
 
+def _no_thing(d: Discourse, wh: Leaf | Node | None) -> bool:
+    """Whether what is asked for cannot be a thing: when, where, how."""
+    words = set(d.norms(wh.start, wh.end)) if wh is not None else set()
+    return bool(words & set(d.language.speech.get("asks_no_thing", ())))
+
+
 def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -> None:
     """What was asked about is "it" afterwards: a wheelchair that somebody may need, or whichever
     of tea and coffee they chose."""
@@ -185,6 +191,7 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
         and {"verb", "aux"} & question.parts.keys()
         and d.thing is None
         and d.place != Recall(name)
+        and not _no_thing(d, counted)
     ):
         d.thing, d.thing_last = Thing(Recall(name)), False  # "ask what they need and bring it"
     elif "noun" in question.parts and d.place != Recall(name):

@@ -84,11 +84,11 @@ def remark_name(d: Discourse, node: Node) -> Steps:
 @meaning("remark_where")
 def remark_where(d: Discourse, node: Node) -> Steps:
     """ "bring it to Alice, she is in ward a", "I forgot my bag in the cafeteria": where to look."""
-    spot: Where = d.get(node, "where")
-    place = spot.place
-    thing: Thing | None = d.get(node, "thing")
     who_is = node.parts.get("person_ref")
     person: Thing | list[Thing] | None = d.build(who_is) if who_is is not None else None
+    spot: Where = d.get(node, "where")  # "Alice is in her office": after her
+    place = spot.place
+    thing: Thing | None = d.get(node, "thing")
     if isinstance(person, list):  # "Alice or Bob is in the lobby": nobody knows which
         return aside(d, node)
     it = node.production.fixed.get("it") or (person is None and may_be_it(d, node))

@@ -87,6 +87,7 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
     if d.holding == thing.value:
         return []
     take_back_delivery(d, thing)
+    thing = where_seen(d, thing)
     if d.holding == thing.value:
         return []
     last = d.done[-1] if d.done else None
@@ -102,6 +103,17 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
     d.holding = thing.value
     d.thing, d.thing_last = thing, True
     return [*steps, Call("grab", {"thing": sought(d, thing)})]
+
+
+def where_seen(d: Discourse, thing: Thing) -> Thing:
+    """A thing at the place that was only looked at for it: "see whether there is a cup in the
+    kitchen and bring it to me"."""
+    from grammar.meanings.conditions import seen_there
+
+    about = d.report.thing if d.report is not None else None
+    if not thing.pronoun or about is None or about.value != thing.value:
+        return thing
+    return thing if seen_there(d) is None else replace(thing, place=about.place, pronoun=False)
 
 
 def take_back_delivery(d: Discourse, thing: Thing) -> None:
@@ -188,7 +200,9 @@ def bring(d: Discourse, node: Node) -> Steps:
 
         target: Where | None = d.get(node, "where")
         to = d.start() if target is None or target.place is None else target.place
-        return [*meet(d, thing), lead(d, thing, to)]
+        steps = meet(d, thing)
+        d.fetched = lead(d, thing, to)  # "fetch him and take him to ..." is straight there
+        return [*steps, d.fetched]
     if node.production.fixed.get("handing") and person is not None and not thing.pronoun:
         person = handed_there(d, thing, person)
     if person is not None and thing.pronoun and d.done:
