@@ -72,6 +72,7 @@ ONE_ONLY: Final = frozenset({"person_ref", "thing", "place"})
 SCENE: Final = (
     "thing",
     "person",
+    "person_on_arrival",
     "thing_last",
     "place",
     "at",
@@ -101,9 +102,13 @@ class Discourse:
     """The steps so far of the sequence that is being made."""
     begins: list[int] = field(default_factory=list)
     """Where among them each clause so far begins."""
+    around: list[Steps] = field(default_factory=list)
+    """Those of the sequences around it, the outermost first."""
     needs_start: bool = False
     thing: Thing | None = None
     person: Thing | None = None
+    person_on_arrival: Thing | None = None
+    """Who was spoken of when the robot went to where it is: whoever's place that is, is nearer."""
     last_named: Thing | None = None
     """Who was named last, in whichever branch: "him" is one person."""
     genders: dict[str, str] = field(default_factory=dict)
@@ -158,6 +163,12 @@ class Discourse:
     """What was looked for in vain: "if not, look in the kitchen"."""
     lacking: Thing | None = None
     """What is not where it should be: "if there is none, bring one" is for that place."""
+    message: Node | None = None
+    """The command that told somebody something, or asked, last."""
+    undelivered: Any = None
+    """That of somebody who is not there, and what was known then (`grammar.meanings.absences`)."""
+    instead_of: str | None = None
+    """The variable with the answer of somebody who, in this branch, is not there to give it."""
     delivery: Any = None
     """What was brought to somebody last (`grammar.meanings.deliveries.Delivery`)."""
     meant_for: Any = None
@@ -344,6 +355,11 @@ class Discourse:
         """Whether a person may be spoken of as a "he" or a "she"."""
         return self.gender_of(person.text, gender) == gender
 
+    def one_called(self, start: int, end: int) -> Thing | None:
+        """The last of those who were named whom a pronoun may stand for."""
+        others = (Thing(Text(name), known=True, person=True) for name in reversed(self.named))
+        return next((each for each in others if self.may_be(each, start, end)), None)
+
     def gender_of(self, name: str, otherwise: str = "") -> str:
         """Whether somebody is a "he" or a "she": as was said, or as most of that name are."""
         if name in self.genders:
@@ -454,6 +470,7 @@ class Discourse:
     def went(self, place: Value) -> None:
         """The robot is at this place now."""
         self.at = self.place = place
+        self.person_on_arrival = self.person
         self.looked_in = None
         self.at_furniture = None
         self.with_person = None
@@ -485,12 +502,13 @@ class Discourse:
         """The steps that `make` adds to `done`, as a sequence of their own."""
         outer, self.done = self.done, []
         begins, self.begins = self.begins, []
+        self.around.append(outer)
         self.depth += 1
         try:
             make()
             return self.done
         finally:
-            self.done, self.begins = outer, begins
+            self.done, self.begins = self.around.pop(), begins
             self.depth -= 1
 
 

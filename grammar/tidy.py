@@ -147,6 +147,9 @@ def _taking_in(step: Step, name: str, more: tuple[Step, ...]) -> Step:
     match step:
         case If() if name not in _all_given(step.then):
             return msgspec.structs.replace(step, otherwise=(*step.otherwise, *more))
+        case If() if name in _all_given(step.otherwise):  # either of two may have been asked
+            both = {side: (*getattr(step, side), *more) for side in ("then", "otherwise")}
+            return msgspec.structs.replace(step, **both)
         case If():
             back = tuple(each for each in more if _goes_back(each))[:1]
             otherwise = (*back, *step.otherwise) if step.otherwise else back

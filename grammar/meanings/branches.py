@@ -6,6 +6,7 @@ found they are here, and where they have not they still have to be looked for.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Final
 
@@ -13,6 +14,7 @@ from msgspec.structs import replace as structs_replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Claim, Discourse, Meeting, NotUnderstood, Steps, Thing
+from grammar.meanings.absences import Addressed, addressed_before
 from grammar.meanings.conditions import condition_of, negated, said_so
 from grammar.meanings.deliveries import (
     Taken,
@@ -27,7 +29,7 @@ from grammar.meanings.finding import go, not_found, speak_to
 from grammar.meanings.news import go_back, polled
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
-from grammar.meanings.reports import known_words, tell_speaker
+from grammar.meanings.reports import known_words, tell_speaker, told_again
 from grammar.meanings.searches import searched, searches
 from grammar.meanings.sights import named_some
 from grammar.meanings.speaking import put_for, sentence_form
@@ -44,6 +46,7 @@ from grammar.plan import (
     Remember,
     Step,
     Text,
+    Truth,
 )
 from grammar.tidy import mentions
 from grammar.wordforms import plural
@@ -60,6 +63,9 @@ def if_(d: Discourse, node: Node) -> Steps:
     met = d.met
     if node.production.fixed.get("unless"):
         condition, met = negated(condition), turned(met)
+    kept = addressed_before(d, met) if delivery is None and not before_it else None
+    if kept is not None and met is not None:
+        return absent(d, node, kept, met, lambda: d.build(node.parts["then"]))
     if delivery is not None and met is not None and lacks(delivery, met):
         taken = taken_back(d, delivery, met)
         if taken is not None:
@@ -130,6 +136,34 @@ def failing(d: Discourse, node: Node, taken: Taken, met: Meeting) -> Steps:
     part = next((node.parts[name] for name in names if name in node.parts), None)
     done = [*taken.steps, *(d.build(part) if part is not None else [])]
     return [If(taken.condition, tuple(done), tuple(otherwise))]
+
+
+def absent(
+    d: Discourse, node: Node, kept: Addressed, met: Meeting, make: Callable[[], Steps]
+) -> Steps:
+    """What was done with somebody, if they are there, and what is done if not."""
+    after, options, known = d.scene(), d.answer_options, d.answer
+    asked = any(isinstance(each, Call) and each.save_as == known for each in kept.steps)
+    outer = d.undelivered, d.instead_of
+    d.undelivered = None if d.message is None else (d.message, d.known_by_now())
+    d.instead_of = known if asked else None
+    claim = claim_of(d, node, Holds(Truth(False)), met)
+    d.claim, before = None if claim is None else Claim(claim, d.known_by_now()), d.claim
+    meet_there(d, met)
+    otherwise = make()
+    d.claim, (d.undelivered, d.instead_of) = before, outer
+    elsewhere = d.scene()
+    d.set_scene(after)
+    then = list(kept.steps)
+    part = other_branch(d, node, Not(kept.condition)) or node.parts.get("otherwise_denied")
+    if part is not None:
+        answer, d.answer, d.answer_options = d.answer, known, options
+        then += d.build(part)
+        d.answer = d.answer or answer
+        after = d.scene()
+    d.set_scene(elsewhere)
+    leave_off(d, after)
+    return [If(kept.condition, tuple(then), tuple(otherwise))]
 
 
 def searched_on(
@@ -352,6 +386,9 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
     """ "if there are more than three people, tell Alice": that there are more than three people."""
     before_it, condition = condition_of(d, node)
     met = turned(d.met) if node.production.fixed.get("unless") else d.met
+    kept = addressed_before(d, met) if not before_it else None
+    if kept is not None and met is not None:
+        return absent(d, node, kept, met, lambda: told_again(d, d.get(node, "person_ref")))
     person_said = node.parts.get("person_ref")
     asked_whether = person_said and person_said.end <= node.parts["condition"].start
     if asked_whether and what_it_means(node.parts["condition"]) == "answers_same":

@@ -40,6 +40,7 @@ def say_that(d: Discourse, node: Node) -> Steps:
     """ "tell her that lunch is ready" -> "Lunch is ready."; to somebody, "they" becomes "you"."""
     part = node.parts["text"]
     person: Thing | None = d.get(node, "person_ref")
+    d.message = node
     if node.production.fixed.get("to_me"):
         person = person_me(d, node)
     if isinstance(part, Leaf) and part.slot == "quote":
@@ -114,6 +115,13 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
             before = d.one_before(person, at + number) if named else None
             if before and not possessed and before not in pieces:
                 changed[number] = before
+            elif (
+                before
+                and possessed
+                and "owned" in data
+                and not any(before in piece for piece in pieces)
+            ):
+                changed[number] = data["owned"].format(name=before)
             another = (
                 another
                 or before is not None

@@ -19,7 +19,15 @@ from grammar.meanings.answers import Said, Wanted, wanted, yes
 from grammar.meanings.finding import go, speak_to
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
-from grammar.meanings.surveys import Survey, asked_before, in_loop, moved, note
+from grammar.meanings.surveys import (
+    Survey,
+    asked_before,
+    before_all,
+    in_loop,
+    moved,
+    note,
+    several_asked,
+)
 from grammar.plan import (
     Ask,
     Call,
@@ -262,7 +270,7 @@ def _kept(d: Discourse, key: tuple[Any, ...], name: str) -> tuple[Recall, bool]:
 
 
 def _before_all(d: Discourse, name: Recall, value: Value) -> None:
-    d.done.insert(0, Remember(name.name, value))
+    before_all(d, [Remember(name.name, value)])
 
 
 def _name_for(answer: Wanted) -> str:
@@ -450,6 +458,8 @@ def answer_of(d: Discourse, node: Node) -> Told:
         surveys = [each for each in surveys if each.who == person.value] or surveys
     survey = surveys[-1]
     said = said_in(d, node)
+    if _of_several(d, node, person):
+        return polled(d, "answers" if said is None else "who", said)
     of_one = person is not None and person.known and in_loop(d, survey.call)
     if of_one and person is not None and survey.who is not None:
         name = d.variable("answer_of")
@@ -466,3 +476,15 @@ def answer_of(d: Discourse, node: Node) -> Told:
     meant = wanted(d, survey, said)
     told_yes, told_no = d.say("yes_said", answer=answer), d.say("no_said", answer=answer)
     return Told([If(meant.given(survey), (told_yes,), (told_no,))], [])
+
+
+def _of_several(d: Discourse, node: Node, person: Thing | None) -> bool:
+    """Whether what several have answered is told: "each of them", "their answers", and "the answer"
+    if others than one were asked."""
+    if person is not None and (person.group is not None or person.plural):
+        return True
+    part = node.parts.get("person_ref") or node
+    several = set(d.language.speech.get("things_too", ()))
+    they = part is not node and bool(several & set(d.norms(part.start, part.end)))
+    of_one = d.gender(part.start, part.end) is not None or (person is not None and not they)
+    return not of_one and several_asked(d)

@@ -422,7 +422,13 @@ def by_furniture(d: Discourse, person: Thing) -> Thing:
 
 @meaning("person_pronoun")
 def person_pronoun(d: Discourse, node: Node) -> Thing:
-    """ "him", "her", "them": the person spoken of last, else whoever is here."""
+    """ "him", "her", "them": whose place this is, the person spoken of last, or whoever is here."""
+    host = host_here(d, node)
+    if host is not None:
+        d.called_so(host, node.start, node.end)
+        d.named.append(host.text)
+        d.person = host
+        return host
     if d.person is not None and d.person.group is not None and d.last_named is not None:
         several = d.language.speech.get("things_too", ())
         if not set(d.norms(node.start, node.end)) & set(several):
@@ -432,12 +438,10 @@ def person_pronoun(d: Discourse, node: Node) -> Thing:
         # "ask every visitor ... and send him away": each in his turn
         raise NotUnderstood(d.language.phrase("one_person"))
     if d.person is not None and not d.may_be(d.person, node.start, node.end):
-        other = d.last_named  # "ask Bob if he is free; if so, tell Alice, if not, tell her ..."
-        if other is not None and d.may_be(other, node.start, node.end):
+        # "ask Bob if he is free; if so, tell Alice, if not, tell her ..."
+        other = d.one_called(node.start, node.end)
+        if other is not None:
             return replace(other, here=d.with_person == other.value)
-    host = None if d.is_plural(node) else owner_gone_to(d)
-    if host is not None:
-        return host
     if d.person is not None:
         d.called_so(d.person, node.start, node.end)
         met = d.person.here or d.with_person == d.person.value
@@ -445,20 +449,29 @@ def person_pronoun(d: Discourse, node: Node) -> Thing:
         return replace(d.person, here=not elsewhere and (met or not d.person.known))
     owner = owner_of(d)
     if owner is not None:
-        return Thing(owner, known=True, person=True, here=True)
+        d.named.append(owner.value)
+        host = Thing(owner, known=True, person=True, here=True)
+        d.called_so(host, node.start, node.end)
+        return host
     if d.last_named is not None and d.with_person is None and not d.is_plural(node):
         return d.last_named  # somebody named in the other branch
     return Thing(d.with_person or Text(ANYONE), person=True, here=True)
 
 
-def owner_gone_to(d: Discourse) -> Thing | None:
-    """Whoever's office the robot has gone to, where it has left somebody it does not know: "ask the
-    visitor ..., go to Alice's office and tell her ..."."""
-    left = d.person is not None and not d.person.known and d.with_person is None
-    if not left or d.at is None or d.at != d.place:
+def host_here(d: Discourse, node: Node) -> Thing | None:
+    """Whoever's place the robot was sent to, if nobody was spoken of since: "tell Alice that ...
+    Then go to Bob's office and ask him ..."."""
+    owner = owner_of(d) if d.at is not None and d.place == d.at else None
+    before = d.person
+    if owner is None or before is None or d.is_plural(node):
         return None
-    owner = owner_of(d)
-    return None if owner is None else Thing(owner, known=True, person=True, here=True)
+    host = Thing(owner, known=True, person=True, here=True)
+    said_to_be_here = before.place == d.at and not before.here
+    left = not before.known and d.with_person is None  # a visitor who was left behind
+    nearer = before is d.person_on_arrival and not said_to_be_here and before.value != owner
+    if not (left or nearer):
+        return None
+    return host if d.may_be(host, node.start, node.end) else None
 
 
 @meaning("person_group")

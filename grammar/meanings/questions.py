@@ -8,12 +8,14 @@ from typing import Any, Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where, capital
+from grammar.meanings.absences import answer_variable, undelivered
 from grammar.meanings.conditions import says_the_same
 from grammar.meanings.finding import go, if_found, if_met, meet, speak_to, where_sent
 from grammar.meanings.nouns import described, is_me, known_by_name
 from grammar.meanings.options import MOST_OPTIONS, numbers_offered, options_of, without_little_words
 from grammar.meanings.references import answers_in, nouns_of
 from grammar.meanings.registry import meaning
+from grammar.meanings.reports import tell_speaker
 from grammar.meanings.surveys import Survey
 from grammar.plan import (
     Ask,
@@ -41,6 +43,7 @@ LONGEST_OFFERED: Final = 3
 def ask(d: Discourse, node: Node) -> Steps:
     """Ask somebody a question and remember the answer."""
     person: Thing | None = d.get(node, "person_ref")
+    d.message = node
     question = node.parts.get("question")
     if person is None and isinstance(question, Node) and "each" in question.production.fixed:
         person = Thing(Text(ANYONE), person=True, plural=True, here=True)  # "ask who wants tea"
@@ -239,10 +242,10 @@ def remember_answer(d: Discourse, options: tuple[str, ...], name: str) -> str:
     """Give the answer a variable; a choice of places is also where "there" is."""
     places = {each for place in d.lexicon.places for each in (place.name, d.called(place.name))}
     if options and all(option in places for option in options):
-        variable = d.variable("place")
+        variable = answer_variable(d, options) or d.variable("place")
         d.place = Recall(variable)
     else:
-        variable = d.variable(name)
+        variable = answer_variable(d, options) or d.variable(name)
     d.answer = variable
     d.answer_options = options
     d.report = d.news = d.checked = d.polled_for = None
@@ -374,6 +377,7 @@ def ask_to(d: Discourse, node: Node) -> Steps:
     part = node.parts.get("text")
     # Whoever else is spoken of is not the one who is asked: "sie soll ihn mir bringen".
     person: Thing | None = d.get(node, "person_ref")
+    d.message = node
     kinds = ("to_you_asked", "to_you_who", "to_you")
     you = next(each for each in kinds if each in d.language.speech)
     text = turn_to_you(d, part.start, part.end, you, person) if part is not None else ""
@@ -396,15 +400,18 @@ def ask_to(d: Discourse, node: Node) -> Steps:
 @meaning("ask_again")
 def ask_again(d: Discourse, node: Node) -> Steps:
     """ "..., if not, ask Alice": the same question."""
+    person: Thing = d.get(node, "person_ref")
+    message = undelivered(d, person)
+    if message is not None:
+        return message
     if not d.surveys:
         raise NotUnderstood(d.language.phrase("ask_what"))
-    person: Thing = d.get(node, "person_ref")
     last: Survey = d.surveys[-1]
-    if (
-        d.norms(node.parts["person_ref"].start, node.parts["person_ref"].end)[0]
-        in d.language.closed
-    ):
-        person = Thing(last.who, known=True, person=True) if isinstance(last.who, Text) else person
+    if not person.known and isinstance(last.who, Text):  # "ask them again"
+        person = Thing(last.who, known=True, person=True)
+    spot: Where | None = d.get(node, "from")
+    if spot is not None and spot.place is not None:
+        person = replace(person, place=spot.place, here=False)
     arguments = {key: value for key, value in last.call.arguments.items() if key != "person"}
     if person.known:
         arguments["person"] = person.value
@@ -456,6 +463,8 @@ def answer(d: Discourse, node: Node) -> Steps:
     if person is not None and person.plural and person.text != ANYONE:
         person = replace(person, plural=False)  # "the girls question" is the girl's
     known = node.parts.get("question_known")
+    if is_me(person) and known is None and d.answer is not None:
+        return tell_speaker(d)  # "come back and give me the answer"
     arguments: dict[str, Value] = {}
     if isinstance(known, Leaf):
         arguments["question"] = Text(known.value[0].question)

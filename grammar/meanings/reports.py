@@ -18,11 +18,12 @@ from grammar.discourse import (
     Where,
 )
 from grammar.meanings import news
+from grammar.meanings.absences import undelivered
 from grammar.meanings.finding import is_here, speak_to
 from grammar.meanings.nouns import is_me
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
-from grammar.meanings.surveys import in_loop, moved
+from grammar.meanings.surveys import in_loop, moved, several_asked
 from grammar.plan import (
     Ask,
     Call,
@@ -195,7 +196,7 @@ def kept(d: Discourse) -> str | None:
 def known_words(d: Discourse) -> Steps:
     """Say the last answer, those of all who were asked, or what the last code says."""
     if d.answer is not None:
-        if d.surveys and in_loop(d, d.surveys[-1].call):
+        if d.surveys and (in_loop(d, d.surveys[-1].call) or several_asked(d)):
             return news.polled(d, d.polled_for or "answers", None).words
         return [Call("say", {"text": Recall(d.answer)})]
     if d.code is not None:
@@ -226,7 +227,10 @@ def looks_around(d: Discourse) -> bool:
 
 
 def told_again(d: Discourse, person: Thing | None) -> Steps:
-    """Tell somebody what was told or answered last."""
+    """Tell somebody what was told or answered last, or could not be told to somebody else."""
+    message = undelivered(d, person)
+    if message is not None:
+        return message
     from grammar.meanings.lookouts import tell_lookout
 
     of_round = tell_lookout(d, person)

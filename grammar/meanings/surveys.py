@@ -89,7 +89,15 @@ def replacing(step: Any, old: Step | None, new: Steps) -> Any:
 
 def note(d: Discourse, call: Step, notes: Steps, before: Steps) -> None:
     """Put notes behind a call among the steps so far, and what they need before them all."""
-    d.done[:] = [*before, *noting(d.done, call, notes)]
+    for steps in (*d.around, d.done):
+        steps[:] = noting(steps, call, notes)
+    before_all(d, before)
+
+
+def before_all(d: Discourse, steps: Steps) -> None:
+    """Put steps before all that was done; in a loop, before all that is done in a round."""
+    first = d.done if d.in_loop else (*d.around, d.done)[1 if d.around else 0]
+    first[:0] = steps
 
 
 def moved(steps: Any) -> bool:
@@ -100,13 +108,41 @@ def moved(steps: Any) -> bool:
     )
 
 
-def asked_before(d: Discourse) -> list[Survey]:
+def asked_so_far(d: Discourse) -> list[Survey]:
+    """The questions among the steps so far, here and around."""
     surveys: list[Survey] = d.surveys
-    calls = [each for each in nodes(tuple(d.done)) if isinstance(each, Call)]
-    found = [each for each in surveys if any(each.call is call for call in calls)]
+    done = (*d.around, d.done)
+    calls = [each for steps in done for each in nodes(steps) if isinstance(each, Call)]
+    return [each for each in surveys if any(each.call is call for call in calls)]
+
+
+def asked_before(d: Discourse) -> list[Survey]:
+    found = asked_so_far(d)
     if not found:
         raise NotUnderstood(d.language.phrase("no_question"))
     return found
+
+
+def several_asked(d: Discourse) -> bool:
+    """Whether "the answer" is that of several: of who was asked the same, or of who was asked only
+    because of what somebody else had answered."""
+    surveys: list[Survey] = d.surveys
+    last = surveys[-1] if surveys else None
+    if last is None or d.answer is None or d.answer != last.call.save_as:
+        return False
+    others = [each for each in asked_so_far(d) if each.who not in (None, last.who)]
+    if any(each.call.save_as == last.call.save_as for each in others):
+        return False  # only one of them is asked
+    question = last.call.arguments["question"]
+    if any(each.call.arguments["question"] == question for each in others):
+        return True
+    answers = [Recall(each.call.save_as) for each in others if each.call.save_as]
+    return any(
+        isinstance(each, If)
+        and any(mentions(each.condition, answer) for answer in answers)
+        and _is_in(each, last.call)
+        for each in nodes(tuple(d.done))
+    )
 
 
 def in_loop(d: Discourse, call: Call) -> bool:

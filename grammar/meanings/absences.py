@@ -1,0 +1,108 @@
+"""What is done if somebody to whom the robot was sent is not there, said after what they were to be
+asked or told: "go to Alice's office and ask her ... If she isn't there, ask Bob instead."
+
+What was to be done with them goes under the condition that they are there, and what is said for the
+other case is the other branch. In that branch a message or a question without words of its own
+("tell Bob", "try Bob") is the one that could not be delivered.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from grammar.chart import Node
+from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing
+from grammar.meanings.nouns import is_me
+from grammar.meanings.searches import searches
+from grammar.plan import Ask, Call, Condition, Holds, If, Value
+
+SPEAKING = ("say", "ask", "give", "answer")
+
+
+@dataclass(frozen=True)
+class Addressed:
+    """Steps with somebody, and the condition that they are there."""
+
+    condition: Condition
+    steps: Steps
+
+
+def addressed_before(d: Discourse, met: Meeting | None) -> Addressed | None:
+    """What was last done with somebody who is said not to be there, taken out of the steps."""
+    if met is None or met.holds or not met.thing.person:
+        return None
+    who = met.thing
+    for at in range(len(d.done) - 1, -1, -1):
+        step = d.done[at]
+        if isinstance(step, If):
+            found = searches(step.condition)
+            if not found:
+                continue  # what hangs on an answer
+            if not _is_meant(found[0], who) or at != len(d.done) - 1:
+                return None
+            d.done.pop()
+            return Addressed(step.condition, list(step.then))
+        if not isinstance(step, Call) or step.method not in ("find", "goto"):
+            continue
+        spoken = any(_speaks(each) for each in d.done[at + 1 :])
+        searching = step.method == "find"
+        if not spoken or (searching and not _is_meant(Ask("find", step.arguments), who)):
+            return None
+        if not searching and who.place not in (None, step.arguments.get("place")):
+            return None
+        first = at if searching else at + 1
+        steps = d.done[first + 1 if searching else first :]
+        del d.done[first:]
+        looked = Ask("find", step.arguments) if searching else _seen(steps, who)
+        return Addressed(Holds(looked), steps)
+    return None
+
+
+def _is_meant(search: Ask, who: Thing) -> bool:
+    """Whether a search is for somebody; whoever is nowhere to be seen is also "nobody"."""
+    place = search.arguments.get("place")
+    return (search.arguments["thing"] == who.value or who.text == ANYONE) and (
+        who.place is None or who.place == place
+    )
+
+
+def _seen(steps: Steps, who: Thing) -> Ask:
+    """Whether whoever is spoken to is there."""
+    asked = (each.arguments.get("person") for each in steps if isinstance(each, Call))
+    named: Value | None = next((each for each in asked if each is not None), None)
+    return Ask("sees", {"thing": named if who.text == ANYONE and named else who.value})
+
+
+def _speaks(step: object) -> bool:
+    return isinstance(step, Call) and step.method in SPEAKING
+
+
+def undelivered(d: Discourse, person: Thing | None) -> Steps | None:
+    """The message or question for whoever was not there, put to somebody else; None if there is
+    none, or something was found out since."""
+    if d.undelivered is None or person is None or is_me(person) or person.group is not None:
+        return None
+    node, known = d.undelivered
+    if known != d.known_by_now():
+        return None
+    part = node.parts.get("person_ref")
+    if not isinstance(part, Node):
+        return None
+    d.undelivered = None
+    outer = d.bound.get(id(part))
+    d.bound[id(part)] = person
+    try:
+        steps: Steps = d.build(node)
+    finally:
+        del d.bound[id(part)]
+        if outer is not None:
+            d.bound[id(part)] = outer
+    return steps
+
+
+def answer_variable(d: Discourse, options: tuple[str, ...]) -> str | None:
+    """The name for an answer that somebody gives instead of another person: the same."""
+    if d.instead_of is None or d.answer_options != options:
+        return None
+    name, d.instead_of = d.instead_of, None
+    return name
