@@ -15,7 +15,7 @@ from grammar.language import Language
 from grammar.lexicon import Lexicon, Name
 from grammar.naming import joined_up, naming
 from grammar.plan import Ask, Call, Number, Recall, Remember, Sentence, Step, Text, Value
-from grammar.referents import Claim, Meeting, Thing, Where
+from grammar.referents import Branched, Claim, Meeting, Thing, Where
 from grammar.tokens import Token
 from robot_api.methods import METHODS
 
@@ -28,7 +28,7 @@ COMMANDS: Final = frozenset({"command", "place_corrected"})
 ANYONE: Final = "person"
 """What the robot looks for when it is anybody's turn."""
 
-__all__ = ["Claim", "Meeting", "Thing", "Where"]
+__all__ = ["Branched", "Claim", "Meeting", "Thing", "Where"]
 
 Steps = list[Step]
 
@@ -140,6 +140,8 @@ class Discourse:
     answer: str | None = None
     """The variable with the last answer."""
     answer_options: tuple[str, ...] = ()
+    asked_for: Text | None = None
+    """The thing that somebody was asked for, and that is still with them: "ask her for the key"."""
     agreed: tuple[Any, Value] | None = None
     """The call that asked several who were found to say the same, and what they said."""
     resolved: set[int] = field(default_factory=set)
@@ -159,6 +161,8 @@ class Discourse:
     each time, or only "if anybody comes"."""
     met: Meeting | None = None
     """Who or what the last condition was about."""
+    branched: Branched | None = None
+    """The last condition that was followed by what is done then."""
     missing: Thing | None = None
     """What was looked for in vain: "if not, look in the kitchen"."""
     lacking: Thing | None = None

@@ -84,3 +84,15 @@ class Claim:
     saying: Step
     known: tuple[Any, ...]
     """What was known besides (`known_by_now`): where more is found out, that is told instead."""
+
+
+@dataclass(frozen=True)
+class Branched:
+    """A condition that somebody or something is there: "if she is" may be said of it again."""
+
+    step: Step
+    scene: dict[str, Any]
+    """The scene in which it was checked."""
+    met: Meeting | None
+    answer: str | None
+    """The last answer that was known by then."""

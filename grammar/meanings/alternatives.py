@@ -10,6 +10,7 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps
 from grammar.meanings.branches import what_it_means
 from grammar.meanings.conditions import negated
+from grammar.meanings.deliveries import inside
 from grammar.plan import Ask, Both, Call, Compare, Condition, Holds, If, Not, Number, Recall, Text
 from grammar.tidy import nodes
 
@@ -51,6 +52,43 @@ def side_by_side(d: Discourse, clause: Node) -> tuple[Node, Node | None]:
     return clause, None
 
 
+def for_all(d: Discourse, chain: Node) -> Node:
+    """A condition on an answer that stands last is one on all that the sentence says: "fetch it and
+    bring it to him if he says yes"."""
+    if d.answer is None:
+        return chain
+    before: list[Node] = []
+    each = chain
+    while isinstance(rest := each.parts.get("rest"), Node):
+        first = each.parts["first"]
+        if each.production.fixed.get("joint", "and") == "stop" or _asks(first):
+            return chain
+        before.append(each)
+        each = rest
+        last = itself(_node(each.parts["first"]))
+        then = last.parts.get("then")
+        if last.production.means != "if" or not isinstance(then, Node):
+            continue
+        if then.start > last.parts["condition"].start or not _about(last):
+            return chain
+        for step in reversed(before):
+            then = replace(step, parts={**step.parts, "rest": then}, end=then.end)
+        whole = replace(last, parts={**last.parts, "then": then}, start=then.start)
+        return replace(each, parts={**each.parts, "first": whole}, start=then.start)
+    return chain
+
+
+def _asks(part: Leaf | Node) -> bool:
+    """Whether a clause asks something, or is a condition itself."""
+    means = {each.production.means for each in inside(part)}
+    return bool(means & {*CONDITIONAL, "ask", "ask_again", "ask_topic", "ask_more", "ask_in"})
+
+
+def _node(part: Leaf | Node) -> Node:
+    assert isinstance(part, Node)
+    return part
+
+
 def itself(clause: Node) -> Node:
     """What a clause stands for, if it is nothing but another one."""
     while clause.production.means is None and len(clause.parts) == 1:
@@ -90,7 +128,7 @@ def exclusive(done: Steps) -> Steps:
     result: Steps = []
     for step in done:
         last = result[-1] if result else None
-        if isinstance(last, If) and isinstance(step, If) and _excludes(last, step):
+        if isinstance(last, If) and isinstance(step, If) and excludes(last, step):
             result[-1] = _or_else(last, step)
         elif isinstance(last, If) and isinstance(step, If) and _is_silence(last, step):
             result[-1] = If(step.condition, step.then, (last,))
@@ -134,10 +172,12 @@ def _or_else(first: If, second: If) -> If:
         inner = first.otherwise[0]
         assert isinstance(inner, If)
         return If(first.condition, first.then, (_or_else(inner, second),))
+    if second.condition == negated(first.condition) and not second.otherwise:
+        return If(first.condition, first.then, second.then)
     return If(first.condition, first.then, (second,))
 
 
-def _excludes(first: If, second: If) -> bool:
+def excludes(first: If, second: If) -> bool:
     """Whether an answer that one asks for cannot be the one that the other asks for, and the first
     leaves room for the second."""
     one, other = first.condition, second.condition
@@ -149,7 +189,7 @@ def _excludes(first: If, second: If) -> bool:
     if not first.otherwise:
         return True
     inner = first.otherwise[0]
-    return len(first.otherwise) == 1 and isinstance(inner, If) and _excludes(inner, second)
+    return len(first.otherwise) == 1 and isinstance(inner, If) and excludes(inner, second)
 
 
 def _gives_anew(step: object, name: str) -> bool:

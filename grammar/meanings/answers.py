@@ -68,14 +68,14 @@ def wanted(d: Discourse, survey: Survey, said: Said, *, strict: bool = False) ->
     if set(survey.options) == {agree, refuse}:
         if refuse in norms:
             return Wanted((refuse,))
-        if agree not in norms and not _is_about(d, survey, norms):
+        if agree not in norms and not is_about(d, survey, norms):
             raise NotUnderstood(
                 d.language.phrase("not_understood", part=d.words(said.start, said.end))
             )
         return Wanted((refuse if negative else agree,))
     chosen = tuple(each for each in survey.options if _names(d, norms, each))
     named = {word for each in chosen for word in d.language.tokens_of(each)}
-    if strict and not _is_about(d, survey, [norm for norm in norms if norm not in named]):
+    if strict and not is_about(d, survey, [norm for norm in norms if norm not in named]):
         chosen = ()
     if chosen:
         return Wanted(chosen, negative and not any(_is_none(d, each) for each in chosen))
@@ -104,7 +104,7 @@ def _is_none(d: Discourse, option: str) -> bool:
     return bool(_words(d, "negations") & set(d.language.tokens_of(option)))
 
 
-def _is_about(d: Discourse, survey: Survey, norms: Sequence[str]) -> bool:
+def is_about(d: Discourse, survey: Survey, norms: Sequence[str]) -> bool:
     """Whether some words speak of what was asked, or say no more than that somebody agreed."""
     question = survey.call.arguments["question"]
     asked = d.language.tokens_of(question.value) if isinstance(question, Text) else ()

@@ -13,7 +13,16 @@ from typing import Final
 from msgspec.structs import replace as structs_replace
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import ANYONE, Claim, Discourse, Meeting, NotUnderstood, Steps, Thing
+from grammar.discourse import (
+    ANYONE,
+    Branched,
+    Claim,
+    Discourse,
+    Meeting,
+    NotUnderstood,
+    Steps,
+    Thing,
+)
 from grammar.meanings.absences import Addressed, addressed_before
 from grammar.meanings.conditions import condition_of, negated, said_so
 from grammar.meanings.deliveries import (
@@ -70,6 +79,8 @@ def if_(d: Discourse, node: Node) -> Steps:
         taken = taken_back(d, delivery, met)
         if taken is not None:
             return [*before_it, *failing(d, node, taken, met)]
+    if met is None and not before_it:
+        as_before(d, condition)
     handed = None
     if delivery is not None and (hands_it_over(node.parts["then"]) or other_hands_it_over(node)):
         handed = still_in_hand(d, delivery)
@@ -114,7 +125,9 @@ def if_(d: Discourse, node: Node) -> Steps:
             return [If(looked, (If(condition, tuple(then), tuple(otherwise)),), (missing,))]
     counted, condition = counted_first(condition, [*then, *otherwise])
     whole = If(condition, tuple(then), tuple(otherwise))
-    return [*before_it, *counted, whole if further else either_way(whole)]
+    whole = whole if further else either_way(whole)
+    d.branched = Branched(whole, start, met, d.answer)
+    return [*before_it, *counted, whole]
 
 
 def other_hands_it_over(node: Node) -> bool:
@@ -138,6 +151,19 @@ def failing(d: Discourse, node: Node, taken: Taken, met: Meeting) -> Steps:
     return [If(taken.condition, tuple(done), tuple(otherwise))]
 
 
+def as_before(d: Discourse, condition: Condition) -> None:
+    """Go back to the scene of the condition just before if only one of the two can be: "if she says
+    no, tell Bob. If she says yes, ask her ...", for whom nobody has left."""
+    from grammar.meanings.alternatives import excludes
+
+    before = d.branched
+    last = d.done[-1] if d.done else None
+    if before is None or last is not before.step or not isinstance(last, If):
+        return
+    if excludes(last, If(condition, ())):
+        d.set_scene(before.scene)
+
+
 def absent(
     d: Discourse, node: Node, kept: Addressed, met: Meeting, make: Callable[[], Steps]
 ) -> Steps:
@@ -150,7 +176,7 @@ def absent(
     claim = claim_of(d, node, Holds(Truth(False)), met)
     d.claim, before = None if claim is None else Claim(claim, d.known_by_now()), d.claim
     meet_there(d, met)
-    otherwise = make()
+    otherwise = d.sequence(lambda: d.done.extend(make()))
     d.claim, (d.undelivered, d.instead_of) = before, outer
     elsewhere = d.scene()
     d.set_scene(after)
@@ -158,12 +184,17 @@ def absent(
     part = other_branch(d, node, Not(kept.condition)) or node.parts.get("otherwise_denied")
     if part is not None:
         answer, d.answer, d.answer_options = d.answer, known, options
-        then += d.build(part)
+        then = d.sequence(lambda: _go_on(d, then, part))
         d.answer = d.answer or answer
         after = d.scene()
     d.set_scene(elsewhere)
     leave_off(d, after)
     return [If(kept.condition, tuple(then), tuple(otherwise))]
+
+
+def _go_on(d: Discourse, before: Steps, part: Leaf | Node) -> None:
+    d.done.extend(before)
+    d.done.extend(d.build(part))
 
 
 def searched_on(
@@ -394,6 +425,8 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
     if asked_whether and what_it_means(node.parts["condition"]) == "answers_same":
         return [*before_it, *told_either_way(d, node, condition)]
     claim = claim_of(d, node, condition, met)
+    if met is None and not before_it:
+        as_before(d, condition)
     start = d.scene()
     meet_there(d, met)
     person: Thing | None = d.get(node, "person_ref")
@@ -415,7 +448,9 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
         meet_there(d, turned(met))
     leave_off(d, after)
     counted, condition = counted_first(condition, [*then, *otherwise])
-    return [*before_it, *counted, If(condition, tuple(then), tuple(otherwise))]
+    whole = If(condition, tuple(then), tuple(otherwise))
+    d.branched = Branched(whole, start, met, d.answer)
+    return [*before_it, *counted, whole]
 
 
 def told_either_way(d: Discourse, node: Node, condition: Condition) -> Steps:

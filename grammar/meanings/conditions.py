@@ -28,7 +28,7 @@ from grammar.meanings.news import in_round
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.searches import just_awaited, just_looked_for, searches
-from grammar.meanings.surveys import Survey, asked_before, in_loop, replacing
+from grammar.meanings.surveys import Survey, asked_before, asked_so_far, in_loop, replacing
 from grammar.plan import (
     Ask,
     Both,
@@ -384,7 +384,12 @@ def answered(d: Discourse, node: Node) -> Condition:
     fixed = node.production.fixed
     if d.answer is None:
         raise NotUnderstood(d.language.phrase("no_question"))
-    several = "answer" in fixed and "text" not in node.parts and asked_which(d)
+    plain = "answer" in fixed and "text" not in node.parts
+    literal = plain and d.language.phrase(str(fixed["answer"])) in d.norms(node.start, node.end)
+    before = yes_no_before(d) if literal else None
+    if before is not None:
+        return before.said(d.language.phrase(str(fixed["answer"])))
+    several = plain and asked_which(d)
     if several:  # "if they agree", on one of several days
         same = same_answers(d, node)
         return Not(same) if fixed["answer"] == "no" else same
@@ -435,6 +440,18 @@ def ask_openly(d: Discourse) -> None:
     d.answer_options = ()
 
 
+def yes_no_before(d: Discourse) -> Survey | None:
+    """The last question that was answered with yes or no, if another one was asked since, that is
+    not: "if she says yes, ask her when: at 4 or at 5. If she says no, ..."."""
+    yes_no = {d.language.phrase("yes"), d.language.phrase("no")}
+    surveys = [each for each in asked_so_far(d) if not in_loop(d, each.call)]
+    if not surveys or set(surveys[-1].options) == yes_no or surveys[-1].call.save_as != d.answer:
+        return None
+    if not surveys[-1].options and d.branched is None:
+        return None  # "no" may be an answer to an open question, too
+    return next((each for each in reversed(surveys) if set(each.options) == yes_no), None)
+
+
 def asked_which(d: Discourse) -> bool:
     """Whether several people were asked last to choose, but not between yes and no."""
     survey: Survey | None = d.surveys[-1] if d.surveys else None
@@ -456,7 +473,7 @@ def says_the_same(d: Discourse, words: str) -> bool:
 def said_so(d: Discourse, no: bool, there_is_none: bool = False) -> Condition:
     """ "if so", "if he is not": what was looked for in the step before was found, or the last
     answer was yes."""
-    agreed = just_agreed(d, no)
+    agreed = just_agreed(d, no) or just_branched(d, no)
     if agreed is not None:
         return agreed
     looked = just_looked_for(d, None)
@@ -483,10 +500,27 @@ def said_so(d: Discourse, no: bool, there_is_none: bool = False) -> Condition:
             return Not(result) if no else result
         raise NotUnderstood(d.language.phrase("no_question"))
     wanted = d.language.phrase("no" if no else "yes")
+    if (before := yes_no_before(d)) is not None:
+        return before.said(wanted)
     for option in d.answer_options:
         if option.lower() == wanted.lower():
             return Compare(Recall(d.answer), "==", Text(option))
     return Compare(Text(wanted), "in", Recall(d.answer))
+
+
+def just_branched(d: Discourse, no: bool) -> Condition | None:
+    """ "If she isn't there, come back. If she is, ask her ...": the other case of that."""
+    before = d.branched
+    step = before.step if before is not None else None
+    if before is None or before.met is None or not isinstance(step, If) or step.otherwise:
+        return None
+    if before.answer != d.answer or not d.done or d.done[-1] is not step:
+        return None
+    if before.met.holds is not no:  # the same case again says something else
+        return None
+    d.set_scene(before.scene)
+    d.met = replace(before.met, holds=not no)
+    return negated(step.condition)
 
 
 @meaning("so")

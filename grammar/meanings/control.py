@@ -6,7 +6,7 @@ from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, NotUnderstood, Steps, Thing
-from grammar.meanings.alternatives import exclusive, itself, side_by_side
+from grammar.meanings.alternatives import exclusive, for_all, itself, side_by_side
 from grammar.meanings.branches import in_branch
 from grammar.meanings.finding import go, not_found
 from grammar.meanings.found_places import if_such
@@ -39,6 +39,7 @@ def steps(d: Discourse, node: Node) -> Steps:
         joint = "stop"
         places: Items | None = None
         while each is not None:
+            each = for_all(d, each)
             before = len(d.done)
             d.begins.append(before)
             first = each.parts["first"]
@@ -120,6 +121,9 @@ def guard_finds(d: Discourse, done: Steps) -> Steps:
         missing = not_found(d, found_thing(d, step))
         body: Steps = []
         for later in done[number + 1 :]:
+            if isinstance(later, Call) and later.method == "grab" and asked_last(body):
+                body += handed_over(later, done[number + 1 + len(body) :])
+                break  # who is not found gives nothing
             if isinstance(later, Call) and (
                 later.method in ("goto", "find", "dock") or later.method in needs_it
             ):
@@ -133,6 +137,21 @@ def guard_finds(d: Discourse, done: Steps) -> Steps:
             result.append(If(Not(found), (missing,)))
         return [*result, *guard_finds(d, done[number + 1 + len(body) :])]
     return result
+
+
+def asked_last(steps: Steps) -> bool:
+    last = steps[-1] if steps else None
+    return isinstance(last, Call) and last.method == "ask"
+
+
+def handed_over(taking: Call, steps: Steps) -> Steps:
+    """Some steps from taking a thing up to the one that gives it away."""
+    thing = taking.arguments["thing"]
+    for number, step in enumerate(steps):
+        let_go = isinstance(step, Call) and step.method in ("give", "put")
+        if let_go and isinstance(step, Call) and step.arguments["thing"] == thing:
+            return steps[: number + 1]
+    return steps[:1]
 
 
 def speak_codes(d: Discourse, done: Steps) -> Steps:

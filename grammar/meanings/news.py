@@ -15,13 +15,14 @@ import msgspec
 
 from grammar.chart import Node
 from grammar.discourse import START, Discourse, NotUnderstood, Steps, Thing, Where
-from grammar.meanings.answers import Said, Wanted, wanted, yes
+from grammar.meanings.answers import Said, Wanted, is_about, wanted, yes
 from grammar.meanings.finding import go, speak_to
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import (
     Survey,
     asked_before,
+    asked_so_far,
     before_all,
     in_loop,
     moved,
@@ -84,6 +85,10 @@ class News:
 def news(d: Discourse, node: Node) -> Steps:
     """ "come back and tell me who said yes", "announce the result in the lobby"."""
     person: Thing | None = d.get(node, "whom")
+    if d.asked_for is not None and d.thing is not None and _speaks_of_it(d, node):
+        from grammar.meanings.things import deliver
+
+        return deliver(d, replace(d.thing, pronoun=True), person, None)
     told: list[Told] = d.get(node, "told") or [last_found(d)]
     first = [step for each in told for step in each.first]
     words = [step for each in told for step in each.words]
@@ -119,6 +124,13 @@ def wants_to_know(d: Discourse, node: Node) -> Steps:
     return [step for each in told for step in each.first]
 
 
+def _speaks_of_it(d: Discourse, node: Node) -> bool:
+    """Whether it is "it" that is brought: "ask her for the key and come back with it"."""
+    told = node.parts.get("told")
+    words = d.norms(told.start, told.end) if told is not None else []
+    return len(words) == 1 and words[0] in d.language.speech.get("things_too", ())
+
+
 def last_found(d: Discourse) -> Told:
     """What "report back" speaks of."""
     from grammar.meanings.reports import found_told
@@ -128,7 +140,8 @@ def last_found(d: Discourse) -> Told:
 
 def go_back(d: Discourse, more: Steps) -> Steps:
     """Back to who gave the command, unless the robot is there."""
-    if not moved([*d.done, *more]) or (d.done and not more and d.done[-1] == BACK):
+    before = () if d.in_loop else d.around
+    if not moved([*before, *d.done, *more]) or (d.done and not more and d.done[-1] == BACK):
         return []
     d.came_back()
     return [BACK]
@@ -476,6 +489,33 @@ def answer_of(d: Discourse, node: Node) -> Told:
     meant = wanted(d, survey, said)
     told_yes, told_no = d.say("yes_said", answer=answer), d.say("no_said", answer=answer)
     return Told([If(meant.given(survey), (told_yes,), (told_no,))], [])
+
+
+@meaning("answer_asked")
+def answer_asked(d: Discourse, node: Node) -> Told:
+    """ "when she is coming", after she was asked when she is coming."""
+    told = told_as_asked(d, node.start, node.end)
+    if told is None:
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("not_understood", part=words))
+    return told
+
+
+def told_as_asked(d: Discourse, start: int, end: int) -> Told | None:
+    """The answer to a question that some words ask again, or that goes on from the one they ask
+    ("whether she is coming, and if so, when"); None if none of those asked is that."""
+    norms = d.norms(start, end)
+    yes_no = {d.language.phrase("yes"), d.language.phrase("no")}
+    surveys = asked_so_far(d)
+    if not any(is_about(d, each, norms) for each in surveys):
+        return None
+    survey = next((each for each in reversed(surveys) if set(each.options) != yes_no), None)
+    if survey is None or survey.call.save_as is None:
+        return None
+    if in_loop(d, survey.call) or several_asked(d):
+        return polled(d, "answers", None)
+    d.resolved.update(range(start, end))
+    return Told([Call("say", {"text": Recall(survey.call.save_as)})], [])
 
 
 def _of_several(d: Discourse, node: Node, person: Thing | None) -> bool:

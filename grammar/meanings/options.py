@@ -97,8 +97,18 @@ def split_options(d: Discourse, start: int, end: int) -> tuple[str, ...]:
     numbers = [d.tokens[begin].value for begin, last in stripped[:-1] if last - begin == 1]
     numbers.append(d.tokens[stripped[-1][0]].value)
     if len(numbers) == len(stripped) > 1 and all(each is not None for each in numbers):
-        options = [f"{number:g}" for number in numbers]  # as digits, to count with
+        unit = _time_of_day(d, stripped[-1])
+        options = [f"{number:g}{unit}" for number in numbers]  # as digits, to count with
     return tuple(dict.fromkeys(option for option in options if option))
+
+
+def _time_of_day(d: Discourse, group: tuple[int, int]) -> str:
+    """What "4, 5 or 6 PM" says of all of them, though it stands behind the last."""
+    clock = set(d.language.speech.get("clock_words", ()))
+    start, end = group
+    if end - start != 2 or d.tokens[start + 1].norm not in clock:
+        return ""
+    return f" {d.words(start + 1, end)}"
 
 
 def without_little_words(d: Discourse, start: int, end: int) -> tuple[int, int]:

@@ -101,7 +101,9 @@ def place_own(d: Discourse, node: Node) -> Value:
     """ "his office", after Bob: Bob's office; of nobody by name, the only office there is."""
     kind = d.get(node, "kind")
     said: Thing | None = d.get(node, "owner")
-    who = d.person if said is None else said
+    who = said or d.person or d.one_called(node.start, node.end)
+    if who is None and (host := owner_of(d)) is not None:
+        who = Thing(host, known=True, person=True)
     if who is not None and isinstance(who.group, Items):  # for each of them anew
         who = replace(who, value=who.group.items[-1])
     owner = who.text if who is not None and who.known else None

@@ -179,6 +179,14 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
     """What was asked about is "it" afterwards: a wheelchair that somebody may need, or whichever
     of tea and coffee they chose."""
     rest = question.parts.get("subject") or question.parts.get("rest")
+    d.asked_for = None
+    if question.production.fixed.get("wanted"):
+        what = singular(
+            d.noun_words(question.parts["noun"].start, question.parts["noun"].end), d.language
+        )
+        d.asked_for = Text(what)
+        d.thing, d.thing_last = Thing(d.asked_for, noun=head_word(what, d.language)), True
+        return
     counted = question.parts.get("wh")
     noun = counted.parts.get("noun") if isinstance(counted, Node) else None
     asks_thing = counted is not None and d.tokens[counted.start].norm in d.language.speech.get(

@@ -24,7 +24,9 @@ from grammar.meanings.remarks import fetched_there, known_to_be
 from grammar.meanings.reports import Report, found_out
 from grammar.meanings.sights import best_there, which_there
 from grammar.meanings.speaking import sentence_form
+from grammar.meanings.surveys import Survey, note
 from grammar.plan import Call, ForEach, Items, Recall, Text, Value
+from grammar.wordforms import head_word, singular
 
 
 @meaning("find")
@@ -84,7 +86,7 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
     """Find a thing and take it; nothing if it is in the hand by what was said."""
     if thing.person:
         raise NotUnderstood(d.language.phrase("what_is_it", word=thing.text))
-    if d.holding == thing.value:
+    if d.holding == thing.value or handed_over(d, thing):
         return []
     take_back_delivery(d, thing)
     thing = where_seen(d, thing)
@@ -114,6 +116,35 @@ def where_seen(d: Discourse, thing: Thing) -> Thing:
     if not thing.pronoun or about is None or about.value != thing.value:
         return thing
     return thing if seen_there(d) is None else replace(thing, place=about.place, pronoun=False)
+
+
+def handed_over(d: Discourse, thing: Thing) -> bool:
+    """Whether somebody was asked for a thing that now goes elsewhere: the robot then takes it right
+    behind the question."""
+    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    if d.asked_for is None or thing.value != d.asked_for or survey is None:
+        return False
+    note(d, survey.call, [Call("grab", {"thing": thing.value})], [])
+    d.asked_for = None
+    d.holding = thing.value
+    d.thing, d.thing_last = thing, True
+    return True
+
+
+@meaning("fetch_from")
+def fetch_from(d: Discourse, node: Node) -> Steps:
+    """ "get the key from Alice": she is asked for it."""
+    person: Thing = where_sent(d, d.get(node, "person_ref"))
+    part = node.parts["noun"]
+    what = singular(d.noun_words(part.start, part.end), d.language)
+    question = Text(str(node.production.fixed["question"]).format(thing=what))
+    asking: dict[str, Value] = {"question": question}
+    if person.known:
+        asking["person"] = person.value
+    steps = [*meet(d, person), Call("ask", asking)]
+    d.person = person
+    thing = Thing(Text(what), noun=head_word(what, d.language), here=True)
+    return [*steps, *deliver(d, thing, None, None)]
 
 
 def take_back_delivery(d: Discourse, thing: Thing) -> None:
@@ -303,7 +334,8 @@ def _delivered(d: Discourse, thing: Thing, person: Thing | None, spot: Where | N
         return [*steps, Call("put", give)]
     if person is None or is_me(person):
         start = d.start()
-        steps.append(Call("goto", {"place": start}))
+        if steps or d.at != start:
+            steps.append(Call("goto", {"place": start}))
         d.at_pick_up = d.at
         d.went(start)
         d.delivered = thing.value

@@ -7,14 +7,15 @@ from typing import Final
 
 import msgspec
 
-from grammar.chart import Node
+from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.inference import takes_time
-from grammar.meanings.branches import claim_of, if_, meet_there
+from grammar.meanings.alternatives import ABOUT_ANSWERS
+from grammar.meanings.branches import claim_of, if_, meet_there, what_it_means
 from grammar.meanings.conditions import condition_of, negated
 from grammar.meanings.deliveries import inside
 from grammar.meanings.finding import speak_to
-from grammar.meanings.news import in_round
+from grammar.meanings.news import Told, go_back, in_round, told_as_asked
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import known_words
@@ -45,12 +46,19 @@ LOOK_EVERY: Final = 10
 @meaning("when")
 def when(d: Discourse, node: Node) -> Steps:
     """ "when somebody comes, ...": wait for it, then do it; "whenever": again and again, but once
-    at each place of a round: "go round the labs, and whenever you find a cup, ..."."""
+    at each place of a round: "go round the labs, and whenever you find a cup, ...". "Go tell
+    Clara when he wants to leave", after he was asked that, tells her what he said."""
     if node.production.fixed.get("always") and in_round(d):
         return if_(d, node)
     if waited_in_time(d) and not node.production.fixed.get("always"):
         whether: Steps = if_(d, node)
         return whether
+    if asked_when(d, node) is not None and tells_only(node.parts["then"]):
+        told: Steps = d.build(node.parts["then"])
+        return told
+    about_answer = what_it_means(node.parts["condition"]) in ABOUT_ANSWERS
+    if about_answer and d.answer is not None and not node.production.fixed.get("always"):
+        return if_(d, node)  # "when he says yes", of somebody who was asked: he has answered
     named_before(d, node)
     person = d.person
     before, condition = condition_of(d, node)
@@ -103,6 +111,21 @@ def waited_in_time(d: Discourse) -> bool:
     ..." asks then whether he did."""
     last = d.done[-1] if d.done else None
     return isinstance(last, Call) and _waits(last) and "timeout" in last.arguments
+
+
+def asked_when(d: Discourse, node: Node) -> Told | None:
+    """What was answered to the question when something is, if that is what is told of here."""
+    condition = node.parts["condition"]
+    told = node.parts.get("person_ref") or node.parts["then"]
+    if condition.start < told.end:
+        return None
+    return told_as_asked(d, condition.start, condition.end)
+
+
+def tells_only(part: Leaf | Node) -> bool:
+    """Whether some steps are nothing but telling somebody."""
+    meant = {each.production.means for each in inside(part)} - {None}
+    return meant <= {"steps", "tell_that", "news", "person_name", "person_pronoun"}
 
 
 def each_time(before: Steps, condition: Condition, body: Steps) -> Steps:
@@ -227,11 +250,16 @@ def waiting(d: Discourse, node: Node) -> Steps:
 
 @meaning("tell_when")
 def tell_when(d: Discourse, node: Node) -> Steps:
-    """ "as soon as Bob is here, tell me": wait for it, then say that it is so."""
+    """ "as soon as Bob is here, tell me": wait for it, then say that it is so; "tell Bob when she
+    is coming", after she was asked that: what she said."""
+    person: Thing = d.get(node, "person_ref")
+    asked = asked_when(d, node)
+    if asked is not None:
+        back = go_back(d, []) if is_me(person) else []
+        return [*back, *asked.words] if is_me(person) else speak_to(d, person, asked.words)
     before_it, condition = condition_of(d, node)
     claim = claim_of(d, node, condition, d.met)
     meet_there(d, d.met)
-    person: Thing = d.get(node, "person_ref")
     waiting = awaited(before_it, condition)
     away = d.at is not None or moved(waiting)
     told = speak_to(d, person, known_words(d) if claim is None else [claim])
