@@ -108,6 +108,8 @@ def _stands_beside(d: Discourse, before: Leaf | Node, clause: Node, about: bool)
     clause = itself(clause)
     if clause.production.means not in CONDITIONAL or "condition" not in clause.parts:
         return False
+    if not about and what_it_means(clause.parts["condition"]) == "so":
+        return not _asks(before)  # "if she is not there, come back, if she is, ask her ..."
     if about or _about(clause):
         return about and _about(clause)
     joins = d.language.speech.get("clause", {}).get("and", ("and",))

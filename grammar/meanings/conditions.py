@@ -207,7 +207,10 @@ def just_checked(d: Discourse, thing: Thing) -> Condition | None:
 
     report: Report | None = d.report
     about = report.thing if report is not None else None
-    if about is None or about.value != thing.value or thing.place not in (None, about.place):
+    if about is None or thing.place not in (None, about.place):
+        return None
+    nobody = about.person and thing.person and thing.text == ANYONE  # of one who was looked for
+    if about.value != thing.value and not nobody:
         return None
     return seen_there(d) or (Holds(known) if (known := checked(d)) is not None else None)
 
