@@ -142,6 +142,8 @@ class Discourse:
     answer_options: tuple[str, ...] = ()
     asked_for: Text | None = None
     """The thing that somebody was asked for, and that is still with them: "ask her for the key"."""
+    brought: tuple[Step, ...] = ()
+    """How a thing was handed over last, if nobody was named to bring it to."""
     agreed: tuple[Any, Value] | None = None
     """The call that asked several who were found to say the same, and what they said."""
     resolved: set[int] = field(default_factory=set)

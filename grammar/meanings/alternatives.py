@@ -8,18 +8,12 @@ from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps
-from grammar.meanings.branches import what_it_means
+from grammar.meanings.branches import ABOUT_ANSWERS, what_it_means
 from grammar.meanings.conditions import negated
 from grammar.meanings.deliveries import inside
 from grammar.plan import Ask, Both, Call, Compare, Condition, Holds, If, Not, Number, Recall, Text
 from grammar.tidy import nodes
 
-ABOUT_ANSWERS: Final = frozenset(
-    {
-        *("so", "answered", "answer_counts", "answers_many", "answers_same", "unanswered"),
-        *("code_is", "cannot_check"),
-    }
-)
 _HOLDS: Final = {
     "==": operator.eq,
     "!=": operator.ne,

@@ -35,7 +35,7 @@ from grammar.meanings.deliveries import (
     taken_back,
 )
 from grammar.meanings.finding import go, not_found, speak_to
-from grammar.meanings.news import go_back, polled
+from grammar.meanings.news import BACK, go_back, polled
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import known_words, tell_speaker, told_again
@@ -57,10 +57,17 @@ from grammar.plan import (
     Text,
     Truth,
 )
-from grammar.tidy import mentions
+from grammar.tidy import mentions, nodes
 from grammar.wordforms import plural
 from grammar.wordorder import direct_clause
 
+ABOUT_ANSWERS: Final = frozenset(
+    {
+        *("so", "answered", "answer_counts", "answers_many", "answers_same", "unanswered"),
+        *("answer_is", "answers_reached"),
+        *("code_is", "cannot_check"),
+    }
+)
 COUNT: Final = "count"
 """The variable that a number is kept in which a condition is about."""
 
@@ -126,6 +133,10 @@ def if_(d: Discourse, node: Node) -> Steps:
     counted, condition = counted_first(condition, [*then, *otherwise])
     whole = If(condition, tuple(then), tuple(otherwise))
     whole = whole if further else either_way(whole)
+    if part is None and denied is None and what_it_means(node.parts["condition"]) in ABOUT_ANSWERS:
+        whole, told = told_in_any_case(d, whole)
+        if told:
+            return [*before_it, *counted, whole, *told]
     d.branched = Branched(whole, start, met, d.answer)
     return [*before_it, *counted, whole]
 
@@ -149,6 +160,18 @@ def failing(d: Discourse, node: Node, taken: Taken, met: Meeting) -> Steps:
     part = next((node.parts[name] for name in names if name in node.parts), None)
     done = [*taken.steps, *(d.build(part) if part is not None else [])]
     return [If(taken.condition, tuple(done), tuple(otherwise))]
+
+
+def told_in_any_case(d: Discourse, step: If) -> tuple[If, Steps]:
+    """What is told of all who were asked, whether or not one more of them was: "if she says no, ask
+    Bob and then come back and tell me what they said"."""
+    then = list(step.then)
+    at = next((at for at, each in enumerate(then) if each == BACK), 0)
+    polls = [Recall(name) for name in d.notes.values()]
+    asked = any(isinstance(each, Call) and each.method == "ask" for each in nodes(then[:at]))
+    if not asked or not any(mentions(then[at:], each) for each in polls):
+        return step, []
+    return If(step.condition, tuple(then[:at])), then[at:]
 
 
 def as_before(d: Discourse, condition: Condition) -> None:
@@ -422,6 +445,8 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
         return absent(d, node, kept, met, lambda: told_again(d, d.get(node, "person_ref")))
     person_said = node.parts.get("person_ref")
     asked_whether = person_said and person_said.end <= node.parts["condition"].start
+    if asked_whether and is_me(d.get(node, "person_ref")) and is_so(d, node):
+        return told_again(d, d.get(node, "person_ref"))
     if asked_whether and what_it_means(node.parts["condition"]) == "answers_same":
         return [*before_it, *told_either_way(d, node, condition)]
     claim = claim_of(d, node, condition, met)
@@ -451,6 +476,13 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
     whole = If(condition, tuple(then), tuple(otherwise))
     d.branched = Branched(whole, start, met, d.answer)
     return [*before_it, *counted, whole]
+
+
+def is_so(d: Discourse, node: Node) -> bool:
+    """Whether the speaker wants to know what somebody has answered: "let me know if he is", which
+    is also told if he is not."""
+    so = what_it_means(node.parts["condition"]) == "so"
+    return so and d.answer is not None and "otherwise" not in node.parts
 
 
 def told_either_way(d: Discourse, node: Node, condition: Condition) -> Steps:

@@ -19,7 +19,7 @@ from grammar.discourse import (
     as_value,
 )
 from grammar.meanings.agreement import same_answers
-from grammar.meanings.answers import Said
+from grammar.meanings.answers import Said, Wanted
 from grammar.meanings.answers import wanted as wanted_answer
 from grammar.meanings.deliveries import delivered_last
 from grammar.meanings.finding import noun_of
@@ -552,7 +552,7 @@ def answers_many(d: Discourse, node: Node) -> Condition:
     surveys = asked_before(d)
     answer = d.said = wanted_answer(d, surveys[-1], d.get(node, "said"))
     if not in_loop(d, surveys[-1].call):
-        return answer.given(surveys[-1])
+        return of_those_asked(d, surveys, answer, str(node.production.fixed.get("how")))
     said = counted_answers(d, surveys, answer)
     how = node.production.fixed.get("how")
     if how == "all":
@@ -564,6 +564,34 @@ def answers_many(d: Discourse, node: Node) -> Condition:
         return Compare(said, "==", Number(0))
     least = int(d.get(node, "count", 1))
     return Compare(said, d.get(node, "operator", ">="), Number(least))
+
+
+def of_those_asked(d: Discourse, surveys: list[Survey], answer: Wanted, how: str) -> Condition:
+    """Whether all, some or none of those who were asked one after the other gave an answer."""
+    same = surveys[-1].call.arguments["question"]
+    alike = [each for each in surveys if each.call.arguments["question"] == same]
+    if len(alike) == 1:
+        alike = [each for each in surveys if each.options == surveys[-1].options]
+    given = tuple(answer.given(each) for each in alike if not in_loop(d, each.call))
+    if len(given) < 2:
+        return Not(given[-1]) if how == "none" else given[-1]
+    if how == "all":
+        return Both(given)
+    return Not(Either(given)) if how == "none" else Either(given)
+
+
+@meaning("answer_is")
+def answer_is(d: Discourse, node: Node) -> Condition:
+    """ "if it's tea", "in case of tea": if that was chosen."""
+    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    part = node.parts["text"]
+    words = [norm for norm in d.norms(part.start, part.end) if norm not in d.language.closed]
+    if survey is not None and survey.call.save_as == d.answer:
+        for option in survey.options:
+            if [each for each in d.language.tokens_of(option) if each in words] == words:
+                return survey.said(option)
+    said = d.words(node.start, node.end)
+    raise NotUnderstood(d.language.phrase("cannot_check", what=said), gap=(node.start, node.end))
 
 
 def people_asked(d: Discourse, surveys: list[Survey]) -> Value:

@@ -8,6 +8,7 @@ each question, and before everything the empty list or the zero that it is noted
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
@@ -252,7 +253,7 @@ def said_in(d: Discourse, node: Node) -> Said | None:
 def polled(d: Discourse, kind: str, said: Said | None) -> Told:
     surveys = asked_before(d)
     if said is not None:
-        d.said = wanted(d, surveys[-1], said)
+        d.said = _meant(d, surveys, said)
     answer: Wanted = d.said or yes(d)
     if kind == "list":  # of those who said yes, or of what they said
         agree, refuse = d.language.phrase("yes"), d.language.phrase("no")
@@ -271,6 +272,17 @@ def polled(d: Discourse, kind: str, said: Said | None) -> Told:
         "sum": _sum,
     }[kind]
     return Told(made(d, surveys, answer, kind), [])
+
+
+def _meant(d: Discourse, surveys: list[Survey], said: Said) -> Wanted:
+    """The answer that some words speak of, as any of the questions that go together puts it."""
+    same = [each for each in surveys if each.options == surveys[-1].options]
+    for survey in reversed(same[:-1]):
+        with suppress(NotUnderstood):
+            return wanted(d, same[-1], said)
+        with suppress(NotUnderstood):
+            return wanted(d, survey, said)
+    return wanted(d, surveys[-1], said)
 
 
 def _kept(d: Discourse, key: tuple[Any, ...], name: str) -> tuple[Recall, bool]:

@@ -6,9 +6,13 @@ from typing import Final
 
 from grammar.chart import Node
 from grammar.discourse import Discourse
+from grammar.plan import Ask, Items, Text, Value
 from grammar.tokens import COLON, COMMA
+from grammar.wordforms import singular
 
 MOST_OPTIONS: Final = 20
+MOST_PLACES: Final = 40
+"""Places that an answer is looked for among."""
 
 
 def options_of(d: Discourse, node: Node) -> tuple[str, ...]:
@@ -85,7 +89,7 @@ def split_options(d: Discourse, start: int, end: int) -> tuple[str, ...]:
     longest = max(last - begin for begin, last in stripped[1:]) if stripped[1:] else 1
     options: list[str] = []
     for number, (begin, last) in enumerate(stripped):
-        place = _place_at_end(d, begin, last)
+        place = _place_at_end(d, begin, last) or _numbered(d, options, begin, last)
         if place:
             options.append(d.called(place))
             continue
@@ -130,6 +134,35 @@ def _without_what_follows(d: Discourse, groups: list[tuple[int, int]]) -> tuple[
         if d.tokens[at].norm in ends and not _place_at_end(d, start, end):
             return start, at
     return start, end
+
+
+def _numbered(d: Discourse, options: list[str], start: int, end: int) -> str | None:
+    """The place that a number stands for after another one: "meeting room 1, 2 or 3"."""
+    before = options[-1].split() if options else []
+    if end - start != 1 or d.tokens[start].value is None or len(before) < 2:
+        return None
+    words = " ".join((*before[:-1], d.tokens[start].norm)).lower()
+    names = (name for place in d.lexicon.places for name in (place.name, d.called(place.name)))
+    return next((each for each in names if each.lower() == words), None)
+
+
+def places_asked_for(d: Discourse, question: Node) -> Value | None:
+    """The places that may answer a question for a room, an office or any place: "which meeting room
+    is free"; None for other questions."""
+    part = question.parts.get("wh") or question.parts.get("noun")
+    if part is None or part.end - part.start < (1 if "noun" in question.parts else 2):
+        return None
+    words = d.norms(part.start, part.end)
+    last = singular(words[-1], d.language)
+    for kind, places in d.lexicon.place_kinds.items():
+        said = d.language.tokens_of(kind)
+        if tuple(words[-len(said) :]) == said and len(places) <= MOST_OPTIONS:
+            first = d.norms(part.end - len(said) - 1, part.end - len(said))[0]  # "meeting" room
+            called = [each for each in places if first in d.language.tokens_of(each.name)]
+            return Items(tuple(Text(each.name) for each in called or places))
+    if last in d.language.words_called("place_nouns") and len(d.lexicon.places) <= MOST_PLACES:
+        return Ask("places")
+    return None
 
 
 def _place_at_end(d: Discourse, start: int, end: int) -> str | None:

@@ -12,11 +12,18 @@ from grammar.meanings.absences import answer_variable, undelivered
 from grammar.meanings.conditions import says_the_same
 from grammar.meanings.finding import go, if_found, if_met, meet, speak_to, where_sent
 from grammar.meanings.nouns import described, is_me, known_by_name
-from grammar.meanings.options import MOST_OPTIONS, numbers_offered, options_of, without_little_words
+from grammar.meanings.options import (
+    MOST_OPTIONS,
+    numbers_offered,
+    options_of,
+    places_asked_for,
+    without_little_words,
+)
 from grammar.meanings.references import answers_in, nouns_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import tell_speaker
 from grammar.meanings.surveys import Survey
+from grammar.naming import the
 from grammar.plan import (
     Ask,
     Call,
@@ -90,6 +97,9 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
     elif question.production.fixed.get("where"):
         if len(d.lexicon.places) <= MOST_OPTIONS:
             arguments["options"] = Ask("places")
+        d.place = Recall(name)
+    elif (places := places_asked_for(d, question)) is not None:
+        arguments["options"] = places
         d.place = Recall(name)
     if (everybody or several) and "each" in question.production.fixed:
         d.polled_for = "who"
@@ -178,7 +188,12 @@ def _no_thing(d: Discourse, wh: Leaf | Node | None) -> bool:
 def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -> None:
     """What was asked about is "it" afterwards: a wheelchair that somebody may need, or whichever
     of tea and coffee they chose."""
-    rest = question.parts.get("subject") or question.parts.get("rest")
+    subject = question.parts.get("subject")
+    if subject is not None and set(d.norms(subject.start, subject.end)) <= d.language.words_called(
+        "speakers"
+    ):
+        subject = None  # "whether I may borrow the projector"
+    rest = subject or question.parts.get("rest")
     d.asked_for = None
     if question.production.fixed.get("wanted"):
         what = singular(
@@ -297,6 +312,10 @@ def question(d: Discourse, node: Node) -> str:
             as_it_is, form = True, str(node.production.fixed["another"])
         values["verb"] = verb if as_it_is else base_form(d, verb)
         values["rest"] = f"{values['rest']} {particle}"
+    rest = node.parts.get("rest")
+    it = rest is not None and set(d.norms(rest.start, rest.end)) <= d.language.words_called("it")
+    if it and d.surveys and d.thing is not None and d.thing.text:
+        values["rest"] = the(d.called(d.thing.text), d.language)  # who is asked did not hear of it
     form = form if values["rest"].strip() else form.replace(" {rest},", ",")
     text = " ".join(form.format_map(values).split())
     for pattern, instead in d.language.speech.get("question_joined", ()):

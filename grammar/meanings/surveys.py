@@ -181,9 +181,27 @@ def answers_reached(d: Discourse, node: Node) -> Condition:
     if not d.surveys:
         raise NotUnderstood(d.language.phrase("no_question"))
     answer = d.get(node, "answer")
+    if not d.in_loop and asked_so_far(d):  # "if one of them says no": all have answered by now
+        return reached(d, node)
     name = d.variable("answers" if answer is None else f"said_{answer}")
     d.counting = (d.surveys[-1], None if answer is None else str(answer), name)
     return Compare(Recall(name), ">=", Number(int(d.get(node, "count"))))
+
+
+def reached(d: Discourse, node: Node) -> Condition:
+    """Whether so many of those who were asked have given an answer."""
+    from grammar.meanings.answers import Wanted
+    from grammar.meanings.conditions import of_those_asked
+    from grammar.meanings.news import counted
+
+    surveys = asked_before(d)
+    said = d.get(node, "answer")
+
+    wanted = None if said is None else Wanted((str(said),))
+    number = int(d.get(node, "count"))
+    if wanted is not None and number == 1 and not in_loop(d, surveys[-1].call):
+        return of_those_asked(d, surveys, wanted, "some")
+    return Compare(counted(d, surveys, wanted), ">=", Number(number))
 
 
 def until_answered(d: Discourse, condition: Condition, body: Steps) -> Steps:

@@ -25,7 +25,7 @@ from grammar.meanings.reports import Report, found_out
 from grammar.meanings.sights import best_there, which_there
 from grammar.meanings.speaking import sentence_form
 from grammar.meanings.surveys import Survey, note
-from grammar.plan import Call, ForEach, Items, Recall, Text, Value
+from grammar.plan import Call, ForEach, Items, Recall, Step, Text, Value
 from grammar.wordforms import head_word, singular
 
 
@@ -149,6 +149,12 @@ def fetch_from(d: Discourse, node: Node) -> Steps:
 
 def take_back_delivery(d: Discourse, thing: Thing) -> None:
     """ "get the cup and put it on the table": "get" alone would have handed it to the speaker."""
+    brought = list(d.brought)
+    if brought and d.done[-len(brought) :] == brought and _is_given(brought[-1], thing):
+        # "if she needs the cup, get it from the kitchen and bring it to Bob": to him only
+        del d.done[-len(brought) :]
+        d.brought, d.holding, d.at = (), thing.value, thing.place
+        return
     handed = Call("give", {"thing": thing.value})
     at = max((at for at, step in enumerate(d.done) if step == handed), default=0)
     if d.delivered == thing.value and at:
@@ -158,6 +164,10 @@ def take_back_delivery(d: Discourse, thing: Thing) -> None:
         d.holding = thing.value
         if last:  # but "get the box, then go to Henry and give it to him": he is where it is now
             d.at = d.at_pick_up
+
+
+def _is_given(step: Step, thing: Thing) -> bool:
+    return isinstance(step, Call) and step.arguments.get("thing") == thing.value
 
 
 @meaning("put")
@@ -243,7 +253,18 @@ def bring(d: Discourse, node: Node) -> Steps:
     spot: Where | None = d.get(node, "where")
     if person is None and spot is None and node.production.fixed.get("open"):
         person, spot = meant_for(d, thing)
+        steps = deliver(d, thing, person, spot)
+        d.brought = handing_over(steps) if person is not None or spot is not None else ()
+        return steps
     return deliver(d, thing, person, spot)
+
+
+def handing_over(steps: Steps) -> tuple[Step, ...]:
+    """What comes behind taking a thing."""
+    taken = [
+        at for at, each in enumerate(steps) if isinstance(each, Call) and each.method == "grab"
+    ]
+    return tuple(steps[taken[-1] + 1 :]) if taken else ()
 
 
 def handed_there(d: Discourse, thing: Thing, person: Thing) -> Thing:

@@ -10,8 +10,7 @@ import msgspec
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.inference import takes_time
-from grammar.meanings.alternatives import ABOUT_ANSWERS
-from grammar.meanings.branches import claim_of, if_, meet_there, what_it_means
+from grammar.meanings.branches import ABOUT_ANSWERS, claim_of, if_, meet_there, what_it_means
 from grammar.meanings.conditions import condition_of, negated
 from grammar.meanings.deliveries import inside
 from grammar.meanings.finding import speak_to
