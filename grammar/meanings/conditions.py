@@ -583,10 +583,13 @@ def of_those_asked(d: Discourse, surveys: list[Survey], answer: Wanted, how: str
 @meaning("answer_is")
 def answer_is(d: Discourse, node: Node) -> Condition:
     """ "if it's tea", "in case of tea": if that was chosen."""
+    asked_for = about_answer(d, node)  # "it is not finished"
+    if asked_for is not None:
+        return asked_for
     survey: Survey | None = d.surveys[-1] if d.surveys else None
     part = node.parts["text"]
     words = [norm for norm in d.norms(part.start, part.end) if norm not in d.language.closed]
-    if survey is not None and survey.call.save_as == d.answer:
+    if words and survey is not None and survey.call.save_as == d.answer:
         for option in survey.options:
             if [each for each in d.language.tokens_of(option) if each in words] == words:
                 return survey.said(option)
