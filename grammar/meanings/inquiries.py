@@ -11,6 +11,7 @@ from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Wh
 from grammar.meanings.places import only_taken_apart
 from grammar.meanings.questions import ask_one
 from grammar.meanings.registry import meaning
+from grammar.meanings.reports import tell_speaker
 from grammar.meanings.surveys import Survey, each_asked
 from grammar.meanings.things import deliver
 from grammar.plan import Recall, Repeat, Text, Value
@@ -27,6 +28,10 @@ def ask_topic(d: Discourse, node: Node) -> Steps:
         person = Thing(Text(ANYONE), person=True, plural=True)
     steps = ask_one(d, node, replace(person, place=place or person.place))
     d.polled_for = question.production.fixed.get("kind")
+    if node.production.fixed.get("told"):  # "I wonder whether Bob has time, go and ask him"
+        d.done.extend(steps)
+        d.done.extend(tell_speaker(d))
+        return []
     return steps
 
 

@@ -13,7 +13,7 @@ from typing import Any, Final
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, capital
 from grammar.meanings.finding import go, speak_to
-from grammar.meanings.nouns import person_me
+from grammar.meanings.nouns import gender_of_thing, person_me
 from grammar.meanings.questions import base_form, turn_to_you
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning
@@ -229,6 +229,11 @@ def _of_thing(d: Discourse, start: int, at: int, end: int, data: Mapping[str, An
     verb = next((each for each in d.norms(at + 1, end) if each not in data["between"]), "")
     if gender is None or verb in data.get("duties", ()):
         return False
+    # "put the parcel there and tell Bob that it has arrived"
+    said = {each.spelled or each.norm for each in d.tokens[at + 1 : end]}
+    of_thing = verb in data.get("being", ()) and said & set(data.get("of_things", ()))
+    if of_thing and d.thing is not None:
+        return gender_of_thing(d, d.thing) == gender
     begins = [start]
     for position in range(start, at):
         word = d.tokens[position].norm

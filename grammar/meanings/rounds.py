@@ -8,6 +8,7 @@ from msgspec.structs import replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
+from grammar.meanings.answers import Said
 from grammar.meanings.finding import speak_to
 from grammar.meanings.news import News, Told, asked_yet, go_back, last_found, polled, take_back
 from grammar.meanings.nouns import is_me, thing_it
@@ -352,6 +353,10 @@ def places_told(d: Discourse, node: Node) -> Told:
     ):
         # "ask them whether they want coffee and tell me how many of them want coffee"
         return polled(d, "many" if node.production.fixed.get("tell") == "many" else "who", None)
+    of_it = isinstance(trait_part, Node) and trait_part.production.fixed.get("it")
+    if not named and of_it and last_round(d) is None and asked_yet(d):
+        # "ask them whether they have a key and tell me which ones have none"
+        return polled(d, "who", Said(trait_part.start, trait_part.end))
     if d.news is not None:  # what was checked on the round is told only as is said now
         take_back(d, d.news)
     d.lookout = None

@@ -22,6 +22,8 @@ from grammar.wordforms import plural, singular
 def names_here(d: Discourse, node: Node) -> Report:
     """ "who is in the lobby?", "the name of the person in the kitchen"."""
     person: Thing | None = d.get(node, "person_ref")
+    if person is not None and person.coming:  # whoever will come: not who is here now
+        raise NotUnderstood(d.language.phrase("one_person"))
     come = None if person is not None or "mods" in node.parts else who_has_come(d)
     if come is not None:
         return come
