@@ -142,6 +142,10 @@ class Discourse:
     answer_options: tuple[str, ...] = ()
     asked_for: Text | None = None
     """The thing that somebody was asked for, and that is still with them: "ask her for the key"."""
+    wondered: tuple[Step, ...] = ()
+    """The steps that ask what the speaker would like to know, before it is said whom to ask."""
+    wonder: str | None = None
+    """The variable with the answer."""
     brought: tuple[Step, ...] = ()
     """How a thing was handed over last, if nobody was named to bring it to."""
     agreed: tuple[Any, Value] | None = None

@@ -8,13 +8,15 @@ from dataclasses import replace
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
+from grammar.meanings.news import go_back
 from grammar.meanings.places import only_taken_apart
 from grammar.meanings.questions import ask_one
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import tell_speaker
 from grammar.meanings.surveys import Survey, each_asked
 from grammar.meanings.things import deliver
-from grammar.plan import Recall, Repeat, Text, Value
+from grammar.plan import Call, Recall, Repeat, Text, Value
+from grammar.tidy import mentions
 
 
 @meaning("ask_topic")
@@ -33,6 +35,22 @@ def ask_topic(d: Discourse, node: Node) -> Steps:
         d.done.extend(tell_speaker(d))
         return []
     return steps
+
+
+@meaning("wondered")
+def wondered(d: Discourse, node: Node) -> Steps:
+    """ "I want to know whether Bob has time": he is asked; where it is said next how ("go to his
+    office and ask him"), then so."""
+    steps = ask_topic(d, node)
+    d.wondered, d.wonder = tuple(steps), d.answer
+    return steps
+
+
+def wonder_told(d: Discourse) -> Steps:
+    """What the speaker wants to know, if nobody is told of it."""
+    if d.wonder is None or mentions(tuple(d.done), Recall(d.wonder)):
+        return []
+    return [*go_back(d, []), Call("say", {"text": Recall(d.wonder)})]
 
 
 @meaning("bring_many")

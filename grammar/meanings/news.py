@@ -485,6 +485,8 @@ def answer_of(d: Discourse, node: Node) -> Told:
     said = said_in(d, node)
     if _of_several(d, node, person):
         return polled(d, "answers" if said is None else "who", said)
+    if said is None and (of_whom := said_by(d, node.start, node.end)) is not None:
+        return Told(of_whom, [])
     of_one = person is not None and person.known and in_loop(d, survey.call)
     if of_one and person is not None and survey.who is not None:
         name = d.variable("answer_of")
@@ -501,6 +503,25 @@ def answer_of(d: Discourse, node: Node) -> Told:
     meant = wanted(d, survey, said)
     told_yes, told_no = d.say("yes_said", answer=answer), d.say("no_said", answer=answer)
     return Told([If(meant.given(survey), (told_yes,), (told_no,))], [])
+
+
+def said_by(d: Discourse, start: int, end: int) -> Steps | None:
+    """What those said whom some words speak of: "her answer", "what he said", "their answers"; None
+    if they do not tell one from others."""
+    surveys = asked_so_far(d)
+    people = {each.who for each in surveys if isinstance(each.who, Text)}
+    if len(people) < 2 or any(in_loop(d, each.call) for each in surveys):
+        return None
+    gender = d.gender(start, end)
+    if gender is not None:
+        by_them = [each for each in surveys if _may_be(d, each.who, gender) and each.call.save_as]
+        return [Call("say", {"text": Recall(str(by_them[-1].call.save_as))})] if by_them else None
+    they = d.language.words_called("they")
+    return polled(d, "answers", None).words if they & set(d.norms(start, end)) else None
+
+
+def _may_be(d: Discourse, who: Value | None, gender: str) -> bool:
+    return isinstance(who, Text) and d.may_have(Thing(who, known=True, person=True), gender)
 
 
 @meaning("answer_asked")

@@ -22,7 +22,7 @@ from grammar.meanings.options import (
 from grammar.meanings.references import answers_in, nouns_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import tell_speaker
-from grammar.meanings.surveys import Survey
+from grammar.meanings.surveys import Survey, in_line
 from grammar.naming import the
 from grammar.plan import (
     Ask,
@@ -433,7 +433,12 @@ def ask_again(d: Discourse, node: Node) -> Steps:
         return message
     if not d.surveys:
         raise NotUnderstood(d.language.phrase("ask_what"))
-    last: Survey = d.surveys[-1]
+    last: Survey = (in_line(d) or d.surveys)[-1]
+    if d.wondered and last.call in d.wondered and person.value == last.who:
+        wondered, d.wondered = d.wondered, ()  # asked only now
+        d.done[:] = [each for each in d.done if not any(each is other for other in wondered)]
+        d.surveys = d.surveys[:-1]
+        d.variables.discard(str(last.call.save_as))
     if not person.known and isinstance(last.who, Text):  # "ask them again"
         person = Thing(last.who, known=True, person=True)
     spot: Where | None = d.get(node, "from")

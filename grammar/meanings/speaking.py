@@ -137,10 +137,16 @@ def said_with(d: Discourse, node: Node) -> Steps:
 @meaning("say_it")
 def say_it(d: Discourse, node: Node) -> Steps:
     """ "and say it": the answer or the code of before."""
+    from grammar.meanings.news import go_back, said_by
     from grammar.meanings.reports import known_words, tell_speaker
 
     person: Thing | None = d.get(node, "person_ref")
-    if is_me(person) or node.production.fixed.get("to_me"):
+    told = node.parts.get("person_ref")
+    of_whom = said_by(d, node.start if told is None else told.end, node.end)
+    to_me = is_me(person) or bool(node.production.fixed.get("to_me"))
+    if of_whom is not None:
+        return [*go_back(d, []), *of_whom] if to_me else speak_to(d, person, of_whom)
+    if to_me:
         return tell_speaker(d)
     return speak_to(d, person, known_words(d))
 

@@ -7,6 +7,7 @@ before everything the empty list or the zero that it is noted in.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -121,6 +122,24 @@ def asked_before(d: Discourse) -> list[Survey]:
     if not found:
         raise NotUnderstood(d.language.phrase("no_question"))
     return found
+
+
+def in_line(d: Discourse) -> list[Survey]:
+    """The questions that were asked in any case to come here, and in no other branch."""
+    calls = [each for steps in (*d.around, d.done) for each in _in_any_case(steps)]
+    return [each for each in d.surveys if any(each.call is call for call in calls)]
+
+
+def _in_any_case(steps: Iterable[Step]) -> Iterator[Step]:
+    """Steps that are done, if those who are looked for are found."""
+    for step in steps:
+        searching = isinstance(step, If) and "find" in {
+            each.method for each in nodes(step.condition) if isinstance(each, Ask)
+        }
+        if isinstance(step, If):
+            yield from _in_any_case(step.then if searching else ())
+        else:
+            yield step
 
 
 def several_asked(d: Discourse) -> bool:

@@ -58,6 +58,8 @@ def when(d: Discourse, node: Node) -> Steps:
     about_answer = what_it_means(node.parts["condition"]) in ABOUT_ANSWERS
     if about_answer and d.answer is not None and not node.production.fixed.get("always"):
         return if_(d, node)  # "when he says yes", of somebody who was asked: he has answered
+    if not_there(d, node) and not node.production.fixed.get("always"):
+        return if_(d, node)
     named_before(d, node)
     person = d.person
     before, condition = condition_of(d, node)
@@ -110,6 +112,17 @@ def waited_in_time(d: Discourse) -> bool:
     ..." asks then whether he did."""
     last = d.done[-1] if d.done else None
     return isinstance(last, Call) and _waits(last) and "timeout" in last.arguments
+
+
+def not_there(d: Discourse, node: Node) -> bool:
+    """Whether somebody who was to be told or asked something is said not to be there: "when he
+    isn't there, tell David" waits for nobody to leave."""
+    condition = node.parts["condition"]
+    absent = any(
+        each.production.means == "is_seen" and each.production.fixed.get("no")
+        for each in inside(condition)
+    )
+    return absent and d.message is not None and condition.start < node.parts["then"].start
 
 
 def asked_when(d: Discourse, node: Node) -> Told | None:
