@@ -77,8 +77,9 @@ class _Turn:
             if changed is not None:
                 return changed
         if edit is not None and reader.tokens[0].norm in self.language.speech["only"]:
-            narrowed = self._gone_on()  # "only if she is there"
-            return narrowed or self._unclear(edit)
+            # "only if she is there"; a place alone would only be one more of them
+            part = is_pieces(self._reader(edit.new, Context()))
+            return (None if part else self._gone_on()) or self._unclear(edit)
         if plain.status != "rejected":
             return self._in_that_manner(plain) or self._after_this(plain)
         if question is not None:
@@ -308,6 +309,8 @@ class _Turn:
             return result
         new = before.without_repeated(new)
         like = self._first_read(self._separate(variant) for variant in before.corrected(new))
+        if like is None and is_pieces(new):
+            return None  # "and in Clara's" is nothing to say, whatever was to be said
         return like or result or self._read(separate, self.base)
 
     def _again(self, edit: Edit) -> Understanding | None:
@@ -408,6 +411,8 @@ class _Turn:
         if not self.context.carried_out and self._goes_on(new):
             texts = [self._going_on(text) for text in (joined, self._separate(self.text))]
             variants = [*before.corrected(new)]
+            if variants and self._is_number(new):  # "cinq minutes" - "dix"
+                texts = []
             result = self._first_read(texts if variants else (*texts, self._there(new)))
             if result is not None:
                 return result
@@ -456,8 +461,11 @@ class _Turn:
         begins = self.language.speech["goes_on"]
         if not new.tokens:
             return False
-        number = any(end == new.last_word for end, _, _ in new.slots["{number}"](0))
-        return number or new.tokens[0].norm in begins or new.tokens[0].kind in ("number", "time")
+        known = new.tokens[0].norm in begins or new.tokens[0].kind in ("number", "time")
+        return known or self._is_number(new)
+
+    def _is_number(self, new: Reader) -> bool:
+        return any(end == new.last_word for end, _, _ in new.slots["{number}"](0))
 
     def _commands(self, said: str) -> bool:
         """Whether this is a command in itself."""

@@ -124,10 +124,21 @@ def _verb_second(rules: Any, d: Discourse, groups: Sequence[Group]) -> str:
     first = min(_first_part(rules, d, groups), len(groups) - 1)
     if groups[first].norm in rules["finite"] and first < len(groups) - 1:
         return _written(words)  # the verb stands second already
-    verb, particle = _parted(rules, words[-1])
+    last = _verb_at(rules, groups, first)
+    verb, particle = _parted(rules, words[last])
     reflexive = [group.spelled for group in moved]
-    rest = [*reflexive, *words[first:-1], *([particle] if particle else [])]
-    return _written([*words[:first], verb, *rest])
+    rest = [*reflexive, *words[first:last], *([particle] if particle else [])]
+    return _written([*words[:first], verb, *rest, *words[last + 1 :]])
+
+
+def _verb_at(rules: Any, groups: Sequence[Group], first: int) -> int:
+    """Where the verb of a reported clause stands: last, but for what is said after all else: "dass
+    das Essen fertig ist in der Küche"."""
+    last = len(groups) - 1
+    if not groups[last].capital:
+        return last
+    verbs = [at for at in range(first, last) if groups[at].norm in rules["finite"]]
+    return verbs[-1] if verbs else last
 
 
 def _verb_first(rules: Any, groups: Sequence[Group]) -> str:

@@ -149,6 +149,7 @@ def test_numbers_and_units(sentence: str, meaning: str) -> None:
     ("sentence", "text"),
     [
         ("sag, dass das Essen fertig ist", "Das Essen ist fertig."),
+        ("sag, dass das Essen fertig ist in der Küche", "Das Essen ist fertig in der Küche."),
         ("sag, dass der Arzt gleich ankommt", "Der Arzt kommt gleich an."),
         ("sag, dass ich morgen komme", "Ich komme morgen."),
         ("sag, dass im Wartezimmer niemand ist", "Im Wartezimmer ist niemand."),
