@@ -160,6 +160,8 @@ class Discourse:
     """What was asked so far (`grammar.meanings.surveys.Survey`)."""
     pending: Steps = field(default_factory=list)
     """Steps that a condition needs before it can be checked."""
+    left: dict[Value, Value] = field(default_factory=dict)
+    """Where people were led to."""
     visitor: Thing | None = None
     """Somebody nobody knows who was met or waited for: "they", told to somebody by name."""
     on_duty: str = ""

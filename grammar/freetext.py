@@ -221,7 +221,7 @@ class Judge:
         return [token.norm for token in self.tokens[start:end]]
 
     def doubt(self, node: Node, leaf: Leaf) -> Doubt | None:
-        start, end = leaf.start, leaf.end
+        start, end, words = leaf.start, leaf.end, self.words
         spoken = node.means in SPOKEN
         clause = start > 0 and self.tokens[start - 1].norm in self.words.that
 
@@ -269,6 +269,12 @@ class Judge:
             return None
         if self.tokens[start].norm in self.words.never_first or self.given_to(start):
             return doubt(start, "cannot_say")
+        greeted = self.complete_greeting(start) if spoken else 0
+        if 0 < greeted < end - start:  # "good morning to everyone who comes": to whom
+            return doubt(start + greeted, "said_or_done")
+        if node.production.fixed.get("wish"):  # "a nice weekend"
+            where = [at for at in range(start, end) if self.tokens[at].norm in words.not_greeting]
+            return doubt(where[0], "said_or_done") if where else None
         if self.is_clause(start, end):
             return None
         if spoken and self.asks(start, end):

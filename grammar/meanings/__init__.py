@@ -37,6 +37,7 @@ import grammar.meanings.requests
 import grammar.meanings.rounds
 import grammar.meanings.sights
 import grammar.meanings.speaking
+import grammar.meanings.stops
 import grammar.meanings.surveys
 import grammar.meanings.things
 import grammar.meanings.visiting

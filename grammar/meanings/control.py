@@ -17,6 +17,7 @@ from grammar.meanings.registry import meaning
 from grammar.meanings.reports import summed_at_end
 from grammar.meanings.stops import gone_to, said_at_each
 from grammar.meanings.things import goes_on
+from grammar.meanings.visiting import with_each_asked
 from grammar.meanings.volunteers import guard_found
 from grammar.meanings.waiting import until_then
 from grammar.plan import Ask, Call, Holds, If, Items, Not, Recall, Remember, Step, Text, Try, Value
@@ -58,7 +59,7 @@ def steps(d: Discourse, node: Node) -> Steps:
                 each = chained(first.parts["earlier"])
                 continue
             first, beside = side_by_side(d, first)
-            d.done.extend(in_branch(d, first) or in_round(d, first))
+            d.done.extend(in_branch(d, first) or with_each_asked(d, first) or in_round(d, first))
             new = d.done[before:]
             places = gone_to(d, first, new) or said_at_each(d, places, new)
             clauses.append((joint, len(d.done) - before))

@@ -18,6 +18,7 @@ from grammar.discourse import (
 )
 from grammar.meanings.deliveries import delivered_last, taken_back
 from grammar.meanings.finding import found, go, look_for, noun_of, where_sent
+from grammar.meanings.leading import lead
 from grammar.meanings.loops import for_each_of_them, looped
 from grammar.meanings.nouns import is_me
 from grammar.meanings.places import sought
@@ -38,10 +39,21 @@ def go_to(d: Discourse, node: Node) -> Steps:
     place = spot.place
     if "place" in node.parts and place == d.at and d.done:
         place = place_before(d)  # "take them there, then go back there": to where you were
+    if goes_on_with_somebody(d, node) and d.person is not None:
+        return [lead(d, d.person, place)]
     d.went(place)
     d.at_furniture = spot.furniture
     d.on_duty = str(node.production.fixed.get("duty", ""))
     return [Call("goto", {"place": place})]
+
+
+def goes_on_with_somebody(d: Discourse, node: Node) -> bool:
+    """Whether a tour goes on: "take them to the library ..., then go on to the lounge"."""
+    words = d.norms(node.start, node.end)
+    ways = map(d.language.tokens_of, d.language.speech.get("going_on", ()))
+    on = any(tuple(words[: len(way)]) == way for way in ways)
+    guest = d.person.value if d.person is not None else None
+    return on and guest is not None and d.with_person == guest and d.left.get(guest) == d.at
 
 
 def place_before(d: Discourse) -> Value:
@@ -296,6 +308,7 @@ def wait(d: Discourse, node: Node) -> Steps:
 
 @meaning("wait_for")
 def wait_for(d: Discourse, node: Node) -> Steps:
+    d.get(node, "from")  # "wait in Bob's office until he comes"
     thing = noun_of(d, node)
     timeout = d.get(node, "seconds")
     steps = go(d, thing.place) if thing.place is not None else []

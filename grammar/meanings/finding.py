@@ -104,8 +104,9 @@ def meet(d: Discourse, person: Thing) -> Steps:
         return [*going, Call("wait_for", {"thing": person.value})]
     if person.here or d.with_person == person.value:
         return []
-    if not person.known and person.place is None:
-        return []
+    if not person.known and person.place is None:  # where they were left, if they were led there
+        left = d.left.get(person.value)
+        return [] if left is None else go(d, left)
     d.with_person = person.value
     d.at = person.place
     if person.place is not None:
@@ -116,7 +117,8 @@ def meet(d: Discourse, person: Thing) -> Steps:
 def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
     """Say something to a person: here, or where they are found."""
     if person is not None and person.coming:
-        return [Forever((Call("wait_for", {"thing": person.value}), *steps))]
+        going = go(d, person.place) if person.place is not None else []
+        return [*going, Forever((Call("wait_for", {"thing": person.value}), *steps))]
     if person is not None and person.count is not None:
         going = go(d, person.place) if person.place is not None else []
         meeting = Call("wait_for", {"thing": person.value})

@@ -47,6 +47,7 @@ STAYS_OUTSIDE: Final = frozenset(
         *("come_back", "go", "go_places", "go_person", "go_find", "dock", "stop", "bring_too"),
         *("for_each_place", "for_each_place_such", "for_each_of_them", "check_each_place"),
         *("do_that_times", "do_that_again", "do_that_until", "do_that_while", "do_that_forever"),
+        *("skip_empty", "ended", "tour", "tour_goes_on"),
         *("same_for", "tell_that", "tell_me_that", "say_it", "reversed", "delayed", "bring_each"),
         *("when", "repeat", "until", "while", "forever", "at_intervals", "corrected", "guide_list"),
     }

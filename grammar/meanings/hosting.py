@@ -8,8 +8,9 @@ from grammar.chart import Node
 from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, Where
 from grammar.meanings.driving import go_to
 from grammar.meanings.finding import meet, named, speak_to, where_sent
+from grammar.meanings.leading import lead
 from grammar.meanings.nouns import means_thing
-from grammar.meanings.people import guide, lead, led
+from grammar.meanings.people import guide, led
 from grammar.meanings.registry import meaning
 from grammar.meanings.things import deliver
 from grammar.plan import Call, Text, Value
@@ -41,11 +42,25 @@ def guide_to_person(d: Discourse, node: Node) -> Steps:
     other: Thing = d.get(node, "other")
     if things and d.thing is not None:
         return deliver(d, replace(d.thing, pronoun=True), other, None)
+    if other.place is None and thing is not None and other.known:
+        own = own_place(d, other)  # "bring the visitor to Alice": to her office
+        other = other if own is None else replace(other, place=own)
     if other.place is None or thing is None:
         person = named(d, other)
         words = person if isinstance(person, str) else d.language.phrase("somebody")
         raise NotUnderstood(d.language.phrase("where_is_person", person=words))
     return [*meet(d, thing), lead(d, thing, other.place)]
+
+
+def own_place(d: Discourse, person: Thing) -> Value | None:
+    """The one place that is called after somebody."""
+    mark = d.language.speech["possessive"]
+    own = [
+        each.name
+        for each in d.lexicon.places
+        if person.text and each.name.lower().startswith(person.text.lower() + mark)
+    ]
+    return Text(own[0]) if len(own) == 1 else None
 
 
 @meaning("guide_by_way")

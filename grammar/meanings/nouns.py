@@ -526,6 +526,8 @@ def person_count(d: Discourse, node: Node) -> Thing:
     """ "three visitors": one after the other, whoever they are."""
     kind = str(d.get(node, "kind_of_person", ANYONE))
     found = replace(described(d, kind, node), person=True, plural=True)
+    spot: Where | None = d.get(node, "from")
+    found = found if spot is None else replace(found, place=spot.place)
     number = int(d.get(node, "count"))
     named = known_by_name(d, found, kind)
     if d.tokens[node.start].norm in d.language.speech.get("definite", ()) and len(named) == number:
@@ -542,7 +544,8 @@ def person_coming(d: Discourse, node: Node) -> Thing:
     kind = str(d.get(node, "kind_of_person", ANYONE))
     found = Thing(Text(kind), person=True, here=True)
     d.person, d.thing_last = found, False
-    return replace(found, coming=True)
+    spot: Where | None = d.get(node, "from")
+    return replace(found, coming=True, place=None if spot is None else spot.place)
 
 
 @meaning("person_first")

@@ -15,12 +15,15 @@ from grammar.discourse import (
     Where,
     as_value,
 )
+from grammar.meanings.conditions import condition_of
 from grammar.meanings.finding import look_for, meet, named, speak_to, where_sent
+from grammar.meanings.leading import lead
 from grammar.meanings.nouns import is_me, means_thing
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.speaking import spoken
 from grammar.meanings.things import deliver, given_last
+from grammar.meanings.waiting import awaited
 from grammar.naming import place_called
 from grammar.plan import Call, Forever, Items, Recall, Text, Value
 from grammar.tidy import nodes
@@ -73,14 +76,6 @@ def led(d: Discourse, node: Node) -> Thing:
     if person.coming or person.group is not None or person.count is not None:
         raise NotUnderstood(d.language.phrase("one_person"))
     return where_sent(d, person)
-
-
-def lead(d: Discourse, person: Thing, place: Value) -> Call:
-    d.at = d.place = place
-    d.with_person = person.value
-    d.person = replace(person, place=None, furniture=None, here=True)
-    d.thing_last = False
-    return Call("guide", {"person": person.value, "place": place})
 
 
 @meaning("guide_back")
@@ -194,8 +189,11 @@ def guide_list(d: Discourse, node: Node) -> Steps:
 
 @meaning("wait_with")
 def wait_with(d: Discourse, node: Node) -> Steps:
-    """ "stay with Henry for ten minutes"."""
+    """ "stay with Henry for ten minutes", "until Alice comes"."""
     steps = meet(d, led(d, node))
+    if "condition" in node.parts:
+        looking, condition = condition_of(d, node)
+        return [*steps, *awaited(looking, condition)]
     return [*steps, Call("wait", {"seconds": as_value(d.get(node, "seconds"))})]
 
 

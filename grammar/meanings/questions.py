@@ -55,9 +55,10 @@ def ask(d: Discourse, node: Node) -> Steps:
     if person is None and isinstance(question, Node) and "each" in question.production.fixed:
         person = Thing(Text(ANYONE), person=True, plural=True, here=True)  # "ask who wants tea"
     if person is not None and person.coming:
+        going = go(d, person.place) if person.place is not None else []
         waiting = Call("wait_for", {"thing": person.value})
-        d.person = replace(person, coming=False)
-        return [Forever((waiting, *ask_one(d, node, d.person)))]
+        d.person = replace(person, coming=False, place=None)
+        return [*going, Forever((waiting, *ask_one(d, node, d.person)))]
     return ask_one(d, node, person)
 
 

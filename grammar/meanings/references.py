@@ -15,7 +15,8 @@ from grammar.discourse import Discourse, NotUnderstood
 from grammar.meanings.news import Told, polled
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import Survey, in_loop
-from grammar.plan import Call, Recall, Sentence, Text, Value
+from grammar.plan import Call, Forever, Recall, Sentence, Text, Value
+from grammar.tidy import nodes
 from grammar.wordforms import singular
 
 
@@ -49,8 +50,10 @@ def answer_to(d: Discourse, survey: Survey) -> Value | None:
     if d.agreed is not None and d.agreed[0] is survey.call:
         agreed: Value = d.agreed[1]
         return agreed
-    if in_loop(d, survey.call) or survey.call.save_as is None:
-        return None
+    last = d.done[-1] if d.done else None
+    each = isinstance(last, Forever) and any(node is survey.call for node in nodes(last))
+    if survey.call.save_as is None or (in_loop(d, survey.call) and not each):
+        return None  # what follows a loop without end belongs to each of its rounds
     return Recall(survey.call.save_as)
 
 
@@ -113,8 +116,12 @@ def answers_in(d: Discourse, text: str, start: int, end: int) -> Value:
         found = re.search(rf"\b{re.escape(words)}\b", rest, re.IGNORECASE)
         if found is None:
             raise NotUnderstood(d.language.phrase("not_understood", part=words))
-        if found.start():
-            parts.append(Text(rest[: found.start()]))
+        before = rest[: found.start()]
+        if last == end:  # "welcome and their name"
+            joins = "|".join(d.language.speech.get("joins", ()))
+            before = re.sub(rf"(?:,? (?:{joins})|,) $", " ", before)
+        if before:
+            parts.append(Text(before))
         parts.append(value)
         rest = rest[found.end() :]
         d.resolved.update(range(first, last))
@@ -131,6 +138,7 @@ def _spoken_of(d: Discourse, start: int, end: int) -> Iterator[tuple[int, int, V
         return
     always = [d.language.tokens_of(each) for each in d.language.speech.get("that_answer", ())]
     pointing = set(d.language.speech.get("that_noun", ()))
+    theirs = set(d.language.speech.get("their_noun", ()))
     further = set(d.language.speech.get("noun_goes_on", ()))
     at = start
     while at < end:
@@ -140,6 +148,7 @@ def _spoken_of(d: Discourse, start: int, end: int) -> Iterator[tuple[int, int, V
                 survey, last = d.surveys[-1], at + len(phrase)
         more = d.tokens[at + 2].norm if at + 2 < end else ""
         points = d.tokens[at].norm in pointing and at + 1 < end and more not in further
+        points = points or (d.tokens[at].norm in theirs and at + 2 == end)
         if survey is None and points:
             survey, last = survey_named(d, at + 1, at + 2), at + 2
         value = answer_to(d, survey) if survey is not None else None

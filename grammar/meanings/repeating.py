@@ -16,6 +16,7 @@ from grammar.plan import (
     ForEach,
     Forever,
     If,
+    Items,
     Number,
     Recall,
     Repeat,
@@ -99,9 +100,16 @@ def same_for(d: Discourse, node: Node) -> Steps:
     person: Thing = d.get(node, "person_ref")
     if person.count is not None:
         return [Repeat(Number(person.count), all_before(d, keep=True))]
+    if before is not None and isinstance(person.group, Items):
+        return [step for name in person.group.items for step in done_with(d, before.value, name)]
     if before is None or person.group is not None or not person.known:
         raise NotUnderstood(d.language.phrase("one_person"))
-    steps = [replaced(step, before.value, person.value) for step in d.done]
+    return done_with(d, before.value, person.value)
+
+
+def done_with(d: Discourse, before: Value, person: Value) -> Steps:
+    """The steps with one person once more with another, from the clause on that is about them."""
+    steps = [replaced(step, before, person) for step in d.done]
     first = next((at for at, step in enumerate(d.done) if step != steps[at]), None)
     if first is None:  # nothing was said to be done for anybody
         raise NotUnderstood(d.language.phrase("repeat_what"))
@@ -109,7 +117,7 @@ def same_for(d: Discourse, node: Node) -> Steps:
     lost = unknown_places(d, steps)
     if lost:
         raise NotUnderstood(d.language.phrase("unknown_place", name=lost[0]))
-    d.with_person = person.value if d.with_person == before.value else d.with_person
+    d.with_person = person if d.with_person == before else d.with_person
     return steps
 
 

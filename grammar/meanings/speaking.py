@@ -12,6 +12,7 @@ from grammar.language import load_language
 from grammar.meanings.finding import speak_to
 from grammar.meanings.nouns import is_me
 from grammar.meanings.questions import turn_to_you
+from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning
 from grammar.plan import Call, ForEach, Items, Number, Recall, Text, Value
 
@@ -69,7 +70,7 @@ def spoken(d: Discourse, node: Node) -> Value:
     if quote is not None:
         return Text(str(d.build(quote)))
     part = node.parts["text"]
-    return Text(sentence_form(d.words(part.start, part.end)))
+    return answers_in(d, sentence_form(d.words(part.start, part.end)), part.start, part.end)
 
 
 def sentence_form(text: str) -> str:

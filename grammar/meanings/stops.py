@@ -8,9 +8,10 @@ from __future__ import annotations
 from typing import Final
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, Steps
+from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps
 from grammar.meanings.alternatives import itself
-from grammar.plan import Ask, Call, ForEach, Items, Recall
+from grammar.meanings.registry import meaning
+from grammar.plan import Ask, Call, ForEach, Holds, If, Items, Recall, Text
 from grammar.tidy import nodes
 
 SAID: Final = frozenset({"say", "ask", "show", "gesture", "emotion", "people"})
@@ -41,3 +42,22 @@ def said_at_each(d: Discourse, places: Items | None, steps: Steps) -> Items | No
     going = Call("goto", {"place": place})
     d.done.append(ForEach(place.name, places, (going, *steps)))
     return places
+
+
+@meaning("skip_empty")
+def skip_empty(d: Discourse, node: Node) -> Steps:
+    """ "skip the empty ones": what the last round does at each place is done only if somebody is
+    there."""
+    loop = d.done[-1] if d.done else None
+    first = loop.steps[0] if isinstance(loop, ForEach) and loop.steps else None
+    if not isinstance(loop, ForEach) or not isinstance(first, Call) or first.method != "goto":
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(
+            d.language.phrase("not_understood", part=words), gap=(node.start, node.end)
+        )
+    d.done.pop()
+    somebody = Holds(Ask("sees", {"thing": Text(ANYONE)}))
+    steps = loop.steps[1:]
+    if not (len(steps) == 1 and isinstance(steps[0], If) and steps[0].condition == somebody):
+        steps = (If(somebody, steps),)
+    return [ForEach(loop.variable, loop.items, (first, *steps))]

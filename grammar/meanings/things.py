@@ -237,7 +237,7 @@ def bring(d: Discourse, node: Node) -> Steps:
     ):
         raise NotUnderstood(d.language.phrase("one_person"))
     if thing.person and (person is None or is_me(person)):  # "find Bob and bring him to me"
-        from grammar.meanings.people import lead
+        from grammar.meanings.leading import lead
 
         target: Where | None = d.get(node, "where")
         to = d.start() if target is None or target.place is None else target.place

@@ -14,8 +14,10 @@ import msgspec
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, Where
+from grammar.meanings.alternatives import itself
 from grammar.meanings.finding import meet, speak_to
-from grammar.meanings.people import lead, led
+from grammar.meanings.leading import lead
+from grammar.meanings.people import led
 from grammar.meanings.questions import ask
 from grammar.meanings.references import survey_named
 from grammar.meanings.registry import meaning
@@ -24,9 +26,11 @@ from grammar.meanings.sights import names_here
 from grammar.meanings.surveys import Survey, replacing
 from grammar.meanings.waiting import moment
 from grammar.naming import place_called
-from grammar.plan import Call, Items, Recall, Sentence, Text, Value
+from grammar.plan import Call, Items, Recall, Repeat, Sentence, Text, Value
 from grammar.tidy import nodes
 
+LED_AWAY: Final = frozenset({"guide", "guide_where_wanted", "guide_nowhere", "send_person"})
+"""Commands that are about one visitor after the other."""
 SOMEBODY: Final = "person"
 """What an answer is called that tells whom somebody wants to see."""
 
@@ -70,6 +74,40 @@ def tour_goes_on(d: Discourse, node: Node) -> Steps:
             d.language.phrase("not_understood", part=words), gap=(node.start, node.end)
         )
     return [lead(d, Thing(guest, person=True, here=True), spot.place)]
+
+
+def with_each_asked(d: Discourse, clause: Node) -> Steps | None:
+    """ "Ask the next three visitors where they want to go and take them there": each of them in the
+    round in which they are asked."""
+    loop = d.done[-1] if d.done else None
+    command = itself(clause)
+    part = command.parts.get("person_ref")
+    if not isinstance(loop, Repeat) or command.means not in LED_AWAY or not isinstance(part, Node):
+        return None
+    of_them = part.means in ("person_pronoun", "person_group_them")
+    asked = d.surveys and any(each is d.surveys[-1].call for each in nodes(loop.steps))
+    if not asked or not of_them or d.person is None:
+        return None
+    d.done.pop()
+    outer, d.done = d.done, list(loop.steps)
+    inside, d.in_loop = d.in_loop, True
+    d.bound[id(part)] = replace(d.person, count=None, plural=False, place=None, here=True)
+    steps = d.build(clause)
+    body = (*d.done, *steps)
+    d.done, d.in_loop = outer, inside
+    d.at = d.with_person = None
+    return [msgspec.structs.replace(loop, steps=body)]
+
+
+@meaning("to_the_next")
+def to_the_next(d: Discourse, node: Node) -> Steps:
+    """ "go on to the next one": what a round does in any case."""
+    if not d.in_loop:
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(
+            d.language.phrase("not_understood", part=words), gap=(node.start, node.end)
+        )
+    return []
 
 
 @meaning("guard")
