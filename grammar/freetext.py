@@ -310,6 +310,8 @@ class Judge:
             return None  # "welcome to our hospital"
         if greeting and behind < end and self.tokens[behind].norm in words.not_greeting:
             return doubt(behind, "said_or_done")
+        if self.wished(start):
+            return None  # "have a nice weekend"
         greeted = {
             at
             for first in range(start + 1, end)

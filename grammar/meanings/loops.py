@@ -445,7 +445,8 @@ def for_each_person(d: Discourse, node: Node) -> Steps:
     who = person.value if person is not None else Text(ANYONE)
     d.person = Thing(who, person=True, here=True)
     wait = Call("wait_for", {"thing": who})
+    going = go(d, person.place) if person is not None and person.place is not None else []
     body = d.build(node.parts["steps"])
     if times is None:
-        return [Forever((wait, *body))]
-    return [Repeat(as_value(times), (wait, *body))]
+        return [*going, Forever((wait, *body))]
+    return [*going, Repeat(as_value(times), (wait, *body))]

@@ -37,13 +37,14 @@ def guide(d: Discourse, node: Node) -> Steps:
     if pronoun is not None and carried and means_thing(d, pronoun):
         return carry_it(d, node)
     thing = led(d, node)
+    there: Value | None = d.get(node, "place")  # as it was spoken of before "from his office"
     source: Where | None = d.get(node, "source")
     if source is not None and source.place is not None:
         thing = replace(thing, place=source.place, here=False)
-    if d.fetched is not None and d.done[-1:] == [d.fetched] and thing.value == d.with_person:
-        d.done.pop()  # not here first
+    if thing.value == d.with_person:
+        leave_out_fetching(d)
     steps = meet(d, thing)
-    spot: Where = d.get(node, "spot") or Where(d.get(node, "place"))
+    spot: Where = d.get(node, "spot") or Where(there)
     if spot.place is None:
         raise NotUnderstood(d.language.phrase("guide_needs_place"))
     if "place" in node.parts and spot.place == d.at and d.done:
@@ -51,6 +52,16 @@ def guide(d: Discourse, node: Node) -> Steps:
         raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
     further: list[Value] = d.get(node, "place_list") or []
     return [*steps, *(lead(d, thing, place) for place in (spot.place, *further))]
+
+
+def leave_out_fetching(d: Discourse) -> None:
+    """Who is fetched and then led somewhere is not brought here first, nor to be asked where to."""
+    at = next((at for at, step in enumerate(d.done) if step is d.fetched), None)
+    if at is None:
+        return
+    between = d.done[at + 1 :]
+    if all(isinstance(each, Call) and each.method in ("say", "ask") for each in between):
+        del d.done[at]
 
 
 @meaning("guide_where_wanted")
@@ -95,11 +106,11 @@ def fetch_person(d: Discourse, node: Node) -> Steps:
     pronoun = node.parts.get("person_ref")
     if pronoun is not None and means_thing(d, pronoun):
         return fetch_it(d)
+    place = d.place
     thing = led(d, node)
     source: Where | None = d.get(node, "source")
     if source is not None and source.place is not None:
         thing = replace(thing, place=source.place, here=False)
-    place = d.place
     also = led_before(d) if node.production.fixed.get("too") else None
     steps = meet(d, replace(thing, here=False)) or look_for(d, thing)
     if also is not None:

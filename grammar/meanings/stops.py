@@ -48,7 +48,12 @@ def said_at_each(d: Discourse, places: Items | None, steps: Steps) -> Items | No
 def skip_empty(d: Discourse, node: Node) -> Steps:
     """ "skip the empty ones": what the last round does at each place is done only if somebody is
     there."""
+    somebody = Holds(Ask("sees", {"thing": Text(ANYONE)}))
     loop = d.done[-1] if d.done else None
+    if d.in_loop and not isinstance(loop, ForEach):  # in the round itself
+        body = tuple(d.done)
+        d.done.clear()
+        return [If(somebody, body)]
     first = loop.steps[0] if isinstance(loop, ForEach) and loop.steps else None
     if not isinstance(loop, ForEach) or not isinstance(first, Call) or first.method != "goto":
         words = d.words(node.start, node.end)
@@ -56,7 +61,6 @@ def skip_empty(d: Discourse, node: Node) -> Steps:
             d.language.phrase("not_understood", part=words), gap=(node.start, node.end)
         )
     d.done.pop()
-    somebody = Holds(Ask("sees", {"thing": Text(ANYONE)}))
     steps = loop.steps[1:]
     if not (len(steps) == 1 and isinstance(steps[0], If) and steps[0].condition == somebody):
         steps = (If(somebody, steps),)

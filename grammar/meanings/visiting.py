@@ -23,6 +23,7 @@ from grammar.meanings.references import survey_named
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import found_out
 from grammar.meanings.sights import names_here
+from grammar.meanings.speaking import sentence_form
 from grammar.meanings.surveys import Survey, replacing
 from grammar.meanings.waiting import moment
 from grammar.naming import place_called
@@ -73,7 +74,10 @@ def tour_goes_on(d: Discourse, node: Node) -> Steps:
         raise NotUnderstood(
             d.language.phrase("not_understood", part=words), gap=(node.start, node.end)
         )
-    return [lead(d, Thing(guest, person=True, here=True), spot.place)]
+    wish = node.parts.get("wish")  # "with a goodbye"
+    said = [] if wish is None else [sentence_form(d.words(wish.start, wish.end))]
+    leading = lead(d, Thing(guest, person=True, here=True), spot.place)
+    return [leading, *(Call("say", {"text": Text(each)}) for each in said)]
 
 
 def with_each_asked(d: Discourse, clause: Node) -> Steps | None:
