@@ -31,6 +31,7 @@ from grammar.plan import Call, Items, Recall, Repeat, Sentence, Text, Value
 from grammar.tidy import nodes
 
 LED_AWAY: Final = frozenset({"guide", "guide_where_wanted", "guide_nowhere", "send_person"})
+SPOKEN_TO: Final = frozenset({"ask", "ask_to", "say_that"})
 """Commands that are about one visitor after the other."""
 SOMEBODY: Final = "person"
 """What an answer is called that tells whom somebody wants to see."""
@@ -82,15 +83,19 @@ def tour_goes_on(d: Discourse, node: Node) -> Steps:
 
 def with_each_asked(d: Discourse, clause: Node) -> Steps | None:
     """ "Ask the next three visitors where they want to go and take them there": each of them in the
-    round in which they are asked."""
+    round in which they are asked, or greeted."""
     loop = d.done[-1] if d.done else None
     command = itself(clause)
     part = command.parts.get("person_ref")
-    if not isinstance(loop, Repeat) or command.means not in LED_AWAY or not isinstance(part, Node):
+    about_one = command.means in LED_AWAY | SPOKEN_TO
+    if not isinstance(loop, Repeat) or not about_one or not isinstance(part, Node):
         return None
     of_them = part.means in ("person_pronoun", "person_group_them")
     asked = d.surveys and any(each is d.surveys[-1].call for each in nodes(loop.steps))
-    if not asked or not of_them or d.person is None:
+    if not of_them or d.person is None:
+        return None
+    met = d.person.count is not None and len(loop.steps) > 1
+    if not met and not (asked and command.means in LED_AWAY):
         return None
     d.done.pop()
     outer, d.done = d.done, list(loop.steps)
