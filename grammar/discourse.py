@@ -7,7 +7,7 @@ something; `grammar.meanings` holds a small function for every meaning that the 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from grammar.chart import Leaf, Node
@@ -482,6 +482,8 @@ class Discourse:
     def went(self, place: Value) -> None:
         """The robot is at this place now."""
         self.at = self.place = place
+        if self.person is not None and self.person.known and self.person.here:
+            self.person = replace(self.person, here=False)  # who is left behind
         self.person_on_arrival = self.person
         self.looked_in = None
         self.at_furniture = None

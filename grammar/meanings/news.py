@@ -86,6 +86,8 @@ class News:
 def news(d: Discourse, node: Node) -> Steps:
     """ "come back and tell me who said yes", "announce the result in the lobby"."""
     person: Thing | None = d.get(node, "whom")
+    if d.thing is not None and d.delivered == d.thing.value and _speaks_of_it(d, node):
+        return []  # "get the key from Alice and come back with it": it is here by now
     if d.asked_for is not None and d.thing is not None and _speaks_of_it(d, node):
         from grammar.meanings.things import deliver
 

@@ -70,7 +70,10 @@ def nouns_of(d: Discourse, question: Node, options: tuple[str, ...]) -> frozense
     found.update(question.production.fixed.get("called", ()))
     for part in (question.parts.get("noun"), _asked_for(d, question)):
         if part is not None:
-            found.add(singular(d.norms(part.start, part.end)[-1], d.language))
+            words = d.norms(part.start, part.end)
+            joins = d.language.words_called("noun_joins")  # "the room number of the seminar"
+            end = next((at for at, word in enumerate(words) if at and word in joins), len(words))
+            found.add(singular(words[end - 1], d.language))
     return frozenset(found.union(*(names.get(kind, ()) for kind in _kinds(d, options))))
 
 
