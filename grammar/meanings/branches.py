@@ -38,7 +38,7 @@ from grammar.meanings.finding import go, not_found, speak_to
 from grammar.meanings.news import BACK, go_back, polled
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
-from grammar.meanings.reports import known_words, tell_speaker, told_again
+from grammar.meanings.reports import coming_back, known_words, tell_speaker, told_again
 from grammar.meanings.searches import searched, searches
 from grammar.meanings.sights import named_some
 from grammar.meanings.speaking import put_for, sentence_form
@@ -442,7 +442,13 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
     met = turned(d.met) if node.production.fixed.get("unless") else d.met
     kept = addressed_before(d, met) if not before_it else None
     if kept is not None and met is not None:
-        return absent(d, node, kept, met, lambda: told_again(d, d.get(node, "person_ref")))
+        return absent(
+            d,
+            node,
+            kept,
+            met,
+            lambda: coming_back(d, node, told_again(d, d.get(node, "person_ref"))),
+        )
     person_said = node.parts.get("person_ref")
     asked_whether = person_said and person_said.end <= node.parts["condition"].start
     if asked_whether and is_me(d.get(node, "person_ref")) and is_so(d, node):
@@ -459,7 +465,7 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
         then = [*go(d, d.get(node, "at_place")), *(known_words(d) if claim is None else [claim])]
     elif is_me(person):
         d.claim = None if claim is None else Claim(claim, d.known_by_now())
-        then = tell_speaker(d)
+        then = coming_back(d, node, tell_speaker(d))
         d.claim = None
     else:
         then = speak_to(d, person, known_words(d) if claim is None else [claim])

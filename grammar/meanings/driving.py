@@ -24,7 +24,7 @@ from grammar.meanings.nouns import is_me
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import counted_alone, tell_speaker
-from grammar.meanings.searches import search_in
+from grammar.meanings.searches import search_in, searched
 from grammar.meanings.waiting import wait_until
 from grammar.plan import Ask, Both, Call, Either, Holds, If, Items, Not, Number, Repeat, Text, Value
 from grammar.tidy import nodes
@@ -37,6 +37,10 @@ def go_to(d: Discourse, node: Node) -> Steps:
     if spot.place is None:
         return look_for(d, Thing(Text(str(spot.furniture))))
     place = spot.place
+    if node.production.fixed.get("bare") and searched(d.done[-1] if d.done else None) is not None:
+        # "look for Clara in the kitchen, then in the library": that is where to look
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("not_understood", part=words))
     if "place" in node.parts and place == d.at and d.done:
         place = place_before(d)  # "take them there, then go back there": to where you were
     if goes_on_with_somebody(d, node) and d.person is not None:

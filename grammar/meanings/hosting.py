@@ -8,8 +8,8 @@ from grammar.chart import Node
 from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, Where
 from grammar.meanings.driving import go_to
 from grammar.meanings.finding import meet, named, speak_to, where_sent
+from grammar.meanings.genders import means_thing
 from grammar.meanings.leading import lead
-from grammar.meanings.nouns import means_thing
 from grammar.meanings.people import guide, led
 from grammar.meanings.registry import meaning
 from grammar.meanings.things import deliver

@@ -13,7 +13,8 @@ from typing import Any, Final
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, capital
 from grammar.meanings.finding import go, speak_to
-from grammar.meanings.nouns import gender_of_thing, person_me
+from grammar.meanings.genders import gender_of_thing
+from grammar.meanings.nouns import person_me
 from grammar.meanings.questions import base_form, turn_to_you
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning

@@ -7,6 +7,7 @@ from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Thing, Where
+from grammar.meanings.genders import means_receiver, means_thing
 from grammar.meanings.places import (
     home_of,
     listed,
@@ -18,7 +19,6 @@ from grammar.meanings.places import (
     unknown_place,
 )
 from grammar.meanings.registry import meaning
-from grammar.naming import some
 from grammar.plan import Ask, Items, Text, Value
 from grammar.wordforms import head_word, singular
 
@@ -311,7 +311,8 @@ def thing_something(d: Discourse, node: Node) -> Thing:
 def thing_it(d: Discourse, node: Node) -> Thing:
     """ "it"; where a language has one word for things and people, whichever it can mean."""
     somebody = d.person is not None or owner_of(d) is not None
-    if node.production.fixed.get("or_whom") and somebody and not means_thing(d, node):
+    either = node.production.fixed.get("or_whom") and somebody
+    if either and (means_receiver(d, node) or not means_thing(d, node)):
         return person_pronoun(d, node)
     if d.thing is not None:
         if d.thing.several and not d.is_plural(node):  # "bring one of them"
@@ -323,26 +324,6 @@ def thing_it(d: Discourse, node: Node) -> Thing:
         return person_pronoun(d, node)
     word = d.words(node.start, node.end)
     raise NotUnderstood(d.language.phrase("what_is_it", word=word), gap=(node.start, node.end))
-
-
-def means_thing(d: Discourse, part: Leaf | Node) -> bool:
-    """Whether a pronoun that may stand for things and for people stands for the thing that was
-    spoken of: by its gender ("la": not Bob), else if that was spoken of last."""
-    word = d.norms(part.start, part.end)[-1]
-    if d.thing is None or word not in d.language.speech.get("things_too", ()):
-        return False
-    gender = d.language.speech.get("object_genders", {}).get(word)
-    if gender is None or d.person is None:
-        return d.thing_last
-    thing = gender_of_thing(d, d.thing) in (None, gender)
-    return d.thing_last if thing == d.may_have(d.person, gender) else thing
-
-
-def gender_of_thing(d: Discourse, thing: Thing) -> str | None:
-    """By the article of its noun, in languages that have such."""
-    genders: dict[str, str] = d.language.speech.get("articles_genders", {})
-    article = some(d.called(thing.text), d.language).partition(" ")[0] if genders else ""
-    return genders.get(article)
 
 
 @meaning("thing_from")

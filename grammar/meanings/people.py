@@ -17,8 +17,9 @@ from grammar.discourse import (
 )
 from grammar.meanings.conditions import condition_of
 from grammar.meanings.finding import look_for, meet, named, speak_to, where_sent
+from grammar.meanings.genders import means_thing
 from grammar.meanings.leading import lead
-from grammar.meanings.nouns import is_me, means_thing
+from grammar.meanings.nouns import is_me
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.speaking import spoken

@@ -15,7 +15,7 @@ import msgspec
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, Where, as_value
-from grammar.meanings.nouns import gender_of_thing
+from grammar.meanings.genders import gender_of_thing
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report
 from grammar.meanings.speaking import sentence_form

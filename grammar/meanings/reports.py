@@ -215,6 +215,8 @@ def tell_that(d: Discourse, node: Node) -> Steps:
         from grammar.meanings.sights import seen_around
 
         return found_out(d, seen_around(d), person, back=person is None or is_me(person))
+    if person is not None and is_me(person):
+        return coming_back(d, node, told_again(d, person))
     return told_again(d, person)
 
 
@@ -409,7 +411,16 @@ def _not_back_yet(d: Discourse) -> None:
 @meaning("tell_me_that")
 def tell_me_that(d: Discourse, node: Node) -> Steps:
     """ "and tell me": what was found out just before, brought back to the speaker."""
-    return tell_speaker(d)
+    return coming_back(d, node, tell_speaker(d))
+
+
+def coming_back(d: Discourse, node: Node, steps: Steps) -> Steps:
+    """What the speaker is told; "otherwise come back to tell me" says the way back, too."""
+    said = node.production.fixed.get("back") or "back" in node.parts
+    if not said or not steps or news.BACK in steps:
+        return steps
+    d.came_back()
+    return [news.BACK, *steps]
 
 
 def tell_speaker(d: Discourse) -> Steps:

@@ -307,6 +307,10 @@ def trait_asked(d: Discourse, node: Node) -> Trait:
 def trait_holds(d: Discourse, node: Node) -> Condition:
     """ "if the kitchen is empty", "if it has no stapler": found out there."""
     place: Value | None = d.get(node, "trait_place")
+    if place is None and d.at is None and d.place is None:  # "if she has a minute"
+        words = d.words(node.start, node.end)
+        gap = (node.start, node.end)
+        raise NotUnderstood(d.language.phrase("cannot_check", what=words), gap=gap)
     if place is not None and place != d.at:
         d.went(place)
         d.pending.append(Call("goto", {"place": place}))

@@ -236,6 +236,10 @@ def bring(d: Discourse, node: Node) -> Steps:
         person.coming or person.group is not None or person.count is not None
     ):
         raise NotUnderstood(d.language.phrase("one_person"))
+    for_things = set(d.language.speech.get("for_things", ()))
+    if thing.person and for_things & set(d.norms(node.start, node.end)):
+        word = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("what_is_it", word=word), gap=(node.start, node.end))
     if thing.person and (person is None or is_me(person)):  # "find Bob and bring him to me"
         from grammar.meanings.leading import lead
 

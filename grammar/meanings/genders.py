@@ -1,0 +1,37 @@
+"""What a pronoun stands for by its gender, in languages whose nouns have one."""
+
+from __future__ import annotations
+
+from grammar.chart import Leaf, Node
+from grammar.discourse import Discourse, Thing
+from grammar.naming import some
+
+
+def means_thing(d: Discourse, part: Leaf | Node) -> bool:
+    """Whether a pronoun that may stand for things and for people stands for the thing that was
+    spoken of: by its gender ("la": not Bob), else if that was spoken of last."""
+    word = d.norms(part.start, part.end)[-1]
+    if d.thing is None or word not in d.language.speech.get("things_too", ()):
+        return False
+    gender = d.language.speech.get("object_genders", {}).get(word)
+    if gender is None or d.person is None:
+        return d.thing_last
+    thing = gender_of_thing(d, d.thing) in (None, gender)
+    return d.thing_last if thing == d.may_have(d.person, gender) else thing
+
+
+def means_receiver(d: Discourse, part: Leaf | Node) -> bool:
+    """Whether a pronoun may stand for who is to get a thing: "bring the book to Bob; if you do not
+    find him"."""
+    gender = d.language.speech.get("object_genders", {}).get(d.norms(part.start, part.end)[-1])
+    to = d.delivery.person if d.delivery is not None else None
+    if to is None or d.person is None or to.value != d.person.value:
+        return False
+    return gender is not None and d.may_have(d.person, gender)
+
+
+def gender_of_thing(d: Discourse, thing: Thing) -> str | None:
+    """By the article of its noun, in languages that have such."""
+    genders: dict[str, str] = d.language.speech.get("articles_genders", {})
+    article = some(d.called(thing.text), d.language).partition(" ")[0] if genders else ""
+    return genders.get(article)
