@@ -21,7 +21,7 @@ from grammar.meanings.visiting import with_each_asked
 from grammar.meanings.volunteers import guard_found
 from grammar.meanings.waiting import until_then
 from grammar.plan import Ask, Call, Holds, If, Items, Not, Recall, Remember, Step, Text, Try, Value
-from grammar.tidy import mentions
+from grammar.tidy import mentions, nodes
 
 NEEDS_IT: Final = frozenset({"grab", "put", "give", "guide", "follow", "describe"})
 """Methods that say themselves when what was looked for is not there."""
@@ -131,7 +131,7 @@ def guard_finds(d: Discourse, done: Steps) -> Steps:
                 later.method in ("goto", "find", "dock") or later.method in needs_it
             ):
                 break
-            if not isinstance(later, Call | Remember | Try):
+            if not isinstance(later, Call | Remember | Try) and not only_speaks(later):
                 break
             body.append(later)
         if body:
@@ -155,6 +155,13 @@ def handed_over(taking: Call, steps: Steps) -> Steps:
         if let_go and isinstance(step, Call) and step.arguments["thing"] == thing:
             return steps[: number + 1]
     return steps[:1]
+
+
+def only_speaks(step: Step) -> bool:
+    """Whether it says one of several things, by what the robot knows without looking."""
+    calls = {each.method for each in nodes((step,)) if isinstance(each, Call)}
+    asked = {each.method for each in nodes((step,)) if isinstance(each, Ask)}
+    return isinstance(step, If) and calls == {"say"} and asked <= {"clock", "battery"}
 
 
 def speak_codes(d: Discourse, done: Steps) -> Steps:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from grammar.chart import Node
 from grammar.discourse import Ambiguous, Discourse, NotUnderstood, Steps, as_value
 from grammar.meanings.finding import speak_to
@@ -10,7 +12,20 @@ from grammar.meanings.references import answer_to, survey_named
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report, told
 from grammar.naming import place_called
-from grammar.plan import Ask, Choice, Compare, Items, Number, Text, Value
+from grammar.plan import (
+    Ask,
+    Choice,
+    Compare,
+    If,
+    Items,
+    Number,
+    Step,
+    Text,
+    Value,
+)
+
+WEEK: Final = ("Monday", "Tuesday", "Wednesday", "Thursday", "Friday", "Saturday", "Sunday")
+"""As the clock of a robot names the days."""
 
 
 @meaning("about_robot")
@@ -24,6 +39,16 @@ def about_robot(d: Discourse, node: Node) -> Report:
         )  # "the time", after somebody was asked for one
     value = Ask(str(fixed["method"]), {}, fixed.get("field"))
     return Report(str(fixed["phrase"]), value, about_here=False)
+
+
+@meaning("tomorrow")
+def tomorrow(d: Discourse, node: Node) -> Steps:
+    """ "what day is tomorrow": the one after what the clock says."""
+    chain: tuple[Step, ...] = ()
+    for today, next_day in reversed(list(zip(WEEK, (*WEEK[1:], WEEK[0]), strict=True))):
+        is_today = Compare(Ask("clock", field="weekday"), "==", Text(today))
+        chain = (If(is_today, (d.say("tomorrow_is", value=Text(next_day)),), chain),)
+    return list(chain)
 
 
 @meaning("fixed_phrase")

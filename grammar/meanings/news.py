@@ -85,6 +85,7 @@ class News:
 @meaning("news")
 def news(d: Discourse, node: Node) -> Steps:
     """ "come back and tell me who said yes", "announce the result in the lobby"."""
+    search = None if {"told", "back"} & node.parts.keys() else searched_last(d, node, "whom")
     person: Thing | None = d.get(node, "whom")
     if d.thing is not None and d.delivered == d.thing.value and _speaks_of_it(d, node):
         return []  # "get the key from Alice and come back with it": it is here by now
@@ -92,6 +93,8 @@ def news(d: Discourse, node: Node) -> Steps:
         from grammar.meanings.things import deliver
 
         return deliver(d, replace(d.thing, pronoun=True), person, None)
+    if search is not None:
+        return where_it_is(d, search, person)
     told: list[Told] = d.get(node, "told") or [last_found(d)]
     first = [step for each in told for step in each.first]
     words = [step for each in told for step in each.words]
@@ -132,6 +135,26 @@ def _speaks_of_it(d: Discourse, node: Node) -> bool:
     told = node.parts.get("told")
     words = d.norms(told.start, told.end) if told is not None else []
     return len(words) == 1 and words[0] in d.language.speech.get("things_too", ())
+
+
+def searched_last(d: Discourse, node: Node, whom: str) -> Thing | None:
+    """What the last step looks for, if nothing else was found out: "find Bob and let me know", but
+    not "and tell me the answer"."""
+    last = d.done[-1] if d.done else None
+    told_to = node.parts.get(whom)
+    if told_to is not None and told_to.end < node.end - 1:
+        return None
+    known = (d.report, d.answer, d.code, d.claim, d.news)
+    if not (isinstance(last, Call) and last.method == "find") or any(each for each in known):
+        return None
+    return d.thing if d.thing_last else d.person
+
+
+def where_it_is(d: Discourse, sought: Thing, person: Thing | None) -> Steps:
+    from grammar.meanings.reports import found_for
+    from grammar.meanings.sights import located
+
+    return found_for(d, person, located(d, sought))
 
 
 def last_found(d: Discourse) -> Told:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Final
 
 from grammar.chart import Node
 from grammar.discourse import (
@@ -28,6 +29,9 @@ from grammar.meanings.waiting import awaited
 from grammar.naming import place_called
 from grammar.plan import Call, Forever, Items, Recall, Text, Value
 from grammar.tidy import nodes
+
+WAYS_OUT: Final = frozenset({"entrance", "exit"})
+"""Kinds of places where a house ends."""
 
 
 @meaning("guide")
@@ -131,6 +135,16 @@ def led_before(d: Discourse) -> Value | None:
         and each.arguments["place"] != d.start()
     ]
     return led[-1].arguments["place"] if led else None
+
+
+@meaning("guide_out")
+def guide_out(d: Discourse, node: Node) -> Steps:
+    """ "lead Bob out": to the entrance, if there is one only; else asks back where to."""
+    ways = [place.name for place in d.lexicon.places if place.kind in WAYS_OUT]
+    if len(ways) != 1:
+        return guide_nowhere(d, node)
+    person = led(d, node)
+    return [*meet(d, person), lead(d, person, Text(ways[0]))]
 
 
 @meaning("guide_nowhere")

@@ -282,7 +282,10 @@ def each_met(d: Discourse, person: Thing, one: One) -> Steps:
     if leaves(body, here):
         meeting.insert(0, Call("goto", {"place": d.start() if here is None else here}))
         d.at = d.with_person = None
-    steps = (*meeting, *body)
+    fetched = fetched_before(body, who, here) if not by_name and not person.coming else 0
+    if fetched:  # whoever is met is forgotten on the way to what they get
+        meeting = [*body[:fetched], meeting[-1]]
+    steps = (*meeting, *body[fetched:])
     d.person = replace(person, place=None, here=True, coming=False)
     d.thing_last = False
     if person.coming:
@@ -293,6 +296,18 @@ def each_met(d: Discourse, person: Thing, one: One) -> Steps:
         assert isinstance(who, Recall)
         return [*going, ForEach(who.name, Ask("people"), steps)]
     return [*going, Repeat(Ask("count", {"thing": who}), steps)]
+
+
+def fetched_before(body: Steps, who: Value, here: Value | None) -> int:
+    """How many steps fetch something before it is handed to those who are met."""
+    handed = next(
+        (at for at, each in enumerate(body) if who in getattr(each, "arguments", {}).values()), 0
+    )
+    fetching = body[:handed]
+    last = fetching[-1] if fetching else None
+    plain = all(isinstance(each, Call) and each.save_as is None for each in fetching)
+    brought = isinstance(last, Call) and last == Call("goto", {"place": here}) if here else False
+    return handed if plain and brought else 0
 
 
 def over_them(d: Discourse, node: Node, person: Thing, one: One) -> Steps:

@@ -52,6 +52,8 @@ def ask(d: Discourse, node: Node) -> Steps:
     person: Thing | None = d.get(node, "person_ref")
     d.message = node
     question = node.parts.get("question")
+    if person is None and isinstance(question, Node) and "asked_one" in question.parts:
+        person = d.build(question.parts["asked_one"])  # "find out what Bob wants"
     if person is None and isinstance(question, Node) and "each" in question.production.fixed:
         person = Thing(Text(ANYONE), person=True, plural=True, here=True)  # "ask who wants tea"
     if person is not None and person.coming:

@@ -77,7 +77,9 @@ def report(d: Discourse, node: Node) -> Steps:
     if found is None:
         found = d.get(node, "info")
     if isinstance(found, list):
-        return found_for(d, person, found)
+        steps = found_for(d, person, found)
+        d.told = steps[-1] if steps else None
+        return steps
     fixed = node.production.fixed
     d.report_open = person is None and bool(fixed.get("open", not fixed.get("to_me")))
     d.report_counts = person is None and bool(fixed.get("counted"))
@@ -207,10 +209,13 @@ def known_words(d: Discourse) -> Steps:
 @meaning("tell_that")
 def tell_that(d: Discourse, node: Node) -> Steps:
     """ "and tell Alice how many there are": what was found out before, told to somebody else."""
+    search = news.searched_last(d, node, "person_ref")
     person: Thing | None = d.get(node, "person_ref")
     person_at: Where | None = d.get(node, "person_at")
     if person is not None and person_at is not None:  # "go and tell him in his office"
         person = replace(person, place=person_at.place, here=False)
+    if search is not None and (search.person or (person is not None and not is_me(person))):
+        return news.where_it_is(d, search, person)  # "find Alice and tell Bob"
     if node.production.fixed.get("seen") and looks_around(d):
         from grammar.meanings.sights import seen_around
 
@@ -411,6 +416,9 @@ def _not_back_yet(d: Discourse) -> None:
 @meaning("tell_me_that")
 def tell_me_that(d: Discourse, node: Node) -> Steps:
     """ "and tell me": what was found out just before, brought back to the speaker."""
+    search = news.searched_last(d, node, "person_ref")
+    if search is not None and search.person:
+        return news.where_it_is(d, search, None)  # "find Alice and inform me"
     return coming_back(d, node, tell_speaker(d))
 
 

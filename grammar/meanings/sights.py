@@ -7,7 +7,7 @@ from dataclasses import replace
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
 from grammar.meanings import news
-from grammar.meanings.finding import in_state, is_here, not_found
+from grammar.meanings.finding import found, in_state, is_here, not_found
 from grammar.meanings.nouns import described
 from grammar.meanings.places import place_called_after, sought
 from grammar.meanings.registry import meaning
@@ -279,6 +279,13 @@ def where_found(d: Discourse, node: Node) -> Steps:
         part = node.parts.get("person_ref", node)
         words = d.words(part.start, part.end)
         raise NotUnderstood(d.language.phrase("find_one", things=words), gap=(part.start, part.end))
+    return located(d, thing)
+
+
+def located(d: Discourse, thing: Thing) -> Steps:
+    """Look for something or somebody, come back and say where it is."""
+    if d.done and d.done[-1] == found(d, thing):
+        d.done.pop()  # "find the cup and tell me where it is"
     called = d.called(thing.text)
     known = called if thing.known and thing.person else the(called, d.language)
     arguments: dict[str, Value] = {"thing": sought(d, thing)}

@@ -100,6 +100,7 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
     if isinstance(last, Call) and last.method == "find" and thing.pronoun:
         looked = True  # "find the cup and bring it to me"
     nearby = d.at is not None and not d.at_people and thing.place is None
+    nearby = nearby and not isinstance(thing.value, Recall)  # what somebody asked for is anywhere
     is_here = thing.here or nearby or (d.at is not None and thing.place == d.at)
     steps: Steps = [] if looked or is_here else look_for(d, thing)
     d.holding = thing.value

@@ -249,6 +249,8 @@ class PaperRobot:
             return str(self.partner)
         if person in here:
             return str(person)
+        if self.partner in here and (self.partner, self.place) in self.met:
+            return str(self.partner)  # who was waited for just now
         unmet = [who for who in here if not self.asked.get(who)]
         if here:
             self.partner = (unmet or here)[0]
