@@ -389,6 +389,9 @@ def answered(d: Discourse, node: Node) -> Condition:
         raise NotUnderstood(d.language.phrase("no_question"))
     plain = "answer" in fixed and "text" not in node.parts
     literal = plain and d.language.phrase(str(fixed["answer"])) in d.norms(node.start, node.end)
+    pair = paired(d, d.language.phrase(str(fixed["answer"]))) if literal else None
+    if pair is not None:
+        return pair
     before = yes_no_before(d) if literal else None
     if before is not None:
         return before.said(d.language.phrase(str(fixed["answer"])))
@@ -441,6 +444,22 @@ def ask_openly(d: Discourse) -> None:
         replace(each, call=openly, options=()) if each is last else each for each in d.surveys
     ]
     d.answer_options = ()
+
+
+def paired(d: Discourse, wanted: str) -> Condition | None:
+    """The other answer to the question that the condition just before was on: "if she says yes, ask
+    her whether ... If she says no, ..."."""
+    step = d.done[-1] if d.done else None
+    if d.branched is None or step is not d.branched.step or not isinstance(step, If):
+        return None
+    one = step.condition
+    if step.otherwise or not isinstance(one, Compare) or one.operator != "==":
+        return None
+    answers = {d.language.phrase("yes"), d.language.phrase("no")}
+    said = one.right.value if isinstance(one.right, Text) else ""
+    if {said, wanted} != answers or not isinstance(one.left, Recall):
+        return None
+    return Compare(one.left, "==", Text(wanted))
 
 
 def yes_no_before(d: Discourse) -> Survey | None:
@@ -503,6 +522,8 @@ def said_so(d: Discourse, no: bool, there_is_none: bool = False) -> Condition:
             return Not(result) if no else result
         raise NotUnderstood(d.language.phrase("no_question"))
     wanted = d.language.phrase("no" if no else "yes")
+    if (pair := paired(d, wanted)) is not None:
+        return pair
     if (before := yes_no_before(d)) is not None:
         return before.said(wanted)
     for option in d.answer_options:
