@@ -76,6 +76,7 @@ SCENE: Final = (
     "thing_last",
     "place",
     "at",
+    "away",
     "looked_in",
     "with_person",
     "holding",
@@ -120,6 +121,8 @@ class Discourse:
     place: Value | None = None
     at: Value | None = None
     """Where the robot is by now; None where the command was given."""
+    away: bool = False
+    """Whether the robot may be anywhere by now: something was looked for in several places."""
     looked_in: Value | None = None
     """That place, if a condition was checked there and for nothing else: others are not there."""
     with_person: Value | None = None
@@ -485,6 +488,7 @@ class Discourse:
         if self.person is not None and self.person.known and self.person.here:
             self.person = replace(self.person, here=False)  # who is left behind
         self.person_on_arrival = self.person
+        self.away = False
         self.looked_in = None
         self.at_furniture = None
         self.with_person = None

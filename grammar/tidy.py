@@ -228,6 +228,8 @@ def is_one_of_each(plan: Plan) -> bool:
 
 
 def _is_list(value: Value) -> bool:
+    if isinstance(value, Items):  # "in the lobby or in the lounge", which nothing looked through
+        return True
     if not isinstance(value, Ask) or value.method not in METHODS:
         return False
     return METHODS[value.method].returns.schema.get("type") == "array"

@@ -42,7 +42,8 @@ import grammar.meanings.surveys
 import grammar.meanings.things
 import grammar.meanings.visiting
 import grammar.meanings.volunteers
-import grammar.meanings.waiting  # noqa: F401 (each enters its meanings)
+import grammar.meanings.waiting
+import grammar.meanings.whereabouts  # noqa: F401 (each enters its meanings)
 from grammar.meanings.registry import MEANINGS
 
 __all__ = ["MEANINGS"]

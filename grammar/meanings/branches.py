@@ -39,7 +39,17 @@ from grammar.meanings.news import BACK, go_back, polled
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import coming_back, known_words, tell_speaker, told_again
-from grammar.meanings.searches import searched, searches
+from grammar.meanings.searches import (
+    Search,
+    either_way,
+    in_turn,
+    same_search,
+    search_of,
+    searched,
+    searches,
+    searching_at,
+    thing_sought,
+)
 from grammar.meanings.sights import named_some
 from grammar.meanings.speaking import put_for, sentence_form
 from grammar.plan import (
@@ -47,9 +57,9 @@ from grammar.plan import (
     Call,
     Compare,
     Condition,
-    Either,
     Holds,
     If,
+    Items,
     Not,
     Recall,
     Remember,
@@ -68,12 +78,16 @@ ABOUT_ANSWERS: Final = frozenset(
         *("code_is", "cannot_check"),
     }
 )
+LOOKING: Final = frozenset({"look_in", "look_on", "find", "go_find"})
+"""Commands that look for something and do nothing else."""
+TELL: Final = "tell_condition"
 COUNT: Final = "count"
 """The variable that a number is kept in which a condition is about."""
 
 
 @meaning("if")
 def if_(d: Discourse, node: Node) -> Steps:
+    node = with_else(node)
     delivery = delivered_last(d)
     before_it, condition = condition_of(d, node)
     met = d.met
@@ -132,13 +146,68 @@ def if_(d: Discourse, node: Node) -> Steps:
             return [If(looked, (If(condition, tuple(then), tuple(otherwise)),), (missing,))]
     counted, condition = counted_first(condition, [*then, *otherwise])
     whole = If(condition, tuple(then), tuple(otherwise))
-    whole = whole if further else either_way(whole)
+    merged = [whole] if further else either_way(d, whole, looks_on=looks_on(node.parts["then"]))
+    if merged != [whole]:
+        return [*before_it, *counted, *merged]
     if part is None and denied is None and what_it_means(node.parts["condition"]) in ABOUT_ANSWERS:
         whole, told = told_in_any_case(d, whole)
         if told:
             return [*before_it, *counted, whole, *told]
     d.branched = Branched(whole, start, met, d.answer)
     return [*before_it, *counted, whole]
+
+
+def if_found_so(d: Discourse, node: Node, search: Search) -> Steps:
+    """ "when you find it, bring it, if not, tell me", after looking for it."""
+    d.done.pop()
+    thing = thing_sought(d, search.found)
+    met = Meeting(replace(thing, pronoun=False, place=None), holds=True, sought=True)
+    start = d.scene()
+    then = branch(d, node.parts["then"], met, found_claim(d, search.found, met))
+    after = d.scene()
+    d.set_scene(start)
+    claim = found_claim(d, search.found, turned(met))
+    otherwise = branch(d, node.parts["otherwise"], turned(met), claim)
+    leave_off(d, after)
+    return [If(search.found, tuple(then), tuple(otherwise))]
+
+
+def with_else(node: Node) -> Node:
+    """A condition whose other branch was read as the last clause of the first: "if you find it,
+    bring it, if not, tell me". After a question in between, it would be about the answer."""
+    chain: list[Node] = []
+    each: Leaf | Node | None = node.parts["then"]
+    while isinstance(each, Node) and each.means == "steps":
+        chain.append(each)
+        each = each.parts.get("rest")
+    if len(chain) < 2 or any(name.startswith("otherwise") for name in node.parts):
+        return node
+    *kept, last = chain
+    clause = unwrapped(last.parts["first"])
+    condition = unwrapped(clause.parts.get("condition")) if clause is not None else None
+    if clause is None or condition is None or clause.production.means not in ("if", TELL):
+        return node
+    denied = condition.means == "so" and condition.production.fixed.get("no")
+    asked = any(part.means.startswith("ask") for one in kept for part in inside(one.parts["first"]))
+    if not denied or asked:
+        return node
+    then: Node | None = None
+    for one in reversed(kept):
+        parts = {name: part for name, part in one.parts.items() if name != "rest"}
+        then = replace(one, parts=parts if then is None else {**parts, "rest": then})
+    said = {name: part for name, part in clause.parts.items() if name != "condition"}
+    other = replace(clause, parts=said) if clause.production.means == TELL else said.pop("then")
+    further = {name: part for name, part in said.items() if name.startswith("otherwise")}
+    if then is None or further:
+        return node
+    return replace(node, parts={**node.parts, "then": then, "otherwise": other})
+
+
+def unwrapped(part: Leaf | Node | None) -> Node | None:
+    """The node that a part stands for; None for a slot."""
+    while isinstance(part, Node) and part.production.means is None and len(part.parts) == 1:
+        (part,) = part.parts.values()
+    return part if isinstance(part, Node) else None
 
 
 def other_hands_it_over(node: Node) -> bool:
@@ -151,13 +220,23 @@ def failing(d: Discourse, node: Node, taken: Taken, met: Meeting) -> Steps:
     """A delivery, and what is done if that is not possible: "if there is no coffee, bring tea"."""
     after = d.scene()
     outer, d.meant_for = d.meant_for, d.meant_for if met.thing.person else taken.delivery
-    place = met.thing.place or taken.delivery.thing.place
+    place = met.thing.place or taken.delivery.thing.place or taken.delivery.before["at"]
     lost = met if met.thing.person else replace(met, thing=replace(met.thing, place=place))
-    otherwise = branch(d, node.parts["then"], lost, found_claim(d, taken.condition, lost))
+    claim = found_claim(d, taken.condition, lost)
+    if "then" in node.parts:
+        otherwise = branch(d, node.parts["then"], lost, claim)
+    else:
+        meet_there(d, lost)
+        otherwise = told_so(d, node, claim)
     d.meant_for = outer
     leave_off(d, after)
     names = ("otherwise", "otherwise_not", "otherwise_none")
     part = next((node.parts[name] for name in names if name in node.parts), None)
+    further = search_of(otherwise[0]) if len(otherwise) == 1 else None
+    first = searching_at(taken.condition, place)
+    if further is not None and same_search(first, further.found) and part is None:
+        # "if there is none, try the lab": brought from wherever it is found
+        return [in_turn(first, further), *taken.steps]
     done = [*taken.steps, *(d.build(part) if part is not None else [])]
     return [If(taken.condition, tuple(done), tuple(otherwise))]
 
@@ -313,7 +392,7 @@ def claim_of(d: Discourse, node: Node, condition: Condition, met: Meeting | None
     """What a condition says, as a sentence of its own: "if there is a cup, tell me"."""
     part = node.parts["condition"]
     if what_it_means(part) in ("so", "answered"):
-        return None
+        return found_claim(d, condition, met) if met is not None else None
     if what_it_means(part) == "answers_many":  # "if anyone says yes, tell Alice": how many did
         return polled(d, "many", None).words[0]
     if node.production.fixed.get("turned") or node.production.fixed.get("unless"):
@@ -378,7 +457,10 @@ def meet_there(d: Discourse, met: Meeting | None) -> None:
     thing = replace(met.thing, here=met.holds, pronoun=False)
     d.missing = None if met.holds else replace(met.thing, place=met.thing.place or d.at)
     d.lacking = None if met.holds or met.sought else d.missing
-    if thing.place is not None:  # it was looked for there
+    if isinstance(thing.place, Items):  # wherever it was found
+        d.at = d.with_person = None
+        d.away = True
+    elif thing.place is not None:  # it was looked for there
         d.went(thing.place)
         d.looked_in = thing.place
     if not met.holds:
@@ -405,39 +487,17 @@ def leave_off(d: Discourse, after: dict[str, object]) -> None:
             d.person = replace(d.person, here=False)
 
 
-def either_way(step: If) -> If:
-    """A step for both branches. "If Alice is not in her office, look for her in the lab and tell
-    her ...", "If there is one, bring it; if not, try the lab": the same wherever it is found."""
-    condition = step.condition
-    inner = step.then[0] if len(step.then) == 1 else None
-    denied = condition.condition if isinstance(condition, Not) else None
-    if denied is None or not isinstance(inner, If) or step.otherwise:
-        inner = None
-    if inner is not None and denied is not None and _same_search(denied, inner.condition):
-        return If(Either((denied, inner.condition)), inner.then, inner.otherwise)
-    further = searched(step.otherwise[0]) if len(step.otherwise) == 1 else None
-    if further is not None and _same_search(condition, further) and handled(condition, step.then):
-        anywhere = Either(tuple(map(Holds, (*searches(condition), *searches(further)))))
-        last = step.otherwise[0]
-        assert isinstance(last, If)
-        return If(anywhere, step.then, last.then)
-    return step
+def looks_on(part: Leaf | Node) -> bool:
+    """Whether a branch begins with looking somewhere else: "try the lab and bring it here"."""
+    first = next((each for each in inside(part) if each.production.rule == "command"), None)
+    return first is not None and first.means in LOOKING
 
 
-def handled(condition: Condition, steps: tuple[Step, ...]) -> bool:
-    """Whether something is done with what a condition looks for."""
-    return any(mentions(steps, each.arguments["thing"]) for each in searches(condition))
-
-
-def _same_search(one: Condition, other: Condition) -> bool:
-    """Whether two conditions look for the same."""
-    sought = [each.arguments["thing"] for each in (*searches(one), *searches(other))]
-    return bool(searches(one) and searches(other)) and all(each == sought[0] for each in sought)
-
-
-@meaning("tell_condition")
+@meaning(TELL)
 def tell_condition(d: Discourse, node: Node) -> Steps:
     """ "if there are more than three people, tell Alice": that there are more than three people."""
+    if "condition" not in node.parts:  # "..., if not, let me know"
+        return told_so(d, node, d.claim.saying if d.claim is not None else None)
     before_it, condition = condition_of(d, node)
     met = turned(d.met) if node.production.fixed.get("unless") else d.met
     kept = addressed_before(d, met) if not before_it else None
@@ -455,20 +515,17 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
         return told_again(d, d.get(node, "person_ref"))
     if asked_whether and what_it_means(node.parts["condition"]) == "answers_same":
         return [*before_it, *told_either_way(d, node, condition)]
+    delivery = delivered_last(d)
+    if delivery is not None and met is not None and lacks(delivery, met):
+        taken = taken_back(d, delivery, met)
+        if taken is not None:  # "bring me a coffee; if there is none, let me know"
+            return [*before_it, *failing(d, node, taken, met)]
     claim = claim_of(d, node, condition, met)
     if met is None and not before_it:
         as_before(d, condition)
     start = d.scene()
     meet_there(d, met)
-    person: Thing | None = d.get(node, "person_ref")
-    if "at_place" in node.parts:  # "tell the kitchen": whoever is there
-        then = [*go(d, d.get(node, "at_place")), *(known_words(d) if claim is None else [claim])]
-    elif is_me(person):
-        d.claim = None if claim is None else Claim(claim, d.known_by_now())
-        then = coming_back(d, node, tell_speaker(d))
-        d.claim = None
-    else:
-        then = speak_to(d, person, known_words(d) if claim is None else [claim])
+    then = told_so(d, node, claim)
     after = d.scene()
     d.set_scene(start)
     part = other_branch(d, node, condition)
@@ -489,6 +546,20 @@ def is_so(d: Discourse, node: Node) -> bool:
     is also told if he is not."""
     so = what_it_means(node.parts["condition"]) == "so"
     return so and d.answer is not None and "otherwise" not in node.parts
+
+
+def told_so(d: Discourse, node: Node, claim: Step | None) -> Steps:
+    """Tell whoever is to be told that something is so."""
+    person: Thing | None = d.get(node, "person_ref")
+    if "at_place" in node.parts:  # "tell the kitchen": whoever is there
+        return [*go(d, d.get(node, "at_place")), *(known_words(d) if claim is None else [claim])]
+    if is_me(person):
+        outer = d.claim
+        d.claim = None if claim is None else Claim(claim, d.known_by_now())
+        told = coming_back(d, node, tell_speaker(d))
+        d.claim = outer
+        return told
+    return speak_to(d, person, known_words(d) if claim is None else [claim])
 
 
 def told_either_way(d: Discourse, node: Node, condition: Condition) -> Steps:

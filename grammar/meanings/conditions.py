@@ -22,7 +22,7 @@ from grammar.meanings.agreement import same_answers
 from grammar.meanings.answers import Said, Wanted
 from grammar.meanings.answers import wanted as wanted_answer
 from grammar.meanings.deliveries import delivered_last
-from grammar.meanings.finding import noun_of
+from grammar.meanings.finding import noun_of, whether_found
 from grammar.meanings.news import counted as counted_answers
 from grammar.meanings.news import in_round
 from grammar.meanings.places import sought
@@ -131,8 +131,9 @@ def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
         gap = (node.start, node.end)
         raise NotUnderstood(d.language.phrase("cannot_check", what=words), gap=gap)
     said_there = d.tokens[node.end - 1].norm in d.language.speech.get("there", ())
-    if said_there and thing.place is None and d.at == Recall(START) and d.place is not None:
-        thing = replace(thing, place=d.place)  # the robot has come back from there meanwhile
+    if said_there and thing.place is None and d.at == Recall(START):
+        there = d.at_pick_up if d.place == d.at else d.place
+        thing = replace(thing, place=there)  # the robot has come back from there meanwhile
     if thing.person and thing.count is not None:  # "five people are there"
         many = _so_many(d, thing, thing.count, ">=")
         return negated(many) if node.production.fixed.get("no") else many
@@ -179,10 +180,10 @@ def is_there(d: Discourse, thing: Thing, search: bool = False) -> Condition:
         if search and thing.place is None and isinstance(d.at, Text):
             thing = replace(thing, place=d.at)  # "go to the kitchen and if you find a cup, ..."
         elsewhere = thing.place is not None and thing.place != d.at
-        arguments: dict[str, Value] = {"thing": sought(d, thing)}
-        if thing.place is not None and (elsewhere or search):
-            arguments["place"] = thing.place
-        known = Holds(Ask("find" if search or elsewhere else "sees", arguments))
+        if search or elsewhere:
+            known = whether_found(d, thing)
+        else:
+            known = Holds(Ask("sees", {"thing": sought(d, thing)}))
     if thing.person:
         d.person, d.thing_last = thing, False
     d.met = Meeting(thing)

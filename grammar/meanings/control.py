@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import Discourse, NotUnderstood, Steps, Thing
+from grammar.discourse import START, Discourse, NotUnderstood, Steps, Thing
 from grammar.meanings.alternatives import exclusive, for_all, itself, side_by_side
 from grammar.meanings.branches import in_branch
 from grammar.meanings.finding import go, not_found
@@ -15,7 +15,9 @@ from grammar.meanings.inquiries import wonder_told
 from grammar.meanings.lookouts import told_at_last
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import summed_at_end
+from grammar.meanings.searches import Search, search_of
 from grammar.meanings.stops import gone_to, said_at_each
+from grammar.meanings.surveys import moved
 from grammar.meanings.things import goes_on
 from grammar.meanings.visiting import with_each_asked
 from grammar.meanings.volunteers import guard_found
@@ -110,10 +112,15 @@ def guard_finds(d: Discourse, done: Steps) -> Steps:
     would not, so it goes under a condition."""
     result: Steps = []
     for number, step in enumerate(done):
+        following = done[number + 1] if number + 1 < len(done) else None
+        search = search_of(step) if isinstance(step, If) else None
+        if search is not None and isinstance(following, Call) and following.method == "grab":
+            handled = handling(done[number + 1 :])
+            result.append(If(search.found, tuple(handled), in_vain(search, handled)))
+            return [*result, *guard_finds(d, done[number + 1 + len(handled) :])]
         if not (isinstance(step, Call) and step.method == "find"):
             result.append(step)
             continue
-        following = done[number + 1] if number + 1 < len(done) else None
         # One of several who is not found must not keep the others from it.
         one_of_them = isinstance(step.arguments["thing"], Recall)
         needs_it = NEEDS_IT - LED if one_of_them else NEEDS_IT
@@ -162,6 +169,25 @@ def only_speaks(step: Step) -> bool:
     calls = {each.method for each in nodes((step,)) if isinstance(each, Call)}
     asked = {each.method for each in nodes((step,)) if isinstance(each, Ask)}
     return isinstance(step, If) and calls == {"say"} and asked <= {"clock", "battery"}
+
+
+def handling(steps: Steps) -> Steps:
+    """What is done with a thing, from taking it to the last step with it and what is said there."""
+    taken = steps[0]
+    assert isinstance(taken, Call)
+    thing = taken.arguments["thing"]
+    last = max(at for at, step in enumerate(steps) if mentions((step,), thing))
+    while last + 1 < len(steps) and not moved([steps[last + 1]]):
+        last += 1
+    return steps[: last + 1]
+
+
+def in_vain(search: Search, instead_of: Steps) -> tuple[Step, ...]:
+    """What is done if something was not found: who waits for it is told so where they wait."""
+    back = Call("goto", {"place": Recall(START)})
+    told = any(isinstance(each, Call) and each.method == "say" for each in search.missing)
+    comes = back in instead_of and told and back not in search.missing
+    return (back, *search.missing) if comes else tuple(search.missing)
 
 
 def speak_codes(d: Discourse, done: Steps) -> Steps:

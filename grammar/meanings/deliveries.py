@@ -15,8 +15,9 @@ from typing import Any
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing, Where
 from grammar.meanings.nouns import is_me
+from grammar.meanings.searches import search_of, searches
 from grammar.meanings.surveys import Survey
-from grammar.plan import Ask, Call, Condition, Holds, Recall, Step, Text, Value
+from grammar.plan import Ask, Call, Condition, Holds, If, Items, Recall, Step, Text, Value
 
 
 @dataclass(frozen=True)
@@ -83,31 +84,46 @@ def taken_back(d: Discourse, delivery: Delivery, met: Meeting) -> Taken | None:
     )
     if at is None:
         return None
-    first = d.done[at]
     if at and _is_about(d.done[at - 1], ("find",), missing, delivery):
-        at, first = at - 1, d.done[at - 1]
-    assert isinstance(first, Call)
+        at -= 1
+    first = d.done[at]
+    search = search_of(first)
     steps = d.done[at:]
     del d.done[at:]
     d.set_scene(delivery.before)
-    arguments: dict[str, Value] = {"thing": first.arguments["thing"]}
-    place = met.thing.place or first.arguments.get("place")
-    if first.method == "find" or (place is not None and place != d.at):
-        if place is not None:
-            arguments["place"] = place
-        found = Ask("find", arguments)
-        steps = steps[1:] if first.method == "find" else steps
+    if search is not None:
+        steps = steps[1:]
+        condition = _looking_there(search.found, met.thing.place)
     else:
-        found = Ask("sees", arguments)
+        assert isinstance(first, Call)
+        arguments: dict[str, Value] = {"thing": first.arguments["thing"]}
+        place = met.thing.place
+        elsewhere = place is not None and place != d.at
+        if place is not None and elsewhere:
+            arguments["place"] = place
+        condition = Holds(Ask("find" if elsewhere else "sees", arguments))
     if missing.person:
         d.holding = delivery.thing.value
         d.thing, d.thing_last = replace(delivery.thing, pronoun=True), True
         d.person = met.thing
-    return Taken(Holds(found), steps, delivery)
+    return Taken(condition, steps, delivery)
+
+
+def _looking_there(condition: Condition, place: Value | None) -> Condition:
+    """A search in the place where it is said afterwards that it would be."""
+    if not isinstance(condition, Holds) or not isinstance(condition.value, Ask):
+        return condition
+    if place is None or isinstance(place, Items):
+        return condition
+    return Holds(Ask("find", {**condition.value.arguments, "place": place}))
 
 
 def _is_about(step: Step, methods: tuple[str, ...], missing: Thing, delivery: Delivery) -> bool:
     """Whether a step looks for what is missing, or takes it."""
+    search = search_of(step)
+    if search is not None and isinstance(step, If):
+        sought = [each.arguments["thing"] for each in searches(search.found)]
+        return missing.value in sought or (not missing.person and step is delivery.steps[0])
     if not isinstance(step, Call) or step.method not in methods:
         return False
     said = step.arguments["thing"]

@@ -9,24 +9,23 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import (
     SETTING,
     Discourse,
-    Meeting,
     NotUnderstood,
     Steps,
     Thing,
     Where,
     as_value,
 )
-from grammar.meanings.deliveries import delivered_last, taken_back
-from grammar.meanings.finding import found, go, look_for, noun_of, where_sent
+from grammar.meanings.finding import go, look_for, noun_of, where_sent
 from grammar.meanings.leading import lead
 from grammar.meanings.loops import for_each_of_them, looped
 from grammar.meanings.nouns import is_me
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import counted_alone, tell_speaker
-from grammar.meanings.searches import search_in, searched
+from grammar.meanings.searches import searched
 from grammar.meanings.waiting import wait_until
-from grammar.plan import Ask, Both, Call, Either, Holds, If, Items, Not, Number, Repeat, Text, Value
+from grammar.meanings.whereabouts import looked_further
+from grammar.plan import Ask, Both, Call, Either, Holds, Items, Number, Repeat, Text, Value
 from grammar.tidy import nodes
 
 
@@ -85,29 +84,14 @@ def look_in(d: Discourse, node: Node) -> Steps:
     """ "look in the kitchen": go there; for what was looked for in vain, where there is such."""
     spot: Where = d.get(node, "spot")
     more: list[Value] = d.get(node, "place_list") or []
-    delivery = delivered_last(d)
-    if delivery is not None and spot.place is not None:
-        taken = taken_back(d, delivery, Meeting(delivery.thing, holds=False))
-        if taken is not None and not delivery.thing.place:
-            search = search_in(d, delivery.thing, [spot.place, *more])
-            assert isinstance(search[0], If) and isinstance(search[0].condition, Not)
-            return [If(search[0].condition.condition, tuple(taken.steps), search[0].then)]
-    last = d.done[-1] if d.done else None
-    if d.missing is None and isinstance(last, Call) and last.method == "find":
-        thing = d.thing if d.thing_last else d.person
-        if thing is not None and thing.place is None and last == found(d, thing):
-            d.done.pop()  # "I can not find my bag, look in the cafeteria": there, not anywhere
-            if more and spot.place is not None:
-                return search_in(d, thing, [spot.place, *more])
-            return look_for(d, replace(thing, place=spot.place, furniture=spot.furniture))
-    if d.missing is None and more:
-        raise NotUnderstood(d.language.phrase("look_for_what"))
-    if d.missing is None or spot.place is None:
+    if spot.place is None:
         return go_to(d, node)
-    if more:
-        d.at = None
-        return search_in(d, replace(d.missing, place=None), [spot.place, *more])
-    return look_for(d, replace(d.missing, place=spot.place, furniture=spot.furniture))
+    if spot.furniture is not None and d.missing is not None and not more:
+        return look_for(d, replace(d.missing, place=spot.place, furniture=spot.furniture))
+    looked = looked_further(d, [spot.place, *more])
+    if looked is None and more:
+        raise NotUnderstood(d.language.phrase("look_for_what"))
+    return go_to(d, node) if looked is None else looked
 
 
 @meaning("go_find")

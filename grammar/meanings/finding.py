@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
-from grammar.chart import Node
+from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.meanings.nouns import is_me
 from grammar.meanings.places import sought
@@ -13,6 +13,8 @@ from grammar.naming import the
 from grammar.plan import (
     Ask,
     Call,
+    Condition,
+    Either,
     ForEach,
     Forever,
     Holds,
@@ -45,14 +47,30 @@ def noun_of(d: Discourse, node: Node) -> Thing:
     thing: Thing | list[Thing] | None = d.build(part) if part is not None else None
     if isinstance(thing, list):  # "a cup and a plate", of which a condition is true
         thing = together(thing)
+    if thing is None and speaks_of_things(d, node.parts["person_ref"]):
+        thing = replace(d.thing, pronoun=True) if d.thing is not None else None
     if thing is None:
         person: Thing = d.build(node.parts["person_ref"])
         thing = Thing(Text(ANYONE), person=True, here=True) if is_me(person) else person
     thing = in_state(d, node, thing)
     spot: Where | None = d.get(node, "from")
     if spot is not None:
-        return replace(thing, place=spot.place, furniture=spot.furniture)
+        return replace(thing, place=spot.place, furniture=spot.furniture, pronoun=False)
     return thing
+
+
+def speaks_of_things(d: Discourse, part: Leaf | Node) -> bool:
+    """Whether "they" are things that were spoken of last: "the scissors"."""
+    if (
+        isinstance(part, Leaf)
+        or part.means != "person_pronoun"
+        or not d.thing_last
+        or d.thing is None
+    ):
+        return False
+    several = d.thing.plural or d.thing.several or d.person is None
+    said = set(d.norms(part.start, part.end))
+    return several and bool(said & set(d.language.speech.get("things_too", ())))
 
 
 def in_state(d: Discourse, node: Node, thing: Thing) -> Thing:
@@ -83,15 +101,29 @@ def found(d: Discourse, thing: Thing) -> Call:
     return Call("find", arguments)
 
 
+def whether_found(d: Discourse, thing: Thing) -> Condition:
+    """Whether a thing or a person is found where it may be: in one place after the other."""
+    places = thing.place.items if isinstance(thing.place, Items) else (thing.place,)
+    searches = tuple(
+        Holds(Ask("find", found(d, replace(thing, place=place)).arguments)) for place in places
+    )
+    return searches[0] if len(searches) == 1 else Either(searches)
+
+
 def look_for(d: Discourse, thing: Thing) -> Steps:
-    d.at = thing.place
-    if thing.place is not None:
+    """Look for a thing or a person; if it may be in several places, until it is found."""
+    several = isinstance(thing.place, Items)
+    d.at = None if several else thing.place
+    d.away = thing.place is None or several
+    if thing.place is not None and not several:
         d.place = thing.place
     d.with_person = thing.value if thing.person else None
     if thing.person:
         d.person, d.thing_last = thing, False
     else:
         d.thing, d.thing_last = thing, True
+    if several:
+        return [If(Not(whether_found(d, thing)), (not_found(d, thing),))]
     return [found(d, thing)]
 
 
@@ -107,6 +139,8 @@ def meet(d: Discourse, person: Thing) -> Steps:
     if not person.known and person.place is None:  # where they were left, if they were led there
         left = d.left.get(person.value)
         return [] if left is None else go(d, left)
+    if isinstance(person.place, Items):
+        return look_for(d, person)
     d.with_person = person.value
     d.at = person.place
     if person.place is not None:
@@ -134,11 +168,9 @@ def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
         return if_met(d, person, steps)
     if not person.known and person.place is not None and (person.plural or person.text == ANYONE):
         return [*go(d, person.place), *steps]
-    d.at = person.place
+    d.at = None if isinstance(person.place, Items) else person.place
     d.with_person = person.value
-    return [
-        If(Holds(Ask("find", found(d, person).arguments)), tuple(steps), (not_found(d, person),))
-    ]
+    return [If(whether_found(d, person), tuple(steps), (not_found(d, person),))]
 
 
 def each_of(d: Discourse, group: Value, steps: Steps) -> Steps:

@@ -446,7 +446,7 @@ def tell_speaker(d: Discourse) -> Steps:
     if last is not None and last is d.told:
         return []
     if d.claim is not None and d.claim.known == d.known_by_now():
-        if d.at is None or d.at == Recall(START):
+        if (d.at is None and not d.away) or d.at == Recall(START):
             return [d.claim.saying]
         start = d.start()
         d.went(start)

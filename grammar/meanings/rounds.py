@@ -14,6 +14,7 @@ from grammar.meanings.news import News, Told, asked_yet, go_back, last_found, po
 from grammar.meanings.nouns import is_me, thing_it
 from grammar.meanings.places import kind_places, sought
 from grammar.meanings.registry import meaning
+from grammar.meanings.searches import searched, searches
 from grammar.meanings.surveys import note, replacing
 from grammar.meanings.things import deliver
 from grammar.naming import joined_up
@@ -80,8 +81,13 @@ def same_round(d: Discourse, places: Value) -> bool:
 
 
 def round_of_visits(d: Discourse) -> int | None:
-    """ "go to the lobby and the kitchen and see where ...": what was said of both, as a round."""
+    """ "go to the lobby and the kitchen and see where ...", "check the lobby and the kitchen for
+    cups and tell me which ...": what was said of both, as a round."""
     visits: list[Value] = []
+    condition = searched(d.done[-1] if d.done else None)
+    looked_in = [] if condition is None else [each.arguments for each in searches(condition)]
+    if len(looked_in) > 1 and all("place" in each for each in looked_in):
+        d.done[-1:] = [Call("goto", {"place": each["place"]}) for each in looked_in]
     while d.done and isinstance(last := d.done[-1], Call) and "place" in last.arguments:
         if last.method != "goto":
             break

@@ -7,12 +7,14 @@ one, ..."): the search is then taken out of the steps again and becomes the cond
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from typing import Final
 
 from grammar.discourse import Discourse, Steps, Thing
-from grammar.meanings.finding import found, not_found
+from grammar.meanings.finding import not_found, whether_found
 from grammar.meanings.places import sought
 from grammar.plan import Ask, Call, Condition, Either, Holds, If, Items, Not, Step, Text, Value
+from grammar.tidy import mentions
 
 MOST_PLACES: Final = 8
 """Places that are looked at one by one in a condition."""
@@ -20,11 +22,8 @@ MOST_PLACES: Final = 8
 
 def search_in(d: Discourse, thing: Thing, places: list[Value]) -> Steps:
     """Look for something in one place after the other, until it is found."""
-    searches = tuple(
-        Holds(Ask("find", {**found(d, thing).arguments, "place": place})) for place in places
-    )
-    condition: Condition = searches[0] if len(searches) == 1 else Either(searches)
-    return [If(Not(condition), (not_found(d, thing),))]
+    somewhere = replace(thing, place=Items(tuple(places)))
+    return [If(Not(whether_found(d, somewhere)), (not_found(d, thing),))]
 
 
 def named_places(d: Discourse, places: Value) -> list[Value] | None:
@@ -38,16 +37,47 @@ def named_places(d: Discourse, places: Value) -> list[Value] | None:
     return [Text(each.name) for each in known] if 0 < len(known) <= MOST_PLACES else None
 
 
-def searched(step: Step | None) -> Condition | None:
-    """Whether what a step looks for is found, if it does nothing else than look for it."""
+@dataclass(frozen=True)
+class Search:
+    """What a step looks for, if it does nothing else than that and what is done in vain."""
+
+    found: Condition
+    missing: Steps
+    """What is done if it is not found."""
+
+    def is_for(self, d: Discourse, thing: Thing) -> bool:
+        """Whether it is this that is looked for, where it is said to be."""
+        return all(
+            each.arguments["thing"] in (thing.value, sought(d, thing))
+            and (thing.pronoun or may_be_in(thing, each.arguments.get("place")))
+            for each in searches(self.found)
+        )
+
+
+def search_of(step: Step | None) -> Search | None:
+    """The search that a step is."""
     if isinstance(step, Call) and step.method == "find":
-        return Holds(Ask("find", step.arguments))
+        return Search(Holds(Ask("find", step.arguments)), [])
     if not isinstance(step, If) or step.otherwise or not isinstance(step.condition, Not):
         return None
-    told = step.then[0] if len(step.then) == 1 else None
-    if not isinstance(told, Call) or told.method != "say" or not searches(step.condition.condition):
+    condition = step.condition.condition
+    return Search(condition, list(step.then)) if searches(condition) else None
+
+
+def may_be_in(thing: Thing, place: Value | None) -> bool:
+    """Whether what is said of a thing allows it to be at a place."""
+    if isinstance(thing.place, Items):
+        return place in thing.place.items
+    return thing.place in (None, place)
+
+
+def searched(step: Step | None) -> Condition | None:
+    """Whether what a step looks for is found, if nothing is done in vain but to say so."""
+    search = search_of(step)
+    if search is None or len(search.missing) > 1:
         return None
-    return step.condition.condition
+    told = all(isinstance(each, Call) and each.method == "say" for each in search.missing)
+    return search.found if told else None
 
 
 def searches(condition: Condition) -> list[Ask]:
@@ -66,11 +96,8 @@ def just_looked_for(d: Discourse, thing: Thing | None) -> Condition | None:
     condition = searched(d.done[-1] if d.done else None)
     if condition is None:
         return None
-    for each in searches(condition):
-        if thing is not None and each.arguments["thing"] != sought(d, thing):
-            return None
-        if thing is not None and thing.place not in (None, each.arguments.get("place")):
-            return None
+    if thing is not None and not Search(condition, []).is_for(d, thing):
+        return None
     d.done.pop()
     return condition
 
@@ -85,3 +112,67 @@ def just_awaited(d: Discourse, thing: Thing) -> Condition | None:
         return None
     d.done.pop()
     return Holds(Ask("wait_for", last.arguments))
+
+
+def searching_at(condition: Condition, place: Value | None) -> Condition:
+    """What is looked at where the robot is, as a search in that place."""
+    match condition:
+        case Holds(value=Ask(method="sees", arguments=arguments)) if isinstance(place, Text):
+            return Holds(Ask("find", {**arguments, "place": place}))
+        case _:
+            return condition
+
+
+def in_turn(first: Condition, further: Search) -> If:
+    """One search after the other, as one."""
+    places = (*searches(first), *searches(further.found))
+    return If(Not(Either(tuple(map(Holds, places)))), tuple(further.missing))
+
+
+def either_way(d: Discourse, step: If, *, looks_on: bool) -> Steps:
+    """A step for both branches. "If Alice is not in her office, look for her in the lab and tell
+    her ...", "If there is one, bring it; if not, try the lab": the same wherever it is found. The
+    branch may begin with looking on, or with making up for what is not there."""
+    condition = step.condition
+    denied = condition.condition if isinstance(condition, Not) else None
+    if denied is not None and step.then and not step.otherwise:
+        inner = step.then[0]
+        if isinstance(inner, If) and len(step.then) == 1 and same_search(denied, inner.condition):
+            return [If(Either((denied, inner.condition)), inner.then, inner.otherwise)]
+        further, rest = search_of(inner), step.then[1:]
+        if (
+            further is not None
+            and same_search(denied, further.found)
+            and (not rest or (looks_on and handled(denied, rest)))
+        ):
+            if not further.missing:
+                further = replace(further, missing=[not_found(d, thing_sought(d, denied))])
+            return [in_turn(denied, further), *rest]
+    further = search_of(step.otherwise[0]) if len(step.otherwise) == 1 else None
+    if (
+        further is not None
+        and same_search(condition, further.found)
+        and handled(condition, step.then)
+    ):
+        anywhere = in_turn(condition, further).condition
+        assert isinstance(anywhere, Not)
+        return [If(anywhere.condition, step.then, tuple(further.missing))]
+    return [step]
+
+
+def thing_sought(d: Discourse, condition: Condition) -> Thing:
+    """What a condition looks for, as it was spoken of."""
+    value = searches(condition)[0].arguments["thing"]
+    spoken_of = (each for each in (d.thing, d.person) if each is not None and each.value == value)
+    return next(spoken_of, Thing(value))
+
+
+def handled(condition: Condition, steps: tuple[Step, ...]) -> bool:
+    """Whether something is done with what a condition looks for."""
+    return any(mentions(steps, each.arguments["thing"]) for each in searches(condition))
+
+
+def same_search(one: Condition, other: Condition) -> bool:
+    """Whether two conditions look for the same."""
+    sought = [each.arguments["thing"] for each in (*searches(one), *searches(other))]
+    return bool(searches(one) and searches(other)) and all(each == sought[0] for each in sought)

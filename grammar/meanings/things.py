@@ -8,7 +8,6 @@ from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
 from grammar.meanings.deliveries import Delivery, meant_for
 from grammar.meanings.finding import (
-    found,
     go,
     if_missing,
     look_for,
@@ -22,10 +21,12 @@ from grammar.meanings.places import home_of, kind_places, piece_called, place_th
 from grammar.meanings.registry import meaning
 from grammar.meanings.remarks import fetched_there, known_to_be
 from grammar.meanings.reports import Report, found_out
+from grammar.meanings.searches import search_of
 from grammar.meanings.sights import best_there, which_there
 from grammar.meanings.speaking import sentence_form
 from grammar.meanings.surveys import Survey, note
 from grammar.plan import Call, ForEach, Items, Recall, Step, Text, Value
+from grammar.tidy import nodes
 from grammar.wordforms import head_word, singular
 
 
@@ -43,11 +44,25 @@ def find(d: Discourse, node: Node) -> Steps:
         return find_several(d, node, thing)
     if d.found_already:
         return []
+    visited = places_gone_to(d) if thing.place is None else []
+    if len(visited) > 1:  # "go to the lobby and then to the lounge and look for it"
+        del d.done[-len(visited) :]
+        return look_for(d, replace(thing, place=Items(tuple(visited))))
     missed = d.missing is not None and (d.missing.value, d.missing.place) == (thing.value, d.at)
     everywhere = node.production.fixed.get("everywhere", missed)
     if thing.place is None and d.at is not None and not everywhere:
         thing = replace(thing, place=d.at)  # "go to the kitchen and find the cup"
     return look_for(d, thing)
+
+
+def places_gone_to(d: Discourse) -> list[Value]:
+    """The places that the last steps go to, one after the other, with nothing done there."""
+    visited: list[Value] = []
+    for step in reversed(d.done):
+        if not (isinstance(step, Call) and step.method == "goto" and "place" in step.arguments):
+            break
+        visited.insert(0, step.arguments["place"])
+    return visited if all(isinstance(each, Text) for each in visited) else []
 
 
 def find_several(d: Discourse, node: Node, thing: Thing) -> Steps:
@@ -77,6 +92,8 @@ def grab(d: Discourse, node: Node) -> Steps:
     if thing.place is not None and thing.place != d.at:
         fetched = node.production.fixed.get("fetched")
         return deliver(d, thing, None, None) if fetched else pick_up(d, thing)
+    if isinstance(d.meant_for, Delivery):  # "if there is none, take a banana"
+        return deliver(d, thing, d.meant_for.person, d.meant_for.spot)
     d.holding = thing.value
     d.thing, d.thing_last = thing, True
     return [Call("grab", {"thing": sought(d, thing)})]
@@ -96,9 +113,8 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
     if last == Call("put", {"thing": thing.value}):
         d.done.pop()  # "take the cup to the kitchen and give it to Alex": never put down
         return []
-    looked = isinstance(last, Call) and last == found(d, thing)
-    if isinstance(last, Call) and last.method == "find" and thing.pronoun:
-        looked = True  # "find the cup and bring it to me"
+    search = search_of(last)
+    looked = search is not None and search.is_for(d, thing)  # "find the cup and bring it to me"
     nearby = d.at is not None and not d.at_people and thing.place is None
     nearby = nearby and not isinstance(thing.value, Recall)  # what somebody asked for is anywhere
     is_here = thing.here or nearby or (d.at is not None and thing.place == d.at)
@@ -191,12 +207,23 @@ def put(d: Discourse, node: Node) -> Steps:
     if node.production.fixed.get("brought") and d.delivered == thing.value and given_last(d):
         return []  # "get the cup and bring it back": here
     take_back_delivery(d, thing)
+    if node.production.fixed.get("brought") and thing.pronoun and not was_moved(d, thing):
+        return deliver(d, thing, None, None)  # "if you find it, bring it back": to who lost it
     if node.production.fixed.get("back") and thing.pronoun and spot == Where():
         spot = Where(d.source or d.at_pick_up or thing.place)
         thing = replace(thing, place=None, here=True)
     if d.holding != thing.value and spot == Where():
         return [Call("put", {"thing": thing.value})]
     return deliver(d, thing, None, spot)
+
+
+def was_moved(d: Discourse, thing: Thing) -> bool:
+    """Whether a thing was taken from somewhere before, so that it has a place to go back to."""
+    taken = any(
+        isinstance(step, Call) and step.method == "grab" and step.arguments["thing"] == thing.value
+        for step in nodes(tuple(d.done))
+    )
+    return taken or d.source is not None or d.at_pick_up is not None
 
 
 @meaning("put_each")

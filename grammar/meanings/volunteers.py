@@ -20,6 +20,7 @@ from grammar.meanings.options import options_of
 from grammar.meanings.places import kind_places, only_taken_apart
 from grammar.meanings.questions import asked, remember_answer
 from grammar.meanings.registry import meaning
+from grammar.meanings.searches import search_of
 from grammar.meanings.surveys import moved
 from grammar.meanings.waiting import wait_until
 from grammar.plan import (
@@ -128,10 +129,26 @@ def _nobody(found: Recall) -> Condition:
 def when_found(d: Discourse, node: Node) -> Steps:
     """ "when you find one, ...": after a search it is done with whoever was found."""
     last = d.done[-1] if d.done else None
-    searched = isinstance(last, Call) and last.method == "find"
-    if searched or _found_by(last) is not None:
-        then: Steps = d.build(node.parts["then"])
-        return then
+    search = search_of(last)
+    if search is None and _found_by(last) is None:
+        return waited_for(d, node)
+    if search is not None and d.thing_last and d.thing is not None:
+        d.thing = replace(d.thing, here=True, place=None)
+    from grammar.meanings.branches import if_found_so, with_else
+
+    node = with_else(node)
+    if search is not None and "otherwise" in node.parts:
+        return if_found_so(d, node, search)
+    then: Steps = d.build(node.parts["then"])
+    takes = bool(then) and isinstance(then[0], Call) and then[0].method == "grab"
+    if search is not None and isinstance(last, If) and not takes:
+        d.done.pop()
+        return [If(search.found, tuple(then), tuple(search.missing))]
+    return then
+
+
+def waited_for(d: Discourse, node: Node) -> Steps:
+    """ "when you find somebody, ...": they are looked for until somebody is found."""
     looking = wait_until(Holds(Ask("find", {"thing": Text(ANYONE)})))
     d.person, d.thing_last = Thing(Text(ANYONE), person=True, here=True), False
     return [*looking, *d.build(node.parts["then"])]

@@ -24,7 +24,7 @@ from sandbox.check import check
 from tests.grammar.hospitals import hospital
 
 STUB = stub()
-SAMPLED = 12
+SAMPLED = 36
 MAKES_SENSE = 0.4
 """The share of what is drawn, which was 0.6 when it was measured with a hundred."""
 
