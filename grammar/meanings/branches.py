@@ -392,7 +392,8 @@ def claim_of(d: Discourse, node: Node, condition: Condition, met: Meeting | None
     """What a condition says, as a sentence of its own: "if there is a cup, tell me"."""
     part = node.parts["condition"]
     if what_it_means(part) in ("so", "answered"):
-        return found_claim(d, condition, met) if met is not None else None
+        # Of a round it would be told at each place, and never that it is nowhere.
+        return found_claim(d, condition, met) if met is not None and not d.in_loop else None
     if what_it_means(part) == "answers_many":  # "if anyone says yes, tell Alice": how many did
         return polled(d, "many", None).words[0]
     if node.production.fixed.get("turned") or node.production.fixed.get("unless"):
