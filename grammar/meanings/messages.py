@@ -75,7 +75,20 @@ def told_to(d: Discourse, part: Leaf | Node, person: Thing | None) -> str:
     ordered = direct_clause(d, part.start, part.end, turned(d, part.start, part.end, person))
     if ordered == d.words(part.start, part.end):
         ordered = addressed(d, part.start, part.end, person)
+    reports = d.tokens[part.start - 1].norm in d.language.speech.get("reporting", ())
+    if reports and d.tokens[part.start].norm in d.language.speech.get("robot_pronouns", ()):
+        ordered = _said_by_robot(d, ordered)
     return sentence_form(ordered)
+
+
+def _said_by_robot(d: Discourse, clause: str) -> str:
+    """ "you are late", said of the robot, as it says it of itself: "I am late". What anybody may do
+    ("that you can sit down") is left as it is."""
+    own: dict[str, str] = d.language.speech.get("of_robot", {})
+    verbs = [each for each in own if " " in each]
+    begun = [each for each in verbs if f"{clause.lower()} ".startswith(f"{each} ")]
+    longest = max(begun, key=len, default="")
+    return own.get(longest, "") + clause[len(longest) :]
 
 
 def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:

@@ -6,6 +6,7 @@ import pytest
 
 from grammar.program import write_program
 from grammar.understand import understand
+from tests.grammar.hospitals import hospital
 from tests.grammar.ward import WARD
 
 
@@ -53,3 +54,20 @@ def test_others_are_not(sentence: str, said: str) -> None:
 )
 def test_no_text_goes_on_into_the_next_sentence_or_ends_half_way(sentence: str) -> None:
     assert understand(sentence, WARD).plan is None
+
+
+@pytest.mark.parametrize(
+    ("language", "said", "spoken"),
+    [
+        ("en", "tell Bob that you are waiting for him here", "I am waiting for you here."),
+        ("en", "show on the screen that you will be back soon", "I will be back soon."),
+        ("de", "zeig auf dem Bildschirm, dass du gleich wieder da bist", "Ich bin gleich wieder"),
+        ("fr", "affiche à l'écran que tu reviens tout de suite", "Je reviens"),
+    ],
+)
+def test_who_is_you_in_a_message_to_others_is_the_robot(
+    language: str, said: str, spoken: str
+) -> None:
+    understood = understand(said, hospital(language), language)
+    assert understood.plan is not None
+    assert spoken in write_program(understood.plan)
