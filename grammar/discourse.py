@@ -15,7 +15,7 @@ from grammar.language import Language
 from grammar.lexicon import Lexicon, Name
 from grammar.naming import joined_up, naming
 from grammar.plan import Ask, Call, Number, Recall, Remember, Sentence, Step, Text, Value
-from grammar.referents import Branched, Claim, Meeting, Thing, Where
+from grammar.referents import Branched, Claim, Meeting, Round, Thing, Where
 from grammar.tokens import Token
 from robot_api.methods import METHODS
 
@@ -28,7 +28,7 @@ COMMANDS: Final = frozenset({"command", "place_corrected"})
 ANYONE: Final = "person"
 """What the robot looks for when it is anybody's turn."""
 
-__all__ = ["Branched", "Claim", "Meeting", "Thing", "Where"]
+__all__ = ["Branched", "Claim", "Meeting", "Round", "Thing", "Where"]
 
 Steps = list[Step]
 
@@ -206,10 +206,8 @@ class Discourse:
     """The answer that was last told of (`grammar.meanings.answers.Wanted`): "... that is"."""
     news: Any = None
     """What was told last of a poll or a round (`grammar.meanings.news.News`)."""
-    lookout: Any = None
-    """What a round looks for that nobody was told of (`grammar.meanings.lookouts.Lookout`)."""
-    such: str | None = None
-    """The variable with the place that was looked for, as the first that is so."""
+    round: Round = field(default_factory=Round)
+    """What is known of the round of places that is made."""
     polled_for: str | None = None
     """What the last poll was to find out: "who", "many"."""
     taken_from: Where | None = None
@@ -228,8 +226,9 @@ class Discourse:
     """What was counted last: "how many people are here, and how many in the lobby?"."""
     counted: Any = None
     """The step that counts in the last round, the place it is at, and what is counted."""
-    after_round: tuple[Thing | None] | None = None
-    """Who is told, when a round is done, what was counted at each place; None for the speaker."""
+    after_round: tuple[Thing | None, str] | None = None
+    """Who is told, when a round is done, what was counted at each place (None for the speaker), and
+    whether that is each number or the "total"."""
     told: Step | None = None
     """The last step, if it has told the speaker all there is to tell."""
     report_step: Step | None = None

@@ -96,3 +96,17 @@ class Branched:
     met: Meeting | None
     answer: str | None
     """The last answer that was known by then."""
+
+
+@dataclass
+class Round:
+    """What is known of the round of places that is made, or was made last."""
+
+    lookout: Any = None
+    """What a round looks for that nobody was told of (`grammar.meanings.lookouts.Lookout`)."""
+    stop: Any = None
+    """What is looked for at this stop of a round (`grammar.meanings.rounds.Trait`)."""
+    present: Any = None
+    """The news of who of several people is in (`grammar.meanings.presence`)."""
+    such: str | None = None
+    """The variable with the place that was looked for, as the first that is so."""

@@ -28,6 +28,7 @@ import grammar.meanings.nouns
 import grammar.meanings.people
 import grammar.meanings.place_sets
 import grammar.meanings.places
+import grammar.meanings.presence
 import grammar.meanings.questions
 import grammar.meanings.references
 import grammar.meanings.remarks

@@ -28,6 +28,7 @@ from grammar.meanings.conditions import condition_of, negated, said_so
 from grammar.meanings.deliveries import (
     Taken,
     delivered_last,
+    first_clause,
     hands_it_over,
     inside,
     lacks,
@@ -35,7 +36,7 @@ from grammar.meanings.deliveries import (
     taken_back,
 )
 from grammar.meanings.finding import go, not_found, speak_to
-from grammar.meanings.news import BACK, go_back, polled
+from grammar.meanings.news import BACK, News, go_back, polled
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import coming_back, known_words, tell_speaker, told_again
@@ -91,6 +92,8 @@ def if_(d: Discourse, node: Node) -> Steps:
     delivery = delivered_last(d)
     before_it, condition = condition_of(d, node)
     met = d.met
+    if node.production.fixed.get("either") and only_told(node.parts["then"]):
+        return found_out_either_way(d, node, before_it, condition)
     if node.production.fixed.get("unless"):
         condition, met = negated(condition), turned(met)
     kept = addressed_before(d, met) if delivery is None and not before_it else None
@@ -208,6 +211,40 @@ def unwrapped(part: Leaf | Node | None) -> Node | None:
     while isinstance(part, Node) and part.production.means is None and len(part.parts) == 1:
         (part,) = part.parts.values()
     return part if isinstance(part, Node) else None
+
+
+def only_told(part: Leaf | Node | None) -> bool:
+    """Whether a branch does nothing but come back and tell: "see if she is there, then tell me"."""
+    each = part
+    while isinstance(each, Node):
+        first = first_clause(each)
+        if first.means not in ("come_back", "tell_me_that", "tell_that"):
+            return False
+        if not all(is_node_of(part, "person_me") for part in first.parts.values()):
+            return False
+        each = each.parts.get("rest")
+    return part is not None
+
+
+def is_node_of(part: Leaf | Node, means: str) -> bool:
+    return isinstance(part, Node) and part.means == means
+
+
+def found_out_either_way(d: Discourse, node: Node, before_it: Steps, condition: Condition) -> Steps:
+    """ "see if there is a mug, then come back and tell me": also if there is none."""
+    met, part = d.met, node.parts["condition"]
+    clause = d.words(part.start, part.end)
+    yes = found_claim(d, condition, met) or d.say("so_it_is", clause=clause)
+    no = found_claim(d, condition, turned(met)) or d.say("not_so", clause=clause)
+    name = d.variable("seen")
+    noted: Steps = [Remember(name, Truth(False)), If(condition, (Remember(name, Truth(True)),))]
+    if isinstance(condition, Holds) and isinstance(condition.value, Ask):
+        noted = [Remember(name, condition.value)]
+    words: Steps = [If(Holds(Recall(name)), (yes,), (no,))]
+    d.report, d.checked = None, name
+    back = go_back(d, [*before_it, *noted])
+    d.news, d.told = News(words, True), words[-1]
+    return [*before_it, *noted, *back, *words]
 
 
 def other_hands_it_over(node: Node) -> bool:

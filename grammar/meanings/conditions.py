@@ -499,6 +499,12 @@ def said_so(d: Discourse, no: bool, there_is_none: bool = False) -> Condition:
     agreed = just_agreed(d, no) or just_branched(d, no)
     if agreed is not None:
         return agreed
+    if d.round.stop is not None and in_round(
+        d
+    ):  # "check every lab for a cup. If there is none, ..."
+        if d.round.stop.thing is not None:
+            d.met = Meeting(d.round.stop.thing, holds=no == d.round.stop.denied)
+        return negated(d.round.stop.condition) if no else d.round.stop.condition
     looked = just_looked_for(d, None)
     if looked is not None:
         person = d.person if not d.thing_last else None

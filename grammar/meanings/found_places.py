@@ -18,9 +18,9 @@ from grammar.plan import Compare, If, Recall, Step, Text
 def find_such(d: Discourse, node: Node) -> Steps:
     """ "find an empty office", "check the labs until you find one that is free"."""
     such = sought_place(d, node)
-    d.lookout = d.report = d.news = d.counted = d.checked = None
+    d.round.lookout = d.report = d.news = d.counted = d.checked = None
     going, place, none = first_such(d, such)
-    d.such = place.name
+    d.round.such = place.name
     d.at = d.place = place
     missing = d.say("no_such_places")
     if not node.production.fixed.get("ask"):

@@ -3,6 +3,7 @@ something is so ("Go to every office. If somebody is there, ..."), and what is t
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Final
 
 from msgspec.structs import replace
@@ -38,6 +39,10 @@ from grammar.plan import (
     Value,
 )
 
+SEEN: Final = frozenset(
+    {"names_here", "whether_seen", "counted_info", "seen_here", "kind_seen", "looks_of"}
+)
+"""What is told of a place by who or what is seen there."""
 SPOKEN: Final = frozenset({"say", "ask", "gesture", "wait_for", "emotion"})
 """What is done with people."""
 
@@ -61,31 +66,89 @@ def in_round(d: Discourse, clause: Node) -> Steps:
     """The steps of a clause. "Go to every office. If somebody is there, ...": they belong to the
     round in the sentence before, which may consist of nothing but going there."""
     first = first_clause(clause)
-    if d.lookout is not None and about_all(d, first):
-        d.lookout.until_found(d)
+    if d.round.lookout is not None and about_all(d, first):
+        d.round.lookout.until_found(d)
+    found_there_too(d, first)
     loop = d.done[-1] if d.done else None
     if not isinstance(loop, ForEach) or not goes_on(d, loop, first):
         return in_company(d, first, d.build(clause))
     d.done.pop()
     means = first.production.means
     if means == "tell_condition" and "otherwise" not in first.parts:
-        d.lookout = None
+        d.round.lookout = None
         return told_behind(d, loop, first)
     here = Recall(loop.variable)
     outer, d.done = d.done, list(loop.steps)
     d.at = d.place = here
-    lookout = d.lookout if means not in (*ABOUT_IT, "if", "when") else None
-    d.lookout = None
+    lookout = d.round.lookout if means not in (*ABOUT_IT, "if", "when") else None
+    d.round.stop, d.round.lookout = None if d.round.lookout is None else d.round.lookout.trait, None
     if lookout is not None:
         lookout.meet(d)
     in_loop, d.in_loop = d.in_loop, True
+    clause, behind = told_of_all(clause, first)
     try:
         more = in_company(d, first, d.build(clause))
         inner = [*d.done, *(more if lookout is None else lookout.acted_on(more))]
     finally:
         d.done, d.in_loop = outer, in_loop
-    d.at = d.with_person = None
-    return brought_behind(d, replace(loop, steps=tuple(inner)))
+    d.at = d.with_person = d.round.stop = None
+    loop = replace(loop, steps=tuple(inner))
+    if behind is not None:
+        d.done.append(loop)
+        told: Steps = d.build(behind)
+        return told
+    return brought_behind(d, loop)
+
+
+def found_there_too(d: Discourse, first: Node) -> None:
+    """ "visit the labs, come back and tell me who is there": found out before coming back."""
+    loop = d.done[-2] if len(d.done) > 1 and d.done[-1] == BACK else None
+    if isinstance(loop, ForEach) and goes_on(d, loop, first) and about_places(first):
+        d.done.pop()
+        d.at = None
+
+
+def about_places(first: Node) -> bool:
+    """Whether a clause tells of what is at a place."""
+    info = first.parts.get("info")
+    seen = isinstance(info, Node) and info.means in SEEN
+    return first.means == "tell_condition" or (first.means == "report" and seen)
+
+
+def told_of_all(clause: Node, first: Node) -> tuple[Node, Node | None]:
+    """What is done at each place, and what is told when that is done everywhere: "if somebody is
+    there, ask them whether they want tea, and tell me how many said yes"."""
+    then = first.parts.get("then")
+    if first.means != "if" or clause is not first or not isinstance(then, Node):
+        return clause, None
+    kept, behind = without_news(then)
+    if kept is None or behind is None:
+        return clause, None
+    return dataclasses.replace(clause, parts={**clause.parts, "then": kept}), behind
+
+
+def without_news(part: Node) -> tuple[Node | None, Node | None]:
+    """A sequence up to where it is told what was answered, and that."""
+    if part.production.means is None and len(part.parts) == 1:
+        ((name, only),) = part.parts.items()
+        kept, behind = without_news(only) if isinstance(only, Node) else (part, None)
+        whole = None if kept is None else dataclasses.replace(part, parts={name: kept})
+        return whole, behind
+    if part.means != "steps":
+        return part, None
+    rest = part.parts.get("rest")
+    first = part.parts["first"]
+    news = first_clause(first) if isinstance(first, Node) else None
+    if news is not None and news.means in ("news", "come_back"):
+        polled = any(each.means == "poll" for each in inside(part))
+        return (None, part) if polled else (part, None)
+    if not isinstance(rest, Node):
+        return part, None
+    kept, behind = without_news(rest)
+    parts = {name: each for name, each in part.parts.items() if name != "rest"}
+    if kept is not None:
+        parts["rest"] = kept
+    return dataclasses.replace(part, parts=parts), behind
 
 
 def in_company(d: Discourse, first: Node, steps: Steps) -> Steps:
@@ -117,7 +180,8 @@ def told_behind(d: Discourse, loop: ForEach, clause: Node) -> Steps:
     d.at = d.place = here
     d.met = None
     before, condition = condition_of(d, clause)
-    claim = claim_of(d, clause, condition, d.met)
+    of_any = any(each.means == "trait_holds" for each in inside(clause.parts["condition"]))
+    claim = None if of_any else claim_of(d, clause, condition, d.met)
     inner, d.done = d.done, outer
     d.at = d.with_person = None
     person: Thing | None = d.get(clause, "person_ref")
@@ -141,6 +205,8 @@ def noted_of(
         what = Text(f"{said.value.rstrip('.')}: ")
         some = Call("say", {"text": Sentence((what, Recall(found), Text(".")))})
     none = d.say("no_such_places")
+    if claim is None:
+        none, some = d.say("no_none"), d.say("yes_these", places=Recall(found))
     words: Steps = [If(Compare(Length(Recall(found)), "==", Number(0)), (none,), (some,))]
     return replace(loop, steps=(*loop.steps, noted)), words
 
@@ -173,7 +239,7 @@ def goes_on(d: Discourse, loop: ForEach, first: Node) -> bool:
         )
     if len(loop.steps) > 1 or first.production.means in STAYS_OUTSIDE:
         return False
-    if d.lookout is not None and any(each.means == "thing_it" for each in inside(first)):
+    if d.round.lookout is not None and any(each.means == "thing_it" for each in inside(first)):
         return True  # "search all labs for a stapler and bring it to Bob"
     return not any(
         each.production.means == "person_name"

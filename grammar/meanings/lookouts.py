@@ -17,7 +17,7 @@ from msgspec.structs import replace
 from grammar.chart import Node
 from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, as_value
 from grammar.meanings.conditions import negated
-from grammar.meanings.finding import speak_to
+from grammar.meanings.finding import look_for, speak_to
 from grammar.meanings.news import News, Told, go_back, in_round, last_found
 from grammar.meanings.nouns import is_me
 from grammar.meanings.registry import meaning
@@ -63,7 +63,7 @@ class Lookout:
         noted = If(condition, (Collect(found, Recall(self.place)),))
         d.done[at] = replace(loop, steps=(*loop.steps, *self.trait.first, noted))
         d.done.insert(0, Remember(found, Items(())))
-        d.lookout = None
+        d.round.lookout = None
         return Told(found_places(d, tell, found), [])
 
     def at(self, d: Discourse) -> int | None:
@@ -86,7 +86,7 @@ class Lookout:
     def until_found(self, d: Discourse) -> None:
         """Nothing but a search, after all, if it can be one."""
         at, places = self.at(d), named_places(d, self.places)
-        d.lookout = None
+        d.round.lookout = None
         if at is not None and places and self.thing is not None and not self.trait.denied:
             d.done[at : at + 1] = search_in(d, self.thing, places)
 
@@ -116,7 +116,7 @@ def round_check(d: Discourse, node: Node) -> Steps:
     else:
         d.thing, d.thing_last = thing, True
     tell = str(node.production.fixed.get("tell", "which"))
-    d.lookout = Lookout(place, places, trait, thing, d.depth, definite(d, node, thing), tell)
+    d.round.lookout = Lookout(place, places, trait, thing, d.depth, definite(d, node, thing), tell)
     return [round_of(d, places, [], place)]
 
 
@@ -129,23 +129,23 @@ def definite(d: Discourse, node: Node, thing: Thing | None) -> bool:
 @meaning("lookout_told")
 def lookout_told(d: Discourse, node: Node) -> Told:
     """ "whether there is one", "where you saw one": of what was looked for."""
-    lookout: Lookout | None = d.lookout
+    lookout: Lookout | None = d.round.lookout
     if lookout is not None:
         return lookout.told(d, str(node.production.fixed["tell"]))
     if in_round(d):  # "if one has none, tell me which one"
         return Told([d.say("such_places", places=as_value(d.at))], [])
     if d.news is not None:
         return last_found(d)
-    if d.such is None:
+    if d.round.such is None:
         raise NotUnderstood(d.language.phrase("which_places"))
-    return Told([d.say("it_is_there", place=Recall(d.such))], [])
+    return Told([d.say("it_is_there", place=Recall(d.round.such))], [])
 
 
 def tell_lookout(d: Discourse, person: Thing | None) -> Steps | None:
     """What a round was to find out, told to somebody; None if there is none to tell of."""
-    if d.lookout is None:
+    if d.round.lookout is None:
         return None
-    words = d.lookout.told(d).words
+    words = d.round.lookout.told(d).words
     d.news, d.told = News(words, person is None), words[-1]
     if person is None or is_me(person):
         return [*go_back(d, []), *words]
@@ -155,10 +155,22 @@ def tell_lookout(d: Discourse, person: Thing | None) -> Steps | None:
 @meaning("look_now")
 def look_now(d: Discourse, node: Node) -> Steps:
     """ "Is there a mug in the kitchen? Go and look ...": that is what is done already."""
-    if d.news is None and d.report is None and d.lookout is None and d.such is None:
+    if d.news is None and d.report is None and d.round.lookout is None and d.round.such is None:
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
     return []
+
+
+@meaning("looking_for")
+def looking_for(d: Discourse, node: Node) -> Steps:
+    """ "I am looking for Clara. Go to her office and see if she is there": why, if it is said where
+    to look for her; else what to do."""
+    person: Thing = d.get(node, "person_ref")
+    if any(token.kind == "word" for token in d.tokens[node.end : node.end + 2]):
+        d.background.append(d.words(node.start, node.end))
+        d.person, d.thing_last = person, False
+        return []
+    return look_for(d, person)
 
 
 def told_at_last(d: Discourse) -> Steps:
@@ -166,7 +178,7 @@ def told_at_last(d: Discourse) -> Steps:
     waiting: News | None = d.news
     if d.depth == 1 and waiting is not None and waiting.waiting and waiting.whom is not None:
         return speak_to(d, waiting.whom, waiting.words)
-    lookout: Lookout | None = d.lookout
+    lookout: Lookout | None = d.round.lookout
     if lookout is None or lookout.depth != d.depth:
         return []
     at = lookout.at(d)

@@ -13,9 +13,10 @@ from grammar.meanings.branches import meet_there
 from grammar.meanings.conditions import FULL_HOUR, condition_of
 from grammar.meanings.deliveries import first_clause
 from grammar.meanings.finding import go, look_for, noun_of
+from grammar.meanings.going_on import brought_behind
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
-from grammar.meanings.rounds import same_round, told_after_round
+from grammar.meanings.rounds import same_round
 from grammar.meanings.surveys import until_answered
 from grammar.meanings.waiting import at_least, awaited, looking_up, there_first, wait_until
 from grammar.plan import (
@@ -354,7 +355,7 @@ def each_place(d: Discourse, items: Value, steps: Leaf | Node | None, goes: bool
         body = [going, *body]
     d.at = None if body else before
     d.with_person = None
-    return told_after_round(d, ForEach(variable, items, tuple(body)))
+    return brought_behind(d, ForEach(variable, items, tuple(body)))
 
 
 @meaning("for_each_of_them")

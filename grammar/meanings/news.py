@@ -216,7 +216,7 @@ def told_at_end(d: Discourse, person: Thing | None) -> bool:
         return False
     if not any(each is d.report_step for each in nodes(tuple(d.done))):
         return False
-    d.after_round = (person,)
+    d.after_round = (person, "each")
     return True
 
 

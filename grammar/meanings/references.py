@@ -107,11 +107,11 @@ def _kinds(d: Discourse, options: tuple[str, ...]) -> Iterator[str]:
 
 def answers_in(d: Discourse, text: str, start: int, end: int) -> Value:
     """A text made of some words, with the answers in it that these words speak of."""
-    if d.such is not None and d.norms(end - 1, end)[0] in d.language.speech.get("there", ()):
+    if d.round.such is not None and d.norms(end - 1, end)[0] in d.language.speech.get("there", ()):
         # "find an empty office and tell Bob to meet me there": he has to hear which one it is
         words = text.rstrip(".!")
         end_of_it = (Text(text[len(words) :]),) if text != words else ()
-        return Sentence((Text(f"{words}: "), Recall(d.such), *end_of_it))
+        return Sentence((Text(f"{words}: "), Recall(d.round.such), *end_of_it))
     parts: list[Value] = []
     rest = text
     for first, last, value in list(_spoken_of(d, start, end)):

@@ -81,6 +81,14 @@ def remark_name(d: Discourse, node: Node) -> Steps:
     return aside(d, node)
 
 
+@meaning("remark_thing")
+def remark_thing(d: Discourse, node: Node) -> Steps:
+    """ "somebody lost a scarf": what is spoken of then."""
+    thing: Thing = d.get(node, "thing")
+    d.thing, d.thing_last = thing, True
+    return aside(d, node)
+
+
 @meaning("remark_where")
 def remark_where(d: Discourse, node: Node) -> Steps:
     """ "bring it to Alice, she is in ward a", "I forgot my bag in the cafeteria": where to look."""

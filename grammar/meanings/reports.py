@@ -81,6 +81,11 @@ def report(d: Discourse, node: Node) -> Steps:
         d.told = steps[-1] if steps else None
         return steps
     fixed = node.production.fixed
+    known = d.news is not None and d.news is d.round.present
+    if known and isinstance(info, Node) and info.means == "names_here":
+        return told_again(d, person)  # "see if Alice and Bob are in, and tell me who is there"
+    if isinstance(info, Node) and info.production.fixed.get("total") and news.in_round(d):
+        return told_in_total(d, found, person)
     d.report_open = person is None and bool(fixed.get("open", not fixed.get("to_me")))
     d.report_counts = person is None and bool(fixed.get("counted"))
     return found_out(d, found, person, back=bool(fixed.get("to_me")) or is_me(person))
@@ -104,6 +109,15 @@ def found_for(d: Discourse, person: Thing | None, found: Steps) -> Steps:
 
     then, otherwise = told_there(search.then), told_there(search.otherwise)
     return [*found[:-1], If(search.condition, then, otherwise)]
+
+
+def told_in_total(d: Discourse, found: Report, person: Thing | None) -> Steps:
+    """ "go to every lab, count the chairs and tell me how many there are altogether"."""
+    known = d.report is not None and d.report.name == "count"
+    counted = known and any(each is d.report_step for each in nodes(tuple(d.done)))
+    steps = [] if counted else told(d, replace(found, place=None), None)
+    d.after_round = (person, "total")
+    return steps
 
 
 def found_out(d: Discourse, found: Report, person: Thing | None, *, back: bool) -> Steps:
@@ -142,7 +156,7 @@ def found_out(d: Discourse, found: Report, person: Thing | None, *, back: bool) 
     seen_here = found.about_here and found.value is not None
     if back and asked_by_me and seen_here and news.in_round(d):
         steps += told(d, found, None)
-        d.after_round = (None,)
+        d.after_round = (None, "each")
         return steps
     far = person is not None and not is_here(d, person) and found.about_here
     if far and found.value is not None and not isinstance(found.value, Recall):
@@ -336,8 +350,8 @@ def checked(d: Discourse) -> Value | None:
 @meaning("found_told")
 def found_told(d: Discourse, node: Node | None = None) -> news.Told:
     """ "the result", "it", "what you found out": whatever was found out last."""
-    if d.lookout is not None:
-        told_of_round: news.Told = d.lookout.told(d)
+    if d.round.lookout is not None:
+        told_of_round: news.Told = d.round.lookout.told(d)
         return told_of_round
     told: news.News | None = d.news
     if told is not None:

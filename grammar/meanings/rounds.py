@@ -7,10 +7,19 @@ from dataclasses import dataclass
 from msgspec.structs import replace
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
+from grammar.discourse import ANYONE, Discourse, Meeting, NotUnderstood, Steps, Thing, Where
 from grammar.meanings.answers import Said
 from grammar.meanings.finding import speak_to
-from grammar.meanings.news import News, Told, asked_yet, go_back, last_found, polled, take_back
+from grammar.meanings.news import (
+    News,
+    Told,
+    asked_yet,
+    go_back,
+    in_round,
+    last_found,
+    polled,
+    take_back,
+)
 from grammar.meanings.nouns import is_me, thing_it
 from grammar.meanings.places import kind_places, sought
 from grammar.meanings.registry import meaning
@@ -173,10 +182,10 @@ def told_after_round(d: Discourse, loop: ForEach) -> Steps:
     """A round, and what was found out in it told behind it."""
     if d.after_round is None:
         return [loop]
-    (person,), d.after_round = d.after_round, None
+    (person, kind), d.after_round = d.after_round, None
     if d.report.name == "count":
         d.done.append(loop)
-        words, steps = summed_up(d, "each").words, [d.done.pop()]
+        words, steps = summed_up(d, kind).words, [d.done.pop()]
     else:
         words, steps = _lines(d, loop)
     d.report, d.news, d.told = None, News(words, person is None), words[-1]
@@ -196,7 +205,13 @@ def _lines(d: Discourse, loop: ForEach) -> tuple[Steps, Steps]:
         seen = d.variable(found.name)
         line = Sentence((here, Text(": "), Recall(seen)))
         notes = [Remember(seen, found.value), Collect(noted, line)]
+        if found.value in (Ask("people"), Ask("objects")):
+            any_there = Compare(Length(Recall(seen)), ">", Number(0))
+            notes = [notes[0], If(any_there, (Collect(noted, line),))]
         words = [d.say(found.phrase, **dict(found.words), value=Recall(noted))]
+        if found.value in (Ask("people"), Ask("objects")):
+            none = d.say("nobody_seen" if found.value == Ask("people") else "no_such_places")
+            words = [If(Compare(Length(Recall(noted)), "==", Number(0)), (none,), tuple(words))]
     return words, [Remember(noted, Items(())), replacing(loop, d.report_step, notes)]
 
 
@@ -255,7 +270,8 @@ def around(d: Discourse, kind: str, thing: Thing, places: Value) -> Told:
     first, notes, told = _kept(d, kind, count, Recall(place), things_called(d, thing))
     counting = Remember(count, Ask("count", {"thing": sought(d, thing)}))
     d.counted = (counting, Recall(place), things_called(d, thing))
-    return Told(told, [*first, round_of(d, places, [counting, *notes], place)])
+    d.done += [*first, round_of(d, places, [counting, *notes], place)]
+    return Told(told, [])
 
 
 # --- what is true of a place
@@ -322,6 +338,8 @@ def trait_holds(d: Discourse, node: Node) -> Condition:
         d.pending.append(Call("goto", {"place": place}))
     trait: Trait = d.get(node, "place_trait")
     d.pending += trait.first
+    if trait.thing is not None and in_round(d):
+        d.met = Meeting(trait.thing, holds=not trait.denied)
     return trait.condition
 
 
@@ -352,8 +370,8 @@ def places_told(d: Discourse, node: Node) -> Told:
     """ "which labs have no stapler", "how many offices are empty", "which of them are"."""
     named = any(name in node.parts for name in ("kinds", "place_list"))
     named = named or bool(node.production.fixed.get("all"))
-    if d.such is not None and not named and last_round(d) is not None:
-        return Told([d.say("it_is_there", place=Recall(d.such))], [])
+    if d.round.such is not None and not named and last_round(d) is not None:
+        return Told([d.say("it_is_there", place=Recall(d.round.such))], [])
     trait_part = node.parts["place_trait"]
     if (
         not named
@@ -369,7 +387,7 @@ def places_told(d: Discourse, node: Node) -> Told:
         return polled(d, "who", Said(trait_part.start, trait_part.end))
     if d.news is not None:  # what was checked on the round is told only as is said now
         take_back(d, d.news)
-    d.lookout = None
+    d.round.lookout = None
     at = last_round(d)
     if named and (at is None or not same_places(d, node, d.done[at])):
         at = None

@@ -33,7 +33,7 @@ from grammar.wordforms import head_word, singular
 @meaning("find")
 def find(d: Discourse, node: Node) -> Steps:
     sought_for = node.parts.get("thing")
-    if d.such is not None and isinstance(sought_for, Node) and sought_for.means == "thing_it":
+    if d.round.such is not None and isinstance(sought_for, Node) and sought_for.means == "thing_it":
         return []  # "I need an empty office. Go and find one": that is being done
     thing = noun_of(d, node)
     if isinstance(thing.group, Items):
@@ -191,9 +191,12 @@ def _is_given(step: Step, thing: Thing) -> bool:
 def put(d: Discourse, node: Node) -> Steps:
     """ "put the cup on the table", "... in the kitchen", "... down"."""
     thing: Thing = d.get(node, "thing") or thing_it(d, node)
+    there = d.place  # "bring one there from the store"
     source: Where | None = d.get(node, "from")
     if source is not None:
         thing = replace(thing, place=source.place, furniture=source.furniture)
+    if source is not None and node.parts["from"].start > node.parts.get("where", node).start:
+        d.place = there
     spot: Where = d.get(node, "where") or Where()
     if node.production.fixed.get("there") and (d.place is not None or not d.done):
         spot = Where(place_there(d, node))

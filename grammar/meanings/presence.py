@@ -1,0 +1,115 @@
+"""Who is where: of several people in their rooms, and on a round of places."""
+
+from __future__ import annotations
+
+from msgspec.structs import replace
+
+from grammar.chart import Node
+from grammar.discourse import Discourse, NotUnderstood, Steps, Thing
+from grammar.meanings.news import News, Told, go_back, last_found
+from grammar.meanings.places import unknown_place
+from grammar.meanings.registry import meaning
+from grammar.meanings.rounds import last_round, places_of, round_of, round_of_visits
+from grammar.meanings.surveys import replacing
+from grammar.plan import (
+    Ask,
+    Call,
+    Collect,
+    Compare,
+    ForEach,
+    Holds,
+    If,
+    Items,
+    Length,
+    Number,
+    Recall,
+    Remember,
+    Sentence,
+    Step,
+    Text,
+    Value,
+)
+from grammar.tidy import nodes
+
+
+@meaning("presence_told")
+def presence_told(d: Discourse, node: Node) -> Told:
+    """ "which of Alice and Bob are in their offices", "who of them is there"."""
+    if "people" not in node.parts:
+        return last_found(d) if d.news is not None else met_on_round(d, None)
+    people: Thing | list[Thing] = people_of(d, node)
+    kind, mark = str(d.get(node, "kind")), d.language.speech["possessive"]
+    known = {place.name.lower(): place.name for place in d.lexicon.place_kinds[kind]}
+    found = d.variable("found")
+    first: Steps = [Remember(found, Items(()))]
+    for person in people if isinstance(people, list) else []:
+        place = known.get(f"{person.text}{mark}{kind}".lower())
+        if place is None:
+            raise unknown_place(d, f"{person.text}{mark}{kind}", node)
+        here = Holds(Ask("sees", {"thing": person.value}))
+        first.append(Call("goto", {"place": Text(place)}))
+        first.append(If(here, (Collect(found, person.value),)))
+    d.at = d.with_person = None
+    none = d.say("nobody_of_them")
+    some = d.say("these_are_there", names=Recall(found))
+    return Told([if_any(found, none, some)], first)
+
+
+def people_of(d: Discourse, node: Node) -> list[Thing]:
+    """Several people by their names, with "and" or with "or"."""
+    people: Thing | list[Thing] = d.get(node, "people")
+    if isinstance(people, list):
+        return people
+    if not isinstance(people.group, Items):
+        raise NotUnderstood(d.language.phrase("one_person"))
+    names = [each.value for each in people.group.items if isinstance(each, Text)]
+    return [Thing(Text(name), known=True, person=True) for name in names]
+
+
+def if_any(found: str, none: Step, some: Step) -> If:
+    return If(Compare(Length(Recall(found)), "==", Number(0)), (none,), (some,))
+
+
+@meaning("presence")
+def presence(d: Discourse, node: Node) -> Steps:
+    """ "see if Alice or Bob is in the office": told to the speaker, if nobody else is named."""
+    told = presence_told(d, node)
+    d.report = d.counted = d.checked = d.round.lookout = None
+    back = go_back(d, told.first)
+    d.news, d.told = News(told.words, True), told.words[-1]
+    d.round.present = d.news
+    return [*told.first, *back, *told.words]
+
+
+@meaning("who_where")
+def who_where(d: Discourse, node: Node) -> Told:
+    """ "who is where", "who is in each of them", "who is in offices 1 to 4"."""
+    if "kinds" in node.parts or "place_list" in node.parts:
+        return met_on_round(d, places_of(d, node))
+    return last_found(d) if d.news is not None else met_on_round(d, None)
+
+
+def met_on_round(d: Discourse, places: Value | None) -> Told:
+    """Who is at each place of a round."""
+    at = None if places is not None else last_round(d)
+    if places is None and at is None:
+        at = round_of_visits(d)
+    if at is None and places is None:
+        raise NotUnderstood(d.language.phrase("which_places"))
+    names, found = d.variable("names"), d.variable("found")
+    loop = d.done[at] if at is not None else None
+    here = Recall(loop.variable if isinstance(loop, ForEach) else d.variable("place"))
+    line = Sentence((here, Text(": "), Recall(names)))
+    anybody = Compare(Length(Recall(names)), ">", Number(0))
+    notes: Steps = [Remember(names, Ask("people")), If(anybody, (Collect(found, line),))]
+    first: Steps = [Remember(found, Items(()))]
+    if at is not None and isinstance(loop, ForEach):
+        said = any(each is d.report_step for each in nodes(loop))
+        loop = replace(loop, steps=loop.steps if said else (*loop.steps, *notes))
+        d.done[at] = replacing(loop, d.report_step, notes) if said else loop
+        d.done.insert(0, first.pop())
+    elif places is not None:
+        first.append(round_of(d, places, notes, here.name))
+    d.report = d.round.lookout = None
+    some = d.say("people_seen", value=Recall(found))
+    return Told([if_any(found, d.say("nobody_seen"), some)], first)
