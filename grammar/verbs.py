@@ -21,6 +21,8 @@ from typing import Any, Final
 PARTS: Final = "|"
 """Between the particle of a verb that may part and the rest of it."""
 NEXT_TO_NOTHING: Final = 0.001
+RARE: Final = 0.5
+"""What a form costs that is seldom meant as an order."""
 AFTER: Final = ">>"
 """Before what stands behind the end of a clause."""
 
@@ -32,43 +34,44 @@ def forms(verbs: Mapping[str, Sequence[str]], conjugation: Mapping[str, Any]) ->
     """The rules that a language's verbs stand for, with their words."""
     rules: dict[str, Any] = {}
     for name, infinitives in verbs.items():
-        first: dict[str, None] = {}
-        whole: dict[str, None] = {}
-        parting: dict[str, None] = {}
-        last: dict[str, None] = {}
-        particles: dict[str, None] = {}
-        done: dict[str, None] = {}
+        found: dict[str, dict[str, float]] = {}
         for infinitive in infinitives:
             particle, _, base = infinitive.rpartition(PARTS)
-            if particle:
-                particles[particle] = None
-            made = _conjugated(base, conjugation)
-            patterns = conjugation["last_parted" if particle else "last"]
-            begins = dict.fromkeys(pattern.format(**made) for pattern in conjugation["first"])
-            first |= begins
-            if particle:
-                parting |= begins
-            else:
-                whole |= begins
-            last |= dict.fromkeys(pattern.format(particle=particle, **made) for pattern in patterns)
-            ends = conjugation.get("done", ())
-            done |= dict.fromkeys(pattern.format(particle=particle, **made) for pattern in ends)
-        rules[f"{name}_1"] = _rule(first)
-        rules[f"{name}_2"] = _rule(last)
-        if done:
-            rules[f"{name}_done"] = _rule(done)
-        if particles:
-            rules[f"{name}_off"] = _rule(particles)
-        if whole and parting:
-            rules[f"{name}_whole"] = _rule(whole)
-            rules[f"{name}_parting"] = _rule(parting)
+            made = _conjugated(base, conjugation) | {"particle": particle}
+            begins = {
+                pattern.format(**made): cost
+                for key, cost in (("first_rarely", RARE), ("first", NEXT_TO_NOTHING))
+                for pattern in conjugation.get(key, ())
+            }
+            ends = conjugation["last_parted" if particle else "last"]
+            words = {
+                "1": begins,
+                "parting" if particle else "whole": begins,
+                "2": dict.fromkeys((each.format(**made) for each in ends), NEXT_TO_NOTHING),
+                "off": {particle: NEXT_TO_NOTHING} if particle else {},
+                "done": {
+                    each.format(**made): NEXT_TO_NOTHING for each in conjugation.get("done", ())
+                },
+            }
+            for form, costs in words.items():
+                kept = found.setdefault(form, {})
+                for word, cost in costs.items():
+                    kept[word] = min(cost, kept.get(word, cost))
+        if not ("parting" in found and "whole" in found):
+            found = {
+                form: words for form, words in found.items() if form in ("1", "2", "off", "done")
+            }
+        rules |= {f"{name}_{form}": _rule(words) for form, words in found.items() if words}
     return rules
 
 
-def _rule(words: Mapping[str, None]) -> dict[str, Any]:
+def _rule(costs: Mapping[str, float]) -> list[dict[str, Any]]:
     """A rule of its own for some words, with next to no cost: one without any would be copied into
     each template that has the verb."""
-    return {"say": f"({'|'.join(words)})", "cost": NEXT_TO_NOTHING}
+    by_cost: dict[float, list[str]] = {}
+    for word, cost in costs.items():
+        by_cost.setdefault(cost, []).append(word)
+    return [{"say": f"({'|'.join(words)})", "cost": cost} for cost, words in by_cost.items()]
 
 
 def _conjugated(infinitive: str, conjugation: Mapping[str, Any]) -> dict[str, str]:

@@ -50,7 +50,7 @@ def noun_of(d: Discourse, node: Node) -> Thing:
     if thing is None and speaks_of_things(d, node.parts["person_ref"]):
         thing = replace(d.thing, pronoun=True) if d.thing is not None else None
     if thing is None:
-        person: Thing = d.build(node.parts["person_ref"])
+        person = thing_after_all(d, node.parts["person_ref"]) or d.build(node.parts["person_ref"])
         thing = Thing(Text(ANYONE), person=True, here=True) if is_me(person) else person
     thing = in_state(d, node, thing)
     spot: Where | None = d.get(node, "from")
@@ -71,6 +71,19 @@ def speaks_of_things(d: Discourse, part: Leaf | Node) -> bool:
     several = d.thing.plural or d.thing.several or d.person is None
     said = set(d.norms(part.start, part.end))
     return several and bool(said & set(d.language.speech.get("things_too", ())))
+
+
+def thing_after_all(d: Discourse, part: Leaf | Node) -> Thing | None:
+    """The thing that a pronoun stands for where things are "he" and "she", too, and nobody was
+    spoken of: "bring mir den Schlüssel. Wenn er nirgends ist, ..."."""
+    pronouns = d.language.speech.get("things_too", ())
+    is_pronoun = part.means == "person_pronoun" if isinstance(part, Node) else False
+    somebody = d.person is not None and not is_me(d.person)
+    if not is_pronoun or somebody or d.thing is None:
+        return None
+    if not set(d.norms(part.start, part.end)) <= set(pronouns):
+        return None
+    return replace(d.thing, pronoun=True)
 
 
 def in_state(d: Discourse, node: Node, thing: Thing) -> Thing:

@@ -187,6 +187,11 @@ def turned(d: Discourse, start: int, end: int, person: Thing | None) -> dict[int
         if word not in data["you"]:
             continue
         owned = word in data["possessives"] and at + 1 < last and d.tokens[at + 1].capital
+        other = d.one_before(person, at)
+        if other is not None:  # "ask Bob whether he has time and tell Clara that he has time"
+            if word in data["subjects"] and other not in changed.values():
+                changed[at] = other
+            continue
         changed[at] = data["possessives" if owned else "you"][word]
         if at == start and word in data["subjects"]:
             verb = min(start + 1, last - 1) if is_direct(d, start) else last - 1

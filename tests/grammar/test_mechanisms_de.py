@@ -16,6 +16,7 @@ TENSES = {
     "changing": ["you"],
     "forms": {"bare": [["en$", ""]], "you": [["en$", "st"]]},
     "first": ["{bare}", "{you}"],
+    "first_rarely": ["{infinitive}"],
     "last": ["{infinitive}"],
     "last_parted": ["{particle}{infinitive}"],
 }
@@ -23,14 +24,15 @@ TENSES = {
 
 def test_a_verb_has_forms_for_the_beginning_and_the_end_of_a_clause() -> None:
     made = forms({"fetch": ["holen", "mit|nehmen"]}, TENSES)
-    words = {name: rule["say"] for name, rule in made.items()}
+    words = {name: [rule["say"] for rule in rules] for name, rules in made.items()}
     assert words == {
-        "fetch_1": "(hol|holst|nehm|nimmst)",
-        "fetch_2": "(holen|mitnehmen)",
-        "fetch_off": "(mit)",
-        "fetch_whole": "(hol|holst)",
-        "fetch_parting": "(nehm|nimmst)",
+        "fetch_1": ["(holen|nehmen)", "(hol|holst|nehm|nimmst)"],
+        "fetch_2": ["(holen|mitnehmen)"],
+        "fetch_off": ["(mit)"],
+        "fetch_whole": ["(holen)", "(hol|holst)"],
+        "fetch_parting": ["(nehmen)", "(nehm|nimmst)"],
     }
+    assert made["fetch_1"][0]["cost"] > made["fetch_1"][1]["cost"]
 
 
 def test_a_marked_verb_stands_where_the_language_puts_it() -> None:
