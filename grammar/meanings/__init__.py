@@ -17,6 +17,7 @@ import grammar.meanings.conditions
 import grammar.meanings.control
 import grammar.meanings.conversation
 import grammar.meanings.driving
+import grammar.meanings.exceptions
 import grammar.meanings.facts
 import grammar.meanings.found_places
 import grammar.meanings.hosting

@@ -7,6 +7,7 @@ from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
+from grammar.meanings.genders import gender_of_thing
 from grammar.meanings.nouns import is_me
 from grammar.meanings.places import sought
 from grammar.naming import the
@@ -74,16 +75,19 @@ def speaks_of_things(d: Discourse, part: Leaf | Node) -> bool:
 
 
 def thing_after_all(d: Discourse, part: Leaf | Node) -> Thing | None:
-    """The thing that a pronoun stands for where things are "he" and "she", too, and nobody was
-    spoken of: "bring mir den Schlüssel. Wenn er nirgends ist, ..."."""
-    pronouns = d.language.speech.get("things_too", ())
-    is_pronoun = part.means == "person_pronoun" if isinstance(part, Node) else False
-    somebody = d.person is not None and not is_me(d.person)
-    if not is_pronoun or somebody or d.thing is None:
+    """The thing that a pronoun stands for where things are "he" and "she", too: "bring mir den
+    Schlüssel. Wenn er nirgends ist, ..."; but it is Bob who is not there if he was spoken of."""
+    genders: dict[str, str] = d.language.speech.get("object_genders", {})
+    gender = genders.get(d.norms(part.start, part.end)[-1])
+    while isinstance(part, Node) and part.production.means is None and len(part.parts) == 1:
+        (part,) = part.parts.values()
+    is_pronoun = isinstance(part, Node) and part.means == "person_pronoun"
+    if not is_pronoun or gender is None or d.thing is None:
         return None
-    if not set(d.norms(part.start, part.end)) <= set(pronouns):
+    if gender_of_thing(d, d.thing) not in (None, gender):
         return None
-    return replace(d.thing, pronoun=True)
+    nobody = d.person is None or is_me(d.person) or not d.may_have(d.person, gender)
+    return replace(d.thing, pronoun=True) if nobody else None
 
 
 def in_state(d: Discourse, node: Node, thing: Thing) -> Thing:

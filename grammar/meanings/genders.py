@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Thing
-from grammar.naming import some
+from grammar.naming import some, the
 
 
 def means_thing(d: Discourse, part: Leaf | Node) -> bool:
@@ -33,5 +33,6 @@ def means_receiver(d: Discourse, part: Leaf | Node) -> bool:
 def gender_of_thing(d: Discourse, thing: Thing) -> str | None:
     """By the article of its noun, in languages that have such."""
     genders: dict[str, str] = d.language.speech.get("articles_genders", {})
-    article = some(d.called(thing.text), d.language).partition(" ")[0] if genders else ""
-    return genders.get(article)
+    noun = d.called(thing.text)
+    forms = (each(noun, d.language).partition(" ")[0] for each in (some, the)) if genders else ()
+    return next((genders[article] for article in forms if article in genders), None)

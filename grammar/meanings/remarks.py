@@ -119,7 +119,7 @@ def may_be_it(d: Discourse, node: Node) -> bool:
     Tisch", said of a scarf."""
     gender = d.gender(node.start, node.start + 2)
     if gender is not None and d.thing is not None and d.person is not None:
-        thing = gender_of_thing(d, d.thing) == gender
+        thing = gender_of_thing(d, d.thing) in (None, gender)
         return thing and not d.may_have(d.person, gender)
     things = set(d.language.speech.get("things_too", ()))
     return d.thing_last and bool(things & set(d.norms(node.start, node.start + 2)))
