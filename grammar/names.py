@@ -115,8 +115,6 @@ class Names:
         kinds = {word for kind in kind_words(place.kind or "", self.language) for word in kind}
         if len(last) == 1 or last.isdigit():
             self._add_words("place_tail", (last,), place)
-            for many in kind_words(" ".join(text.split()[:-1]), self.language)[1]:
-                self._add("place", f"{many} {last}", place)  # "offices 1, 2 and 3"
         elif last in kinds and not {*before} <= self.language.closed and len(before[-1]) > 2:
             self._add_words("place_short", tuple(before), place)
 

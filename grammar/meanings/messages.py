@@ -14,7 +14,8 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, capital
 from grammar.meanings.finding import go, speak_to
 from grammar.meanings.genders import gender_of_thing
-from grammar.meanings.nouns import person_me
+from grammar.meanings.news import back_to_speaker
+from grammar.meanings.nouns import is_me, person_me
 from grammar.meanings.questions import base_form, turn_to_you
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning
@@ -54,7 +55,10 @@ def say_that(d: Discourse, node: Node) -> Steps:
     more = node.parts.get("more")  # "that the doctor is here and that she can come in"
     if more is not None:
         text, end = f"{text} {told_to(d, more, person)}", more.end
-    return speak_to(d, person, [Call("say", {"text": answers_in(d, text, part.start, end)})])
+    saying = Call("say", {"text": answers_in(d, text, part.start, end)})
+    if is_me(person):
+        return [*back_to_speaker(d), saying]
+    return speak_to(d, person, [saying])
 
 
 @meaning("say_there")

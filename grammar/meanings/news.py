@@ -173,6 +173,19 @@ def go_back(d: Discourse, more: Steps) -> Steps:
     return [BACK]
 
 
+def back_to_speaker(d: Discourse) -> Steps:
+    """The way to who gave the command, who is to be told something: "if he has no time, tell me
+    that he has none". Whoever came along is there already."""
+    steps = nodes((*d.around, d.done))
+    led = any(isinstance(each, Call) and each.method in ("guide", "follow") for each in steps)
+    if led or d.in_loop or d.at == Recall(START):
+        return []
+    if d.at is None:
+        return go_back(d, [])
+    d.came_back()
+    return [BACK]
+
+
 def _shown(step: Any) -> Any:
     """What was to be said, on the screen."""
     if isinstance(step, Call) and step.method == "say":

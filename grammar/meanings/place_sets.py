@@ -6,7 +6,7 @@ from __future__ import annotations
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, NotUnderstood
 from grammar.lexicon import Name, series_of
-from grammar.meanings.places import unknown_place
+from grammar.meanings.places import is_of, unknown_place
 from grammar.meanings.registry import meaning
 from grammar.plan import Items, Text, Value
 
@@ -55,13 +55,13 @@ def tail(d: Discourse, node: Node) -> str:
 @meaning("places_owned")
 def places_owned(d: Discourse, node: Node) -> Value:
     """ "Alice's, Bob's and Clara's offices"."""
-    kind, mark = str(d.get(node, "kind")), d.language.speech["possessive"]
-    known = {place.name.lower(): place.name for place in d.lexicon.place_kinds[kind]}
+    kind = str(d.get(node, "kind"))
     names: list[Value] = []
     for owner in (d.get(node, "first"), *d.get(node, "rest")):
-        place = known.get(f"{owner}{mark}{kind}".lower())
+        known = (each.name for each in d.lexicon.place_kinds[kind])
+        place = next((name for name in known if is_of(d, name, owner)), None)
         if place is None:
-            raise unknown_place(d, f"{owner}{mark}{kind}", node)
+            raise unknown_place(d, f"{d.words(node.start, node.end)} ({owner})", node)
         names.append(Text(place))
     return Items(tuple(names))
 

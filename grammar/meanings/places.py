@@ -96,12 +96,6 @@ def numbered(d: Discourse, kind: str, first: int, last: int) -> Value:
     return Items(tuple(Text(ends[str(number)]) for number in numbers))
 
 
-@meaning("place_row")
-def place_row(d: Discourse, node: Node) -> Value:
-    """ "the kitchen, the lounge and the lobby": gone round as all of a kind are."""
-    return Items((d.get(node, "place"), *d.get(node, "place_list")))
-
-
 @meaning("place_own")
 def place_own(d: Discourse, node: Node) -> Value:
     """ "his office", after Bob: Bob's office; of nobody by name, the only office there is."""

@@ -485,7 +485,7 @@ def tell_speaker(d: Discourse) -> Steps:
     if d.answer is not None or d.code is not None:
         words = known_words(d)
         start = d.start()
-        going = d.at is not None or moved(d.done)
+        going = d.at is not None or moved([*(() if d.in_loop else d.around), *d.done])
         d.went(start)
         back = Call("goto", {"place": start})
         return [back, *words] if going and last != back else words

@@ -404,11 +404,23 @@ def places_told(d: Discourse, node: Node) -> Told:
     noted: Step = If(trait.condition, (Collect(found, Recall(place)),))
     going: Steps = [Remember(found, Items(()))]
     if at is not None and isinstance(loop, ForEach):
+        loop = without_check(d, loop)
         d.done[at] = replace(loop, steps=(*loop.steps, *trait.first, noted))
         d.done.insert(0, going.pop())
     else:
         going.append(round_of(d, places_of(d, node), [*trait.first, noted], place))
     return Told(found_places(d, str(node.production.fixed.get("tell", "which")), found), going)
+
+
+def without_check(d: Discourse, loop: ForEach) -> ForEach:
+    """A round whose check nobody is told of at each place, for it is told behind the round: "see
+    whether there is a stapler in each of them, and tell me where there is none"."""
+    found = d.report
+    if found is None or found.otherwise is None or not _holds(loop, d.report_step):
+        return loop
+    less: ForEach = replacing(loop, d.report_step, [])
+    d.report = None
+    return less
 
 
 def same_places(d: Discourse, node: Node, loop: Step) -> bool:
