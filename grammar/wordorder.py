@@ -122,10 +122,10 @@ def _verb_second(rules: Any, d: Discourse, groups: Sequence[Group]) -> str:
         moved, groups = [groups[0]], groups[1:]
         words = [group.spelled for group in groups]
     first = min(_first_part(rules, d, groups), len(groups) - 1)
-    second, last = (groups[at].norm in rules["finite"] for at in (first, -1))
-    if second and first < len(groups) - 1 and not last:  # but not in "sie kommen soll"
-        return _written(words)  # the verb stands second already
     last = _verb_at(rules, groups, first)
+    second, ends = (groups[at].norm in rules["finite"] for at in (first, last))
+    if second and first < last and not ends:  # but not in "sie kommen soll"
+        return _written(words)  # the verb stands second already
     verb, particle = _parted(rules, words[last])
     reflexive = [group.spelled for group in moved]
     rest = [*reflexive, *words[first:last], *([particle] if particle else [])]

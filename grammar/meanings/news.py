@@ -180,7 +180,7 @@ def back_to_speaker(d: Discourse) -> Steps:
     led = any(isinstance(each, Call) and each.method in ("guide", "follow") for each in steps)
     if led or d.in_loop or d.at == Recall(START):
         return []
-    if d.at is None:
+    if d.at is None and not d.away:
         return go_back(d, [])
     d.came_back()
     return [BACK]

@@ -460,11 +460,7 @@ def tell_speaker(d: Discourse) -> Steps:
     if last is not None and last is d.told:
         return []
     if d.claim is not None and d.claim.known == d.known_by_now():
-        if (d.at is None and not d.away) or d.at == Recall(START):
-            return [d.claim.saying]
-        start = d.start()
-        d.went(start)
-        return [Call("goto", {"place": start}), d.claim.saying]
+        return [*news.back_to_speaker(d), d.claim.saying]
     if d.report is not None and d.report_step is last and d.at is not None:
         start = d.start()
         if d.at == start:
