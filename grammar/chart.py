@@ -69,6 +69,14 @@ class Node:
 
 Part = Leaf | Node
 
+
+def what_it_means(part: Part) -> str:
+    """The meaning of a part that may stand for another one."""
+    while isinstance(part, Node) and part.production.means is None and len(part.parts) == 1:
+        (part,) = part.parts.values()
+    return part.means if isinstance(part, Node) else part.slot
+
+
 # A step on the way to a state, linked to the one before: (before, binding, callee, start, end,
 # value). callee -1 is a corrected word.
 _Way = tuple[Any, str | None, int, int, int, Any]

@@ -161,6 +161,8 @@ class Discourse:
     heard: str | None = None
     surveys: list[Any] = field(default_factory=list)
     """What was asked so far (`grammar.meanings.surveys.Survey`)."""
+    put: Any = None
+    """The last question (`Survey`) that the speaker put themselves, and waits to have answered."""
     pending: Steps = field(default_factory=list)
     """Steps that a condition needs before it can be checked."""
     left: dict[Value, Value] = field(default_factory=dict)
@@ -201,7 +203,7 @@ class Discourse:
     fetched: Step | None = None
     """The last step, if it brings somebody here for no other reason than that they were fetched."""
     notes: dict[tuple[Any, ...], str] = field(default_factory=dict)
-    """The variables with what is noted of a poll, by what that is (`grammar.meanings.news`)."""
+    """The variables with what is noted of a poll, by what that is (`grammar.meanings.polls`)."""
     said: Any = None
     """The answer that was last told of (`grammar.meanings.answers.Wanted`): "... that is"."""
     news: Any = None

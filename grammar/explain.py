@@ -464,6 +464,8 @@ class _Teller:
             case p.Share():
                 values = {"part": self.value(value.part), "whole": self.value(value.whole)}
                 return fill(say["share"], values)
+            case p.Figure():
+                return fill(say[value.how], {"value": self.value(value.of)})
             case p.Elapsed():
                 return fill(say["elapsed"], {"value": self.value(value.since)})
             case p.Choice():

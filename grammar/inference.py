@@ -83,6 +83,8 @@ class Types:
                 return method.returns.annotation if method else "Any"
             case p.Length() | p.Share() | p.Elapsed():
                 return "int"
+            case p.Figure():
+                return "float" if value.how == "average" else "int"
             case p.Choice():
                 kind = self.of(value.among)
                 known = kind.startswith("list[")
@@ -147,6 +149,8 @@ def takes_time(part: Steps | p.Condition | p.Value) -> bool:
             return takes_time(part.of)
         case p.Share():
             return takes_time(part.part) or takes_time(part.whole)
+        case p.Figure():
+            return takes_time(part.of)
         case p.Choice():
             return takes_time(part.among)
         case p.Elapsed():

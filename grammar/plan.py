@@ -81,6 +81,14 @@ class Share(Node, frozen=True, tag="share"):
     whole: Value
 
 
+class Figure(Node, frozen=True, tag="figure"):
+    """A number made of the numbers that a list of answers names: `how` is "sum", "average",
+    "highest" or "lowest"; 0 if none of them names one."""
+
+    how: str
+    of: Value
+
+
 class Choice(Node, frozen=True, tag="choice"):
     """One of the items, at random."""
 
@@ -93,7 +101,20 @@ class Elapsed(Node, frozen=True, tag="elapsed"):
     since: Value
 
 
-Value = Text | Number | Truth | Recall | Items | Ask | Sentence | Length | Share | Choice | Elapsed
+Value = (
+    Text
+    | Number
+    | Truth
+    | Recall
+    | Items
+    | Ask
+    | Sentence
+    | Length
+    | Share
+    | Figure
+    | Choice
+    | Elapsed
+)
 
 
 # --- conditions ----------------------------------------------------------------------------------

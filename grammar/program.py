@@ -69,6 +69,28 @@ HELPERS: Final = {
         "def percent(part, whole):",
         "    return round(100 * part / whole) if whole else 0",
     ),
+    "numbers_in": (
+        "def numbers_in(answers):",
+        "    words = [word for answer in answers for word in answer.split()]",
+        "    return [int(word) for word in words if word.isdigit()]",
+    ),
+    "sum_of": (
+        "def sum_of(answers):",
+        "    return sum(numbers_in(answers))",
+    ),
+    "average_of": (
+        "def average_of(answers):",
+        "    numbers = numbers_in(answers)",
+        "    return round(sum(numbers) / len(numbers), 1) if numbers else 0",
+    ),
+    "highest_of": (
+        "def highest_of(answers):",
+        "    return max(numbers_in(answers), default=0)",
+    ),
+    "lowest_of": (
+        "def lowest_of(answers):",
+        "    return min(numbers_in(answers), default=0)",
+    ),
     "minutes_since": (
         "def minutes_since(begin):",
         "    times = (begin, robot.clock().time)",
@@ -102,7 +124,9 @@ class _Writer:
             yield Line("")
         if self.helpers and self.uses_random:
             yield Line("")
-        for name in sorted(self.helpers):
+        for name in HELPERS:  # in the order in which one may need another
+            if name not in self.helpers:
+                continue
             yield from (Line(text) for text in HELPERS[name])
             yield Line("")
             yield Line("")
@@ -268,6 +292,11 @@ class _Writer:
                 self.helpers.add("percent")
                 part = self.as_number(value.part, "float")
                 return Call("percent", (part, self.as_number(value.whole, "float")))
+            case p.Figure():
+                if f"{value.how}_of" not in HELPERS:
+                    raise PlanError(f"No program knows the {value.how!r} of numbers.")
+                self.helpers |= {"numbers_in", f"{value.how}_of"}
+                return Call(f"{value.how}_of", (self.value(value.of),))
             case p.Elapsed():
                 self.helpers.add("minutes_since")
                 return Call("minutes_since", (self.as_text(value.since),))

@@ -17,6 +17,9 @@ from grammar.inference import form_for, walk
 from grammar.program import HELPERS
 from robot_api.methods import METHODS
 
+FIGURES: Final = {f"{how}_of": how for how in ("sum", "average", "highest", "lowest")}
+"""Functions of written programs that make one number of many."""
+
 
 class Code(p.Recall, frozen=True, tag="code"):
     """A value that no plan could give; `name` is its source."""
@@ -240,6 +243,8 @@ class _Reader:
                 return p.Length(self.value(value))
             case ast.Call(func=ast.Name(id="percent"), args=[part, whole], keywords=[]):
                 return p.Share(self.value(part), self.value(whole))
+            case ast.Call(func=ast.Name(id=name), args=[of], keywords=[]) if name in FIGURES:
+                return p.Figure(FIGURES[name], self.value(of))
             case ast.Call(func=ast.Name(id="minutes_since"), args=[since], keywords=[]):
                 return p.Elapsed(self.value(since))
             case ast.Call(

@@ -20,6 +20,7 @@ import grammar.meanings.driving
 import grammar.meanings.exceptions
 import grammar.meanings.facts
 import grammar.meanings.found_places
+import grammar.meanings.further
 import grammar.meanings.hosting
 import grammar.meanings.inquiries
 import grammar.meanings.loops
@@ -29,6 +30,7 @@ import grammar.meanings.nouns
 import grammar.meanings.people
 import grammar.meanings.place_sets
 import grammar.meanings.places
+import grammar.meanings.polls
 import grammar.meanings.presence
 import grammar.meanings.questions
 import grammar.meanings.references

@@ -6,9 +6,9 @@ import operator
 from dataclasses import replace
 from typing import Final
 
-from grammar.chart import Leaf, Node
+from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import Discourse, Steps
-from grammar.meanings.branches import ABOUT_ANSWERS, what_it_means
+from grammar.meanings.branches import ABOUT_ANSWERS
 from grammar.meanings.conditions import negated
 from grammar.meanings.deliveries import inside
 from grammar.plan import Ask, Both, Call, Compare, Condition, Holds, If, Not, Number, Recall, Text

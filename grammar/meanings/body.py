@@ -51,8 +51,8 @@ def found_out(d: Discourse) -> str:
 @meaning("touch")
 def touch(d: Discourse, node: Node) -> Steps:
     """Let somebody choose on the touchscreen; the choice can be used afterwards."""
+    from grammar.meanings.asking import remember_answer
     from grammar.meanings.options import split_options
-    from grammar.meanings.questions import remember_answer
 
     part = node.parts["text"]
     options = split_options(d, part.start, part.end)

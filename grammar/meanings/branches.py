@@ -12,7 +12,7 @@ from typing import Final
 
 from msgspec.structs import replace as structs_replace
 
-from grammar.chart import Leaf, Node
+from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import (
     ANYONE,
     Branched,
@@ -36,8 +36,9 @@ from grammar.meanings.deliveries import (
     taken_back,
 )
 from grammar.meanings.finding import go, not_found, speak_to
-from grammar.meanings.news import BACK, News, go_back, polled
+from grammar.meanings.news import BACK, News, go_back
 from grammar.meanings.nouns import is_me
+from grammar.meanings.polls import polled
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import coming_back, known_words, tell_speaker, told_again
 from grammar.meanings.searches import (
@@ -53,6 +54,7 @@ from grammar.meanings.searches import (
 )
 from grammar.meanings.sights import named_some
 from grammar.meanings.speaking import put_for, sentence_form
+from grammar.meanings.turns import in_turn
 from grammar.plan import (
     Ask,
     Call,
@@ -91,6 +93,7 @@ def if_(d: Discourse, node: Node) -> Steps:
     node = with_else(node)
     delivery = delivered_last(d)
     before_it, condition = condition_of(d, node)
+    condition = in_turn(d, node, condition)
     met = d.met
     if node.production.fixed.get("either") and only_told(node.parts["then"]):
         return found_out_either_way(d, node, before_it, condition)
@@ -448,13 +451,6 @@ def as_fact(d: Discourse, clause: str) -> str:
     facts: dict[str, str] = d.language.speech.get("indicative", {})
     clause = " ".join(facts.get(word, word) for word in clause.split(" "))
     return put_for(d, "of_robot", clause)
-
-
-def what_it_means(part: Leaf | Node) -> str:
-    """The meaning of a part that may stand for another one."""
-    while isinstance(part, Node) and part.production.means is None and len(part.parts) == 1:
-        (part,) = part.parts.values()
-    return part.means if isinstance(part, Node) else part.slot
 
 
 def found_claim(d: Discourse, condition: Condition, met: Meeting | None) -> Step | None:

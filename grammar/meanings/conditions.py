@@ -23,12 +23,19 @@ from grammar.meanings.answers import Said, Wanted
 from grammar.meanings.answers import wanted as wanted_answer
 from grammar.meanings.deliveries import delivered_last
 from grammar.meanings.finding import noun_of, whether_found
-from grammar.meanings.news import counted as counted_answers
 from grammar.meanings.news import in_round
 from grammar.meanings.places import sought
+from grammar.meanings.polls import counted as counted_answers
 from grammar.meanings.registry import meaning
 from grammar.meanings.searches import just_awaited, just_looked_for, searches
-from grammar.meanings.surveys import Survey, asked_before, asked_so_far, in_loop, replacing
+from grammar.meanings.surveys import (
+    Survey,
+    asked_before,
+    asked_so_far,
+    in_loop,
+    of_one_question,
+    replacing,
+)
 from grammar.plan import (
     Ask,
     Both,
@@ -577,14 +584,17 @@ def answer_counts(d: Discourse, node: Node) -> Condition:
 @meaning("answers_many")
 def answers_many(d: Discourse, node: Node) -> Condition:
     """ "if both say yes", "if more than half of them agree", "if nobody wants any"."""
-    surveys = asked_before(d)
+    surveys = of_one_question(asked_before(d))
     answer = d.said = wanted_answer(d, surveys[-1], d.get(node, "said"))
-    if not in_loop(d, surveys[-1].call):
-        return of_those_asked(d, surveys, answer, str(node.production.fixed.get("how")))
-    said = counted_answers(d, surveys, answer)
     how = node.production.fixed.get("how")
+    not_all = bool(node.production.fixed.get("no"))
+    by_one = len(surveys) == 1 or how in ("all", "none", "some")
+    if not in_loop(d, surveys[-1].call) and by_one:
+        given = of_those_asked(d, surveys, answer, str(how))
+        return Not(given) if not_all else given
+    said = counted_answers(d, surveys, answer)
     if how == "all":
-        return Compare(said, "==", people_asked(d, surveys))
+        return Compare(said, "!=" if not_all else "==", people_asked(d, surveys))
     if how == "most":
         share = Share(said, counted_answers(d, surveys, None))
         return Compare(share, ">", Number(50))
@@ -628,6 +638,8 @@ def answer_is(d: Discourse, node: Node) -> Condition:
 def people_asked(d: Discourse, surveys: list[Survey]) -> Value:
     """How many were to be asked: those named, else those who were there."""
     call = surveys[-1].call
+    if not any(in_loop(d, each.call) for each in surveys):
+        return Number(len(surveys))
     for loop in d.done:
         if not isinstance(loop, ForEach) or not isinstance(loop.items, Items):
             continue

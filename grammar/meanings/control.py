@@ -11,7 +11,7 @@ from grammar.meanings.branches import in_branch
 from grammar.meanings.finding import go, not_found
 from grammar.meanings.found_places import if_such
 from grammar.meanings.going_on import in_round
-from grammar.meanings.inquiries import wonder_told
+from grammar.meanings.inquiries import owed, wonder_told
 from grammar.meanings.lookouts import told_at_last
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import summed_at_end
@@ -79,7 +79,7 @@ def steps(d: Discourse, node: Node) -> Steps:
             words = d.words(node.start, node.end)
             raise NotUnderstood(d.language.phrase("not_understood", part=words))
         if d.depth == 1:
-            d.done.extend(summed_at_end(d))
+            d.done.extend(summed_at_end(d) or owed(d))
             d.done.extend(wonder_told(d))
         d.done.extend(told_at_last(d))
         d.done[:] = exclusive(guard_finds(d, guard_found(speak_codes(d, d.done))))

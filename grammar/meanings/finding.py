@@ -192,9 +192,20 @@ def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
 
 def each_of(d: Discourse, group: Value, steps: Steps) -> Steps:
     """Do something with each of several people, who are looked for one by one."""
+    visits_only(d, group)
     d.at = d.with_person = None
     who = Recall(d.variable("person"))
     return [ForEach(who.name, group, tuple(if_found(d, who, steps)))]
+
+
+def visits_only(d: Discourse, group: Value) -> None:
+    """ "go to Alice and Bob and ask them": those who were gone to for nothing else are gone to
+    once."""
+    last = d.done[-1] if d.done else None
+    if not isinstance(last, ForEach) or last.items != group:
+        return
+    if last.steps == tuple(if_missing(d, Recall(last.variable))):
+        d.done.pop()
 
 
 def if_found(d: Discourse, who: Value, steps: Steps) -> Steps:

@@ -16,7 +16,7 @@ from grammar.meanings.reports import tell_speaker
 from grammar.meanings.surveys import Survey, each_asked
 from grammar.meanings.things import deliver
 from grammar.plan import Call, Recall, Repeat, Text, Value
-from grammar.tidy import mentions
+from grammar.tidy import mentions, nodes
 
 
 @meaning("ask_topic")
@@ -29,6 +29,7 @@ def ask_topic(d: Discourse, node: Node) -> Steps:
     if person is None:  # "how many people in the lobby want coffee?"
         person = Thing(Text(ANYONE), person=True, plural=True)
     steps = ask_one(d, node, replace(person, place=place or person.place))
+    d.put = d.surveys[-1]
     d.polled_for = question.production.fixed.get("kind")
     if node.production.fixed.get("told"):  # "I wonder whether Bob has time, go and ask him"
         d.done.extend(steps)
@@ -51,6 +52,17 @@ def wonder_told(d: Discourse) -> Steps:
     if d.wonder is None or mentions(tuple(d.done), Recall(d.wonder)):
         return []
     return [*go_back(d, []), Call("say", {"text": Recall(d.wonder)})]
+
+
+def owed(d: Discourse) -> Steps:
+    """The answers to a question that the speaker put, where nothing else is done with them."""
+    put: Survey | None = d.put
+    if put is None or put.call.save_as is None:
+        return []
+    asked = any(each is put.call for each in nodes(tuple(d.done)))
+    if not asked or mentions(d.done, Recall(put.call.save_as)):
+        return []
+    return tell_speaker(d)
 
 
 @meaning("bring_many")

@@ -94,6 +94,10 @@ def split_options(d: Discourse, start: int, end: int) -> tuple[str, ...]:
             options.append(d.called(place))
             continue
         if number == 0 and len(stripped) > 1:
+            row = in_a_row(d, groups[0], longest)
+            if row:
+                options += row
+                continue
             begin = max(begin, last - longest)
             begin, last = without_little_words(d, begin, last)
         options.append(d.words(begin, last).strip(" ()"))
@@ -113,6 +117,34 @@ def _time_of_day(d: Discourse, group: tuple[int, int]) -> str:
     if end - start != 2 or d.tokens[start + 1].norm not in clock:
         return ""
     return f" {d.words(start + 1, end)}"
+
+
+def in_a_row(d: Discourse, group: tuple[int, int], longest: int) -> list[str]:
+    """The choices of "chocolate caramel or gummy", where no commas part them, as in speech; none
+    for "orange juice or water", where the first two words are one."""
+    start, end = group
+    before = _words_of(d, "articles") | _words_of(d, "wishes")
+    while start < end and d.tokens[start].norm in before:  # "like a chocolate"
+        start += 1
+    words = d.norms(start, end)
+    if longest > 1 or len(words) < 2 or set(words) & d.language.closed:
+        return []
+    alike = all(token.value is not None for token in d.tokens[start:end])
+    parts = _words_of(d, "compound_first"), _words_of(d, "compound_last")
+    compound = len(words) > 2 or words[0] in parts[0] or words[-1] in parts[1]
+    if not _of_one_list(d, start, end) and (compound or not any(parts) or alike):
+        return []
+    return [d.words(at, at + 1) for at in range(start, end)]
+
+
+def _words_of(d: Discourse, name: str) -> set[str]:
+    return set(d.language.speech.get(name, ()))
+
+
+def _of_one_list(d: Discourse, start: int, end: int) -> bool:
+    """Whether all words are of one kind that the language lists: days, colours."""
+    lists = d.language.speech.get("listed_alike", ())
+    return any(all(norm in row for norm in d.norms(start, end)) for row in lists)
 
 
 def without_little_words(d: Discourse, start: int, end: int) -> tuple[int, int]:

@@ -8,9 +8,9 @@ from typing import Any, Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where, capital
-from grammar.meanings.absences import answer_variable, undelivered
+from grammar.meanings.asking import Audience, asked, audience, put, remember_answer
 from grammar.meanings.conditions import says_the_same
-from grammar.meanings.finding import go, if_found, if_met, meet, speak_to, where_sent
+from grammar.meanings.finding import go, speak_to
 from grammar.meanings.nouns import described, is_me, known_by_name
 from grammar.meanings.options import (
     MOST_OPTIONS,
@@ -22,19 +22,14 @@ from grammar.meanings.options import (
 from grammar.meanings.references import answers_in, nouns_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import tell_speaker
-from grammar.meanings.surveys import Survey, in_line
 from grammar.naming import the
 from grammar.plan import (
     Ask,
     Call,
     ForEach,
     Forever,
-    Holds,
-    If,
     Items,
-    Number,
     Recall,
-    Repeat,
     Text,
     Value,
 )
@@ -61,34 +56,21 @@ def ask(d: Discourse, node: Node) -> Steps:
         waiting = Call("wait_for", {"thing": person.value})
         d.person = replace(person, coming=False, place=None)
         return [*going, Forever((waiting, *ask_one(d, node, d.person)))]
-    return ask_one(d, node, person)
+    steps = ask_one(d, node, person)
+    if node.production.fixed.get("to_me"):
+        d.put = d.surveys[-1]
+    return steps
 
 
 def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
     """Ask those who are there, or somebody who has to be found first."""
-    steps: Steps = []
     person = several_of_a_kind(d, node, person)
-    person = where_sent(d, person) if person is not None else None
-    several = person is not None and (person.group is not None or person.count is not None)
-    everybody = person is not None and person.plural and person.text == ANYONE and not several
-    if person is not None and several:
-        steps = go(d, person.place) if person.place is not None else []
-        d.person = replace(person, here=True)
-    elif person is not None and everybody:
-        steps = go(d, person.place) if person.place is not None else []
-    elif person is not None and not is_me(person):
-        if person.known or person.first or person.place is not None:
-            steps = meet(d, person)
-        d.person = person if not person.first else d.person
+    whom = audience(d, person)
     question = node.parts["question"]
     assert isinstance(question, Node)
-    d.asking_each = everybody or several
-    d.asking_one = person is not None and person.known and not several
-    text: str = d.build(question)
-    options = options_of(d, question)
-    d.asking_each = d.asking_one = False
-    if person is not None:
-        d.called_so(person, question.start, question.end)
+    text, options = worded(d, question, whom)
+    if whom.person is not None:
+        d.called_so(whom.person, question.start, question.end)
     scale = node.parts.get("scale")
     if scale is not None:  # "ask from one to ten how bad it is"
         options = numbers_offered(d, scale.start, scale.end)
@@ -104,40 +86,40 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
     elif (places := places_asked_for(d, question)) is not None:
         arguments["options"] = places
         d.place = Recall(name)
-    if (everybody or several) and "each" in question.production.fixed:
+    if whom.many and "each" in question.production.fixed:
         d.polled_for = "who"
     offered(d, question, options, name)
-    nouns = nouns_of(d, question, options)
-    if person is not None and person.known:
-        arguments["person"] = person.value
-    if person is not None and person.count is not None:
-        asking = asked(d, Call("ask", arguments, save_as=name), options, None, nouns)
-        waiting = Call("wait_for", {"thing": person.value})
-        return [*steps, Repeat(Number(person.count), (waiting, asking))]
-    if everybody or several:
-        variable = d.variable("person")
-        who = Recall(variable)
-        asking = asked(
-            d, Call("ask", {**arguments, "person": who}, save_as=name), options, who, nouns
-        )
-        if everybody or person is None or person.group is None:
-            return [*steps, ForEach(variable, Ask("people"), (asking,))]
-        if isinstance(person.group, Ask):
-            return [*steps, ForEach(variable, person.group, (asking,))]
-        d.at = d.with_person = None
-        return [*steps, ForEach(variable, person.group, tuple(if_found(d, who, [asking])))]
-    known = person.value if person is not None and person.known else None
-    if person is None and isinstance(d.with_person, Recall):  # whose turn it is in a round
-        arguments["person"] = known = d.with_person
-    who_else = d.place if d.in_loop and isinstance(d.place, Recall) and d.place == d.at else None
-    asking = asked(d, Call("ask", arguments, save_as=name), options, known or who_else, nouns)
-    here = person is None or is_me(person) or d.with_person is not None
-    if known is None and who_else is not None and person is not None and not here:
-        # A round comes to places where nobody is.
-        return [*steps, If(Holds(Ask("sees", {"thing": person.value})), (asking,))]
-    if person is not None and not steps:
-        return if_met(d, person, [asking])
-    return [*steps, asking]
+    return put(
+        d, whom, Call("ask", arguments, save_as=name), options, nouns_of(d, question, options)
+    )
+
+
+def worded(d: Discourse, question: Node, whom: Audience) -> tuple[str, tuple[str, ...]]:
+    """The words of a question for those who are asked, and the answers that it offers."""
+    d.asking_each = whom.many
+    d.asking_one = whom.person is not None and whom.person.known and not whom.many
+    text: str = d.build(question)
+    options = options_of(d, question)
+    d.asking_each = d.asking_one = False
+    return text, options
+
+
+def several_of_a_kind(d: Discourse, node: Node, person: Thing | None) -> Thing | None:
+    """ "the visitors in the lobby": each of them."""
+    part = node.parts.get("person_ref")
+    if person is None or not isinstance(part, Node) or person.group or person.count:
+        return person
+    kind = part.parts.get("kind_of_person")
+    if not isinstance(kind, Leaf) or person.value != Text(str(kind.value[0])):
+        return person
+    said = " ".join(d.norms(kind.start, kind.end))
+    if singular(said, d.language) == said:
+        return person
+    named = known_by_name(d, person, person.text)
+    if named:
+        d.group = Items(named)
+        return replace(person, known=True, plural=True, group=d.group)
+    return replace(person, value=Text(ANYONE), plural=True)
 
 
 def ask_everybody_here(d: Discourse, start: int, end: int) -> Steps:
@@ -162,24 +144,6 @@ def ask_everybody_here(d: Discourse, start: int, end: int) -> Steps:
     }
     call = asked(d, Call("ask", arguments, save_as=answer), options, who)
     return [ForEach(who.name, Ask("people"), (call,))]
-
-
-def several_of_a_kind(d: Discourse, node: Node, person: Thing | None) -> Thing | None:
-    """ "the visitors in the lobby": each of them."""
-    part = node.parts.get("person_ref")
-    if person is None or not isinstance(part, Node) or person.group or person.count:
-        return person
-    kind = part.parts.get("kind_of_person")
-    if not isinstance(kind, Leaf) or person.value != Text(str(kind.value[0])):
-        return person
-    said = " ".join(d.norms(kind.start, kind.end))
-    if singular(said, d.language) == said:
-        return person
-    named = known_by_name(d, person, person.text)
-    if named:
-        d.group = Items(named)
-        return replace(person, known=True, plural=True, group=d.group)
-    return replace(person, value=Text(ANYONE), plural=True)
 
 
 def _no_thing(d: Discourse, wh: Leaf | Node | None) -> bool:
@@ -229,6 +193,9 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
     if isinstance(about, Node) and any(each in about.parts for each in ("noun", "object")):
         start, end = without_little_words(d, about.start, about.end)
         d.thing, d.thing_last = Thing(Text(d.noun_words(start, end))), False
+    numbers = all(each.isdigit() for each in options)
+    if "options" in question.parts and not numbers and d.place != Recall(name):
+        d.thing, d.thing_last = Thing(Recall(name)), False  # "what they want: tea or coffee"
     if rest is None or not {"verb", "aux"} & question.parts.keys():
         return
     last = next((at for at in reversed(range(rest.start, rest.end)) if d.tokens[at].value), None)
@@ -249,33 +216,6 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
             what = d.noun_words(start, end)
             d.thing = Thing(Text(what), noun=head_word(what, d.language))
             d.thing_last = False
-
-
-def asked(
-    d: Discourse,
-    call: Call,
-    options: tuple[str, ...],
-    who: Value | None,
-    nouns: frozenset[str] = frozenset(),
-) -> Call:
-    """Remember a question, so that its answers can be reported."""
-    round_at = d.place if d.in_loop and isinstance(d.place, Recall) else None
-    d.surveys.append(Survey(call, options, who, round_at, nouns))
-    return call
-
-
-def remember_answer(d: Discourse, options: tuple[str, ...], name: str) -> str:
-    """Give the answer a variable; a choice of places is also where "there" is."""
-    places = {each for place in d.lexicon.places for each in (place.name, d.called(place.name))}
-    if options and all(option in places for option in options):
-        variable = answer_variable(d, options) or d.variable("place")
-        d.place = Recall(variable)
-    else:
-        variable = answer_variable(d, options) or d.variable(name)
-    d.answer = variable
-    d.answer_options = options
-    d.report = d.news = d.checked = d.polled_for = None
-    return variable
 
 
 @meaning("question")
@@ -425,62 +365,6 @@ def ask_to(d: Discourse, node: Node) -> Steps:
     words = answers_in(d, text, first.start, first.end)
     request = d.sentence(str(node.production.fixed.get("phrase", "please_do")), what=words)
     return speak_to(d, person, [Call("say", {"text": request})])
-
-
-@meaning("ask_again")
-def ask_again(d: Discourse, node: Node) -> Steps:
-    """ "..., if not, ask Alice": the same question."""
-    person: Thing = d.get(node, "person_ref")
-    message = undelivered(d, person)
-    if message is not None:
-        return message
-    if not d.surveys:
-        raise NotUnderstood(d.language.phrase("ask_what"))
-    last: Survey = (in_line(d) or d.surveys)[-1]
-    if d.wondered and last.call in d.wondered and person.value == last.who:
-        wondered, d.wondered = d.wondered, ()  # asked only now
-        d.done[:] = [each for each in d.done if not any(each is other for other in wondered)]
-        d.surveys = d.surveys[:-1]
-        d.variables.discard(str(last.call.save_as))
-    if not person.known and isinstance(last.who, Text):  # "ask them again"
-        person = Thing(last.who, known=True, person=True)
-    spot: Where | None = d.get(node, "from")
-    if spot is not None and spot.place is not None:
-        person = replace(person, place=spot.place, here=False)
-    arguments = {key: value for key, value in last.call.arguments.items() if key != "person"}
-    if person.known:
-        arguments["person"] = person.value
-    steps = meet(d, person)
-    d.person = person
-    name = remember_answer(d, last.options, "answer")
-    call = Call("ask", arguments, save_as=name)
-    who = person.value if person.known else None
-    return [*steps, asked(d, call, last.options, who, last.nouns)]
-
-
-@meaning("ask_more")
-def ask_more(d: Discourse, node: Node) -> Steps:
-    """ "ask her whether it hurts, and how much": one more question to the same person."""
-    one = d.person is not None and d.person.group is None and not d.person.every
-    if not d.surveys or not one or about_others(d, node.parts["question"]):
-        raise NotUnderstood(d.language.phrase("no_question"))
-    assert d.person is not None
-    return ask_one(d, node, replace(d.person, here=True))
-
-
-def about_others(d: Discourse, question: Leaf | Node) -> bool:
-    """Whether the pronoun of a second question may mean somebody or something of the first:
-    "whether she is in pain, and how strong they are"."""
-    if not isinstance(question, Node) or "asked" not in question.parts:
-        return False
-    before = d.surveys[-1].call.arguments["question"]
-    words = d.language.tokens_of(before.value) if isinstance(before, Text) else ()
-    if any(d.language.tokens_of(each.name)[0] in words for each in d.lexicon.people):
-        return True
-    verb = question.parts.get("verb")
-    said = d.words(verb.start, verb.end) if verb is not None else ""
-    several = base_form(d, said) == said  # "sind", of one who is asked
-    return several and d.person is not None and d.person.known
 
 
 @meaning("ask_in")

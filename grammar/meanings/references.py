@@ -12,7 +12,8 @@ from collections.abc import Iterator
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, NotUnderstood
-from grammar.meanings.news import Told, polled
+from grammar.meanings.news import Told
+from grammar.meanings.polls import polled
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import Survey, in_loop
 from grammar.plan import Call, Forever, Recall, Sentence, Text, Value

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from grammar.chart import Node
+from grammar.chart import Node, what_it_means
 from grammar.discourse import (
     START,
     Discourse,
@@ -17,13 +17,19 @@ from grammar.discourse import (
     Thing,
     Where,
 )
-from grammar.meanings import news
+from grammar.meanings import news, polls
 from grammar.meanings.absences import undelivered
 from grammar.meanings.finding import is_here, speak_to
 from grammar.meanings.nouns import is_me
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
-from grammar.meanings.surveys import in_loop, moved, several_asked
+from grammar.meanings.surveys import (
+    asked_before,
+    in_loop,
+    moved,
+    of_one_question,
+    several_asked,
+)
 from grammar.plan import (
     Ask,
     Call,
@@ -213,7 +219,7 @@ def known_words(d: Discourse) -> Steps:
     """Say the last answer, those of all who were asked, or what the last code says."""
     if d.answer is not None:
         if d.surveys and (in_loop(d, d.surveys[-1].call) or several_asked(d)):
-            return news.polled(d, d.polled_for or "answers", None).words
+            return polls.polled(d, d.polled_for or "answers", None).words
         return [Call("say", {"text": Recall(d.answer)})]
     if d.code is not None:
         return [d.say("code_is", value=Recall(d.code))]
@@ -322,6 +328,19 @@ def whether_told(d: Discourse, node: Node) -> news.Told:
     return news.Told([told], [*before, no, If(condition, (yes,))])
 
 
+@meaning("poll_whether")
+def poll_whether(d: Discourse, node: Node) -> news.Told:
+    """ "whether all agree", "if anybody said no": also how many have said so."""
+    surveys = of_one_question(asked_before(d))
+    counted = what_it_means(node.parts["condition"]) == "answers_many"
+    if not counted or (len(surveys) == 1 and not in_loop(d, surveys[0].call)):
+        return whether_told(d, node)
+    condition = d.get(node, "condition")
+    counts = polls.how_many_words(d, surveys, d.said)
+    so, not_so = d.say("yes_so", counts=counts), d.say("no_so", counts=counts)
+    return news.Told([If(condition, (so,), (not_so,))], [])
+
+
 def checked(d: Discourse) -> Value | None:
     """What was checked last, for "if so" and "if not"; that nobody was named to tell it to is then
     no reason to tell the speaker."""
@@ -362,7 +381,7 @@ def found_told(d: Discourse, node: Node | None = None) -> news.Told:
     if d.answer is not None and d.surveys:
         many = node is not None and bool(node.production.fixed.get("many"))
         each = "many" if many else d.polled_for or "each"
-        return news.polled(d, each if in_loop(d, d.surveys[-1].call) else "answers", None)
+        return polls.polled(d, each if in_loop(d, d.surveys[-1].call) else "answers", None)
     return news.Told(known_words(d), [])
 
 

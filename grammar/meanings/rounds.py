@@ -10,21 +10,13 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Meeting, NotUnderstood, Steps, Thing, Where
 from grammar.meanings.answers import Said
 from grammar.meanings.finding import speak_to
-from grammar.meanings.news import (
-    News,
-    Told,
-    asked_yet,
-    go_back,
-    in_round,
-    last_found,
-    polled,
-    take_back,
-)
+from grammar.meanings.news import News, Told, go_back, in_round, last_found, take_back
 from grammar.meanings.nouns import is_me, thing_it
 from grammar.meanings.places import kind_places, sought
+from grammar.meanings.polls import polled
 from grammar.meanings.registry import meaning
 from grammar.meanings.searches import searched, searches
-from grammar.meanings.surveys import note, replacing
+from grammar.meanings.surveys import asked_yet, note, replacing
 from grammar.meanings.things import deliver
 from grammar.naming import joined_up
 from grammar.plan import (
@@ -146,6 +138,8 @@ def summed_up(d: Discourse, kind: str, thing: Thing | None = None) -> Told:
     """What was counted in each place, put together."""
     if d.counted is None and thing is None and kind == "total" and d.polled_for is not None:
         return polled(d, "many", None)  # "ask who wants coffee, and tell me how many it is"
+    if kind == "total" and d.counted is None and numbers_asked(d):
+        return polled(d, "sum", None)  # "ask them how many they need, and tell me the total"
     if d.counted is None:
         d.counted = _counting(d, thing)
     elif d.news is not None:
@@ -155,6 +149,13 @@ def summed_up(d: Discourse, kind: str, thing: Thing | None = None) -> Told:
     note(d, counting, notes, first)
     d.report = None
     return Told(told, [])
+
+
+def numbers_asked(d: Discourse) -> bool:
+    """Whether the last that was found out are answers, and nothing was counted."""
+    if not asked_yet(d) or d.report is not None or last_round(d) is not None:
+        return False
+    return d.language.phrase("yes") not in d.surveys[-1].options
 
 
 def _counting(d: Discourse, thing: Thing | None) -> tuple[Remember, Recall, str]:

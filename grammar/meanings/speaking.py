@@ -138,7 +138,8 @@ def said_with(d: Discourse, node: Node) -> Steps:
 @meaning("say_it")
 def say_it(d: Discourse, node: Node) -> Steps:
     """ "and say it": the answer or the code of before."""
-    from grammar.meanings.news import go_back, said_by
+    from grammar.meanings.news import go_back
+    from grammar.meanings.polls import said_by
     from grammar.meanings.reports import known_words, tell_speaker
 
     person: Thing | None = d.get(node, "person_ref")

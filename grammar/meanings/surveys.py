@@ -164,6 +164,26 @@ def several_asked(d: Discourse) -> bool:
     )
 
 
+def asked_yet(d: Discourse) -> bool:
+    """Whether anybody was asked anything so far."""
+    return bool(asked_so_far(d))
+
+
+def of_one_question(surveys: list[Survey]) -> list[Survey]:
+    """Those that asked the same as the last one; also what was asked of others in other words."""
+    last = surveys[-1]
+    again = {each.who for each in surveys if _alike(each, last)}
+    return [
+        each
+        for each in surveys
+        if _alike(each, last) or (isinstance(each.who, Text) and each.who not in again)
+    ]
+
+
+def _alike(one: Survey, other: Survey) -> bool:
+    return one.call.arguments["question"] == other.call.arguments["question"]
+
+
 def in_loop(d: Discourse, call: Call) -> bool:
     """Whether it is done more than once."""
     loops = [each for each in nodes(tuple(d.done)) if isinstance(each, LOOPS)]
@@ -199,9 +219,14 @@ def answers_reached(d: Discourse, node: Node) -> Condition:
     """ "until three of them say yes": the loop around counts the answers."""
     if not d.surveys:
         raise NotUnderstood(d.language.phrase("no_question"))
-    answer = d.get(node, "answer")
     if not d.in_loop and asked_so_far(d):  # "if one of them says no": all have answered by now
         return reached(d, node)
+    return counting_to(d, node)
+
+
+def counting_to(d: Discourse, node: Node) -> Condition:
+    """Whether so many have answered by now, as the loop around is to count."""
+    answer = d.get(node, "answer")
     name = d.variable("answers" if answer is None else f"said_{answer}")
     d.counting = (d.surveys[-1], None if answer is None else str(answer), name)
     return Compare(Recall(name), ">=", Number(int(d.get(node, "count"))))
@@ -211,7 +236,7 @@ def reached(d: Discourse, node: Node) -> Condition:
     """Whether so many of those who were asked have given an answer."""
     from grammar.meanings.answers import Wanted
     from grammar.meanings.conditions import of_those_asked
-    from grammar.meanings.news import counted
+    from grammar.meanings.polls import counted
 
     surveys = asked_before(d)
     said = d.get(node, "answer")
@@ -251,6 +276,45 @@ def until_answered(d: Discourse, condition: Condition, body: Steps) -> Steps:
         asking = msgspec.structs.replace(survey.call, arguments=arguments)
         steps[at : at + 1] = [Call("wait_for", {"thing": who}), asking]
     return [zero, RepeatUntil(condition, tuple(steps))]
+
+
+@meaning("stop_asking")
+def stop_asking(d: Discourse, node: Node) -> Steps:
+    """ "as soon as one says yes, stop asking": leaves the loops that ask."""
+    asked_before(d)
+    part = node.parts["condition"]
+    while isinstance(part, Node) and part.means != "answers_reached":
+        (part,) = part.parts.values()
+    assert isinstance(part, Node)
+    condition = counting_to(d, part)
+    survey, answer, name = d.counting
+    d.counting = None
+    if not in_loop(d, survey.call):
+        raise NotUnderstood(d.language.phrase("no_question"))
+    count: Step = Increase(name)
+    if answer is not None:
+        count = If(survey.said(answer), (count,))
+    leave = If(condition, (End(),))
+    d.done[:] = [
+        Remember(name, Number(0)),
+        *noting(_left_when(d.done, survey.call, leave), survey.call, [count, leave]),
+    ]
+    return []
+
+
+def _left_when(step: Any, call: Call, leave: Step) -> Any:
+    """Steps whose loops around the one that a call is in are left, too."""
+    if isinstance(step, tuple | list):
+        return tuple(_left_when(each, call, leave) for each in step)
+    inner = {
+        name: _left_when(body, call, leave) for name in BODIES if (body := getattr(step, name, ()))
+    }
+    loops = isinstance(step, LOOPS) and any(
+        isinstance(each, LOOPS) and _is_in(each, call) for each in nodes(step.steps)
+    )
+    if loops:
+        inner["steps"] = (*inner["steps"], leave)
+    return msgspec.structs.replace(step, **inner) if inner else step
 
 
 def _is_in(step: Step, inner: Step) -> bool:

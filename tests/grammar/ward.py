@@ -16,6 +16,7 @@ from grammar.plan import (
     Either,
     Elapsed,
     End,
+    Figure,
     ForEach,
     Forever,
     Holds,
@@ -177,6 +178,8 @@ def _value(value: Any) -> str:
             return f"len({_value(of)})"
         case Share(part, whole):
             return f"share({_value(part)}, {_value(whole)})"
+        case Figure(how, of):
+            return f"{how}_of({_value(of)})"
         case Elapsed(since):
             return f"minutes_since({_value(since)})"
         case Choice(among):

@@ -1,0 +1,147 @@
+"""Putting a question to people: to one, who may have to be found first, to each of several, to
+whoever comes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import msgspec
+
+from grammar.discourse import ANYONE, Discourse, Steps, Thing
+from grammar.meanings.absences import answer_variable
+from grammar.meanings.finding import go, if_found, if_met, meet, visits_only, where_sent
+from grammar.meanings.nouns import is_me
+from grammar.meanings.surveys import Survey
+from grammar.plan import (
+    Ask,
+    Call,
+    ForEach,
+    Holds,
+    If,
+    Items,
+    Number,
+    Recall,
+    Repeat,
+    Value,
+)
+
+
+@dataclass(frozen=True)
+class Audience:
+    """Who is asked."""
+
+    person: Thing | None
+    way: Steps
+    """How to get to them."""
+    several: bool = False
+    """Whether they are a group that was named or counted."""
+    everybody: bool = False
+    """Whether they are all who are there."""
+
+    @property
+    def many(self) -> bool:
+        return self.several or self.everybody
+
+
+def audience(d: Discourse, person: Thing | None) -> Audience:
+    """Those who are asked, and the way to them."""
+    if person is None:
+        return Audience(None, [])
+    person = where_sent(d, person)
+    if person.group is not None or person.count is not None:
+        way = go(d, person.place) if person.place is not None else []
+        d.person = replace(person, here=True)
+        return Audience(person, way, several=True)
+    if person.plural and person.text == ANYONE:
+        way = go(d, person.place) if person.place is not None else []
+        return Audience(person, way, everybody=True)
+    if is_me(person):
+        return Audience(person, [])
+    way = []
+    if person.known or person.first or person.place is not None:
+        way = meet(d, person)
+    d.person = person if not person.first else d.person
+    return Audience(person, way)
+
+
+def put(
+    d: Discourse,
+    whom: Audience,
+    call: Call,
+    options: tuple[str, ...],
+    nouns: frozenset[str] = frozenset(),
+) -> Steps:
+    """The question, put to those who are asked; `call` says nothing of them yet."""
+    person, steps = whom.person, whom.way
+    if person is not None and person.known:
+        call = _to(call, person.value)
+    if person is not None and person.count is not None:
+        asking = asked(d, call, options, None, nouns)
+        waiting = Call("wait_for", {"thing": person.value})
+        return [*steps, Repeat(Number(person.count), (waiting, asking))]
+    if whom.many:
+        return [*steps, *_to_each(d, person, call, options, nouns)]
+    known = person.value if person is not None and person.known else None
+    if person is None and isinstance(d.with_person, Recall):  # whose turn it is in a round
+        known = d.with_person
+        call = _to(call, known)
+    who_else = d.place if d.in_loop and isinstance(d.place, Recall) and d.place == d.at else None
+    asking = asked(d, call, options, known or who_else, nouns)
+    here = person is None or is_me(person) or d.with_person is not None
+    if known is None and who_else is not None and person is not None and not here:
+        # A round comes to places where nobody is.
+        return [*steps, If(Holds(Ask("sees", {"thing": person.value})), (asking,))]
+    if person is not None and not steps:
+        return if_met(d, person, [asking])
+    return [*steps, asking]
+
+
+def _to_each(
+    d: Discourse,
+    person: Thing | None,
+    call: Call,
+    options: tuple[str, ...],
+    nouns: frozenset[str],
+) -> Steps:
+    """The question, put to one after the other: those named are looked for."""
+    group = person.group if person is not None else None
+    if isinstance(group, Items):
+        visits_only(d, group)
+    who = Recall(d.variable("person"))
+    asking = asked(d, _to(call, who), options, who, nouns)
+    if group is None or isinstance(group, Ask):
+        return [ForEach(who.name, group or Ask("people"), (asking,))]
+    d.at = d.with_person = None
+    return [ForEach(who.name, group, tuple(if_found(d, who, [asking])))]
+
+
+def _to(call: Call, who: Value) -> Call:
+    return msgspec.structs.replace(call, arguments={**call.arguments, "person": who})
+
+
+def asked(
+    d: Discourse,
+    call: Call,
+    options: tuple[str, ...],
+    who: Value | None,
+    nouns: frozenset[str] = frozenset(),
+) -> Call:
+    """Remember a question, so that its answers can be reported."""
+    round_at = d.place if d.in_loop and isinstance(d.place, Recall) else None
+    d.surveys.append(Survey(call, options, who, round_at, nouns))
+    return call
+
+
+def remember_answer(d: Discourse, options: tuple[str, ...], name: str) -> str:
+    """Give the answer a variable; a choice of places is also where "there" is."""
+    places = {each for place in d.lexicon.places for each in (place.name, d.called(place.name))}
+    if options and all(option in places for option in options):
+        variable = answer_variable(d, options) or d.variable("place")
+        d.place = Recall(variable)
+    else:
+        variable = answer_variable(d, options) or d.variable(name)
+    d.answer = variable
+    d.answer_options = options
+    d.report = d.news = d.checked = d.polled_for = None
+    return variable

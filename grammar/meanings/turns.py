@@ -1,0 +1,53 @@
+"""Whose answer a condition is about, where several were asked: each one's in turn ("if they say
+yes, tell them ..."), or that of all ("if they say yes, tell David ...")."""
+
+from __future__ import annotations
+
+from grammar.chart import Node
+from grammar.discourse import Discourse, Thing
+from grammar.meanings.answers import Wanted
+from grammar.meanings.conditions import people_asked
+from grammar.meanings.deliveries import inside
+from grammar.meanings.polls import counted
+from grammar.meanings.surveys import Survey, in_loop, of_one_question
+from grammar.plan import Compare, Condition, Number, Recall, Text
+from grammar.tidy import mentions
+
+
+def in_turn(d: Discourse, node: Node, condition: Condition) -> Condition:
+    """A condition on the last answer of each of several: what is said to be done for "them" is done
+    with whose turn it is; what is told to somebody else hangs on the answers of all."""
+    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    if survey is None or not isinstance(survey.who, Recall) or d.in_loop:
+        return condition
+    if not in_loop(d, survey.call) or survey.where is not None:
+        return condition
+    if not mentions((condition,), Recall(str(survey.call.save_as))):
+        return condition
+    if told_to_others(d, node):
+        return of_all(d, condition)
+    d.person = Thing(survey.who, known=True, person=True, here=True)
+    d.with_person = survey.who
+    return condition
+
+
+def told_to_others(d: Discourse, node: Node) -> bool:
+    """Whether what hangs on the answer is for somebody who is named, and not for those asked."""
+    then = node.parts["then"]
+    them = set(d.language.speech.get("to_you", ())) & set(d.norms(then.start, then.end))
+    named = {each.means for each in inside(then)} & {"person_name", "person_me"}
+    return bool(named) and not them
+
+
+def of_all(d: Discourse, condition: Condition) -> Condition:
+    """That all said yes, or somebody said no."""
+    surveys = of_one_question(d.surveys)
+    agree, refuse = d.language.phrase("yes"), d.language.phrase("no")
+    match condition:
+        case Compare(operator="==", right=Text(value=value)) if value == agree:
+            said = counted(d, surveys, Wanted((agree,)))
+            return Compare(said, "==", people_asked(d, surveys))
+        case Compare(operator="==", right=Text(value=value)) if value == refuse:
+            return Compare(counted(d, surveys, Wanted((refuse,))), ">=", Number(1))
+        case _:
+            return condition
