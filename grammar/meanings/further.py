@@ -46,6 +46,9 @@ def ask_again(d: Discourse, node: Node) -> Steps:
 @meaning("ask_more")
 def ask_more(d: Discourse, node: Node) -> Steps:
     """ "ask her whether it hurts, and how much": one more question to the same person."""
+    if not follows(d, node):
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("not_understood", part=words))
     if d.surveys and asked_just_now(d) and in_loop(d, d.surveys[-1].call):
         return ask_each_more(d, node)
     one = d.person is not None and d.person.group is None and not d.person.every
@@ -53,6 +56,13 @@ def ask_more(d: Discourse, node: Node) -> Steps:
         raise NotUnderstood(d.language.phrase("no_question"))
     assert d.person is not None
     return ask_one(d, node, replace(d.person, here=True))
+
+
+def follows(d: Discourse, node: Node) -> bool:
+    """Whether it is joined to the question before: not "go | where he tells you"."""
+    before = d.tokens[node.start - 1] if node.start else None
+    joins = d.language.speech.get("joins", ())
+    return before is not None and (before.kind == "mark" or before.norm in joins)
 
 
 def asked_just_now(d: Discourse) -> bool:
