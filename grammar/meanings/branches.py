@@ -54,7 +54,7 @@ from grammar.meanings.searches import (
 )
 from grammar.meanings.sights import named_some
 from grammar.meanings.speaking import put_for, sentence_form
-from grammar.meanings.turns import in_turn
+from grammar.meanings.turns import in_their_turn
 from grammar.plan import (
     Ask,
     Call,
@@ -93,7 +93,7 @@ def if_(d: Discourse, node: Node) -> Steps:
     node = with_else(node)
     delivery = delivered_last(d)
     before_it, condition = condition_of(d, node)
-    condition = in_turn(d, node, condition)
+    condition = in_their_turn(d, node, condition)
     met = d.met
     if node.production.fixed.get("either") and only_told(node.parts["then"]):
         return found_out_either_way(d, node, before_it, condition)

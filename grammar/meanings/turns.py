@@ -14,7 +14,7 @@ from grammar.plan import Compare, Condition, Number, Recall, Text
 from grammar.tidy import mentions
 
 
-def in_turn(d: Discourse, node: Node, condition: Condition) -> Condition:
+def in_their_turn(d: Discourse, node: Node, condition: Condition) -> Condition:
     """A condition on the last answer of each of several: what is said to be done for "them" is done
     with whose turn it is; what is told to somebody else hangs on the answers of all."""
     survey: Survey | None = d.surveys[-1] if d.surveys else None
