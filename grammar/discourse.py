@@ -131,6 +131,8 @@ class Discourse:
     """Where it was before the command before this was carried out."""
     source: Value | None = None
     """Where a thing was taken from in the command before: "put it back"."""
+    now_at: dict[Value, Value] = field(default_factory=dict)
+    """Where things are by now that were put down somewhere."""
     delivered: Value | None = None
     """A thing that was brought to the speaker without their saying where to."""
     at_pick_up: Value | None = None

@@ -21,7 +21,7 @@ from grammar.discourse import (
 from grammar.meanings.agreement import same_answers
 from grammar.meanings.answers import Said, Wanted
 from grammar.meanings.answers import wanted as wanted_answer
-from grammar.meanings.deliveries import delivered_last
+from grammar.meanings.deliveries import delivered_last, own_place
 from grammar.meanings.finding import noun_of, whether_found
 from grammar.meanings.news import in_round
 from grammar.meanings.places import sought
@@ -144,6 +144,9 @@ def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
     if thing.person and thing.count is not None:  # "five people are there"
         many = _so_many(d, thing, thing.count, ">=")
         return negated(many) if node.production.fixed.get("no") else many
+    brought = delivered_last(d)
+    if said_there and brought is not None and thing.person and thing.place is None:
+        thing = replace(thing, place=own_place(d, thing))
     if isinstance(thing.group, Items):
         result = _each_of_them(d, node, thing.group.items, search)
     else:

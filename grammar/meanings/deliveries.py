@@ -93,7 +93,8 @@ def taken_back(d: Discourse, delivery: Delivery, met: Meeting) -> Taken | None:
     d.set_scene(delivery.before)
     if search is not None:
         steps = steps[1:]
-        condition = _looking_there(search.found, met.thing.place)
+        there = met.thing.place or (None if met.sought else own_place(d, missing))
+        condition = _looking_there(search.found, there)
     else:
         assert isinstance(first, Call)
         arguments: dict[str, Value] = {"thing": first.arguments["thing"]}
@@ -107,6 +108,19 @@ def taken_back(d: Discourse, delivery: Delivery, met: Meeting) -> Taken | None:
         d.thing, d.thing_last = replace(delivery.thing, pronoun=True), True
         d.person = met.thing
     return Taken(condition, steps, delivery)
+
+
+def own_place(d: Discourse, person: Thing) -> Value | None:
+    """The place that is called after somebody: where they are missed, if they are not there."""
+    mark = d.language.speech["possessive"]
+    own = [
+        each.name
+        for each in d.lexicon.places
+        if person.person
+        and person.text
+        and each.name.lower().startswith(person.text.lower() + mark)
+    ]
+    return Text(own[0]) if len(own) == 1 else None
 
 
 def _looking_there(condition: Condition, place: Value | None) -> Condition:

@@ -113,6 +113,8 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
     if last == Call("put", {"thing": thing.value}):
         d.done.pop()  # "take the cup to the kitchen and give it to Alex": never put down
         return []
+    if thing.pronoun and thing.value in d.now_at:
+        thing = replace(thing, place=d.now_at[thing.value], furniture=None, here=False)
     search = search_of(last)
     looked = search is not None and search.is_for(d, thing)  # "find the cup and bring it to me"
     nearby = d.at is not None and not d.at_people and thing.place is None
@@ -214,7 +216,7 @@ def put(d: Discourse, node: Node) -> Steps:
         return deliver(d, thing, None, None)  # "if you find it, bring it back": to who lost it
     if node.production.fixed.get("back") and thing.pronoun and spot == Where():
         spot = Where(d.source or d.at_pick_up or thing.place)
-        thing = replace(thing, place=None, here=True)
+        thing = replace(thing, place=None, here=thing.value not in d.now_at)
     if d.holding != thing.value and spot == Where():
         return [Call("put", {"thing": thing.value})]
     return deliver(d, thing, None, spot)
@@ -387,6 +389,8 @@ def _delivered(d: Discourse, thing: Thing, person: Thing | None, spot: Where | N
             steps += go(d, spot.place)
         if spot.furniture:
             give["where"] = Text(spot.furniture)
+        if d.at is not None and not d.in_loop:
+            d.now_at[thing.value] = d.at
         return [*steps, Call("put", give)]
     if person is None or is_me(person):
         start = d.start()
