@@ -142,6 +142,7 @@ def looks_of(d: Discourse, node: Node) -> Report | Steps:
     thing: Thing = (
         d.get(node, "thing")
         or d.get(node, "person_ref")
+        or d.person  # "there is somebody in the kitchen, report the gender"
         or Thing(Text(ANYONE), person=True, here=True)
     )
     extra = described(d, "", node)
