@@ -86,6 +86,7 @@ SCENE: Final = (
     "group",
     "missing",
     "lacking",
+    "now_at",
 )
 """What the robot and the speaker have before them; each branch of a condition begins with the same
 scene."""

@@ -8,7 +8,7 @@ before everything the empty list or the zero that it is noted in.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import msgspec
@@ -114,7 +114,23 @@ def asked_so_far(d: Discourse) -> list[Survey]:
     surveys: list[Survey] = d.surveys
     done = (*d.around, d.done)
     calls = [each for steps in done for each in nodes(steps) if isinstance(each, Call)]
-    return [each for each in surveys if any(each.call is call for call in calls)]
+    found = [each for each in surveys if any(each.call is call for call in calls)]
+    return [*found, *_asked_again(d, found)]
+
+
+def _asked_again(d: Discourse, surveys: list[Survey]) -> list[Survey]:
+    """What was asked of others in the same words, into the same variable: "do the same with
+    Alice". Who is asked only where somebody else was not found is none of them."""
+    known = {id(each.call) for each in surveys}
+    by_variable = {each.call.save_as: each for each in surveys}
+    return [
+        replace(by_variable[step.save_as], call=step, who=step.arguments.get("person"))
+        for step in _in_any_case(d.done)
+        if isinstance(step, Call)
+        and step.method == "ask"
+        and step.save_as in by_variable
+        and id(step) not in known
+    ]
 
 
 def asked_before(d: Discourse) -> list[Survey]:

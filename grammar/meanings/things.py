@@ -390,7 +390,7 @@ def _delivered(d: Discourse, thing: Thing, person: Thing | None, spot: Where | N
         if spot.furniture:
             give["where"] = Text(spot.furniture)
         if d.at is not None and not d.in_loop:
-            d.now_at[thing.value] = d.at
+            d.now_at = {**d.now_at, thing.value: d.at}
         return [*steps, Call("put", give)]
     if person is None or is_me(person):
         start = d.start()
