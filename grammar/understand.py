@@ -236,7 +236,7 @@ class Reader:
             _log.exception("Nothing could be made of %r", self.text)
             return rejected(self.text, self.language.phrase("too_complicated"), self.context)
         if not steps:
-            return self._not_understood(chart)
+            return self._asking_nothing(chart)
         try:
             plan = scoped(
                 Plan(
@@ -519,6 +519,13 @@ class Reader:
             unclear=part or self.text.strip(),
             context=self.context,
         )
+
+    def _asking_nothing(self, chart: Chart) -> Understanding:
+        """Nothing but remarks: all of it was read, and there is nothing to do."""
+        answer = self._not_understood(chart)
+        if answer.message == self.language.phrase("not_understood_at_all"):
+            return replace(answer, message=self.language.phrase("asks_nothing"))
+        return answer
 
     def _why_not(self, part: str) -> str:
         """Which part was not understood; of a sentence that is none of its business, why."""
