@@ -342,6 +342,12 @@ class Discourse:
             return ""
         return self.text[self.tokens[start].start : self.tokens[end - 1].end]
 
+    def parted(self, start: int, end: int) -> bool:
+        """Whether some tokens are only a part of a contraction: "it" of "it's"."""
+        first, last = self.tokens[start], self.tokens[end - 1]
+        begun = start > 0 and self.tokens[start - 1].end > first.start
+        return begun or (end < len(self.tokens) and self.tokens[end].start < last.end)
+
     def called(self, name: str) -> str:
         """What speakers call something that a plan has a name for."""
         return naming(self.lexicon, self.language).called(name)

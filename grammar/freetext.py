@@ -19,7 +19,7 @@ from typing import Any, Final
 
 from grammar.chart import Leaf, Node
 from grammar.language import Language
-from grammar.tokens import COLON, STOP, Token
+from grammar.tokens import COLON, COMMA, STOP, Token
 
 SPOKEN: Final = frozenset({"say", "say_that"})
 WRITTEN: Final = frozenset({"show"})
@@ -318,6 +318,9 @@ class Judge:
             if self.joined(first, start)
             for at in range(first, first + self.greeting(first))
         }  # "3, 2, 1, happy new year"
+        for at in range(start + 2, end):  # "happy new year, in the lounge": where
+            if self.tokens[at - 1].norm == COMMA and self.tokens[at].norm in words.not_greeting:
+                return doubt(at, "said_or_done")
         for at in range(max(behind, start + 1), end):
             if self.tokens[at].norm in words.manners and at not in greeted:
                 return doubt(at, "said_or_done")

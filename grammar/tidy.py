@@ -169,6 +169,24 @@ def _goes_back(step: Step) -> bool:
     return isinstance(step, Call) and step == Call("goto", {"place": Recall(START)})
 
 
+def charging_last(plan: Plan) -> Plan:
+    """The plan with charging behind a round that ends with it: "visit every ward and then go back
+    to your charger" is one way to the charger."""
+    return msgspec.structs.replace(plan, steps=_charging_last(plan.steps))
+
+
+def _charging_last(steps: tuple[Step, ...]) -> tuple[Step, ...]:
+    result: list[Step] = []
+    for step in steps:
+        inner = {name: _charging_last(body) for name in BODIES if (body := _body(step, name))}
+        step = msgspec.structs.replace(step, **inner) if inner else step
+        result.append(step)
+        if isinstance(step, ForEach) and len(step.steps) > 1 and step.steps[-1] == Call("dock"):
+            result[-1] = msgspec.structs.replace(step, steps=step.steps[:-1])
+            result.append(Call("dock"))
+    return tuple(result)
+
+
 def returning(plan: Plan) -> Plan:
     """The plan with a way back at the end of each round that begins with waiting for somebody and
     leads away: the next one is waited for where the first was."""

@@ -38,7 +38,7 @@ from grammar.refusals import (
 from grammar.requests import Request
 from grammar.slips import mended
 from grammar.slots import Slots, command_words
-from grammar.tidy import Unbound, is_one_of_each, returning, scoped, without_unused
+from grammar.tidy import Unbound, charging_last, is_one_of_each, returning, scoped, without_unused
 from grammar.tokens import COMMA, Token, tokenise
 
 _log: Final = logging.getLogger(__name__)
@@ -252,7 +252,7 @@ class Reader:
         doubt = doubtful(tree, self.tokens, self.language)
         if doubt is not None:
             return self._doubted(doubt)
-        plan = returning(without_unused(plan))  # what came to nothing is lost, too
+        plan = charging_last(returning(without_unused(plan)))  # what came to nothing is lost, too
         resolved = discourse.resolved
         lost = left_out(tree, self.tokens, plan, self.language, self.lexicon, resolved)
         lost += unspoken(tree, self.tokens, plan, self.language, resolved)

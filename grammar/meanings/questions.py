@@ -294,6 +294,8 @@ def turn_to_you(
         if original[:1] in ("'", "’"):  # "he'd": he would
             original = first.norm
         opened = " ".join(token.norm for token in d.tokens[position:last])
+        if d.parted(position, last):  # "it" of "it's"
+            original = opened
         turned = you.get(first.norm)
         alone = d.language.speech.get(f"{words}_alone", {})
         if first.norm in alone and _ends_phrase(d, position + 1, end):

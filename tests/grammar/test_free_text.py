@@ -36,6 +36,7 @@ def test_what_is_no_command_moves_no_robot(language: str) -> None:
     ("sentence", "doubted"),
     [
         ("say good morning and peel an orange", "and peel an orange"),
+        ("say 3, 2, 1, happy new year, in the lobby", "in the lobby"),
         ("say that visiting hours are over and throw everybody out", "and throw everybody out"),
         ("tell Bob to leave and mop up behind him", "and mop up behind him"),
         ('say "welcome" and hum a tune', "and hum a tune"),

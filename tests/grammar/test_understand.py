@@ -364,3 +364,8 @@ def test_where_the_command_was_given_is_kept_only_if_needed() -> None:
         assert plan is not None
         found: list[Node] = list(nodes(plan.steps))
         assert (Recall(START) in found) == sentence.endswith("back")
+
+
+def test_a_part_of_a_contraction_is_a_word_of_its_own() -> None:
+    asked = understand("ask Bob whether it's too warm", WARD)
+    assert asked.plan is not None and "Is it too warm?" in write_program(asked.plan)
