@@ -11,7 +11,7 @@ from grammar.naming import joined_up
 from grammar.tokens import Token, tokenise
 
 if TYPE_CHECKING:
-    from grammar.understand import Clarification
+    from grammar.understanding import Clarification
 
 ALIKE: Final = 80
 """How alike a word must be to one of a choice, in percent."""

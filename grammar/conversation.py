@@ -22,7 +22,8 @@ from grammar.lexicon import Lexicon
 from grammar.pieces import is_pieces, leaves
 from grammar.plan import Call, Plan, Text, calls
 from grammar.requests import Request
-from grammar.understand import Context, Reader, Understanding, rejected
+from grammar.understand import Reader
+from grammar.understanding import Context, Understanding, rejected
 
 MANNER: Final = frozenset({"set_volume", "set_language"})
 """What is set before something is said rather than after it."""

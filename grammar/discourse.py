@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from grammar.chart import Leaf, Node
+from grammar.doubts import Ambiguous, NotUnderstood
 from grammar.language import Language
 from grammar.lexicon import Lexicon, Name
 from grammar.naming import joined_up, naming
@@ -31,38 +32,6 @@ ANYONE: Final = "person"
 __all__ = ["Branched", "Claim", "Meeting", "Round", "Thing", "Where"]
 
 Steps = list[Step]
-
-
-class NotUnderstood(Exception):
-    """A part of the sentence means nothing here; `message` is for the person who said it."""
-
-    def __init__(
-        self,
-        message: str,
-        nearest: tuple[str, ...] = (),
-        span: tuple[int, int] = (0, 0),
-        gap: tuple[int, int] = (0, 0),
-    ) -> None:
-        super().__init__(message)
-        self.message = message
-        self.nearest = nearest
-        """Names that may have been meant."""
-        self.span = span
-        """The tokens that would then be replaced."""
-        self.gap = gap
-        """The tokens in whose place a name would do: "it", where nothing was spoken of."""
-
-
-class Ambiguous(Exception):
-    """A part of the sentence may mean several things; `question` asks which one."""
-
-    def __init__(self, question: str, start: int, end: int, choices: tuple[str, ...]) -> None:
-        super().__init__(question)
-        self.question = question
-        self.start, self.end = start, end
-        """The tokens that may mean several things."""
-        self.choices = choices
-        """What could stand there instead."""
 
 
 ONE_ONLY: Final = frozenset({"person_ref", "thing", "place"})

@@ -36,7 +36,8 @@ from grammar.readings import SEQUENCE
 from grammar.tokens import Token
 
 if TYPE_CHECKING:
-    from grammar.understand import Context, Reader
+    from grammar.understand import Reader
+    from grammar.understanding import Context
 
 EditKind = Literal[
     "cancel",

@@ -22,7 +22,8 @@ from grammar.network import Production, parts_of
 from grammar.plan import Plan
 from grammar.samples import names_for, samples
 from grammar.templates import NOTHING, Choice, Part, Sequence, Template, Word
-from grammar.understand import Understanding, understand
+from grammar.understand import understand
+from grammar.understanding import Understanding
 from grammar.wordforms import kind_words
 
 START: Final = "steps"

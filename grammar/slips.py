@@ -8,11 +8,15 @@ never where they stand: free text is still taken from the original.
 
 from __future__ import annotations
 
+import functools
+from collections import Counter
 from collections.abc import Collection, Iterator
 from dataclasses import replace
 from typing import Final
 
 from grammar.language import Language
+from grammar.lexicon import Lexicon
+from grammar.names import names_of
 from grammar.tokens import Token
 
 SHORTEST_JOINED: Final = 4
@@ -21,6 +25,8 @@ LONG_ENOUGH: Final = 5
 """Letters of a word that others may be run into: "laccueil", but "lait" is milk."""
 VOWELS: Final = frozenset("aeiouy")
 """What a word may begin with that another is elided before."""
+SHORTEST_CORRECTED: Final = 4
+"""Letters of a word that may be misspelt."""
 
 
 def mended(
@@ -93,3 +99,36 @@ def plain_forms(stem: str) -> Iterator[str]:
     yield f"{stem}e"
     if len(stem) > 2 and stem[-1] == stem[-2]:
         yield stem[:-1]
+
+
+@functools.cache
+def fillers_by_first(language: Language) -> dict[str, list[tuple[str, ...]]]:
+    fillers: dict[str, list[tuple[str, ...]]] = {}
+    for filler in language.fillers:
+        fillers.setdefault(filler[0], []).append(filler)
+    return fillers
+
+
+@functools.lru_cache(maxsize=2048)
+def misspelt(word: str, language: Language, lexicon: Lexicon) -> tuple[str, ...]:
+    """Known words that are one small slip away: a letter left out, doubled, added or swapped with
+    its neighbour; in longer words also one wrong letter, in long ones two slips."""
+    from rapidfuzz.distance import OSA
+    from rapidfuzz.process import extract
+
+    known = sorted(
+        each
+        for each in language.words | names_of(language, lexicon).words
+        if len(each) >= SHORTEST_CORRECTED and each[0] == word[0]
+    )
+    most = 2 if len(word) >= 8 else 1
+    found = extract(word, known, scorer=OSA.distance, score_cutoff=most, limit=4)
+    near: list[str] = []
+    for other, distance, _ in found:
+        if found and distance > found[0][1]:
+            break
+        wrong = (Counter(word) - Counter(other)).total() if len(other) == len(word) else 0
+        if wrong > (0 if len(word) < 6 else 1):  # a ballroom is no bathroom
+            continue
+        near.append(other)
+    return tuple(near[:3])

@@ -11,13 +11,13 @@ from __future__ import annotations
 
 import functools
 import logging
-from collections import Counter
-from dataclasses import dataclass, field, replace
-from typing import Final, Literal
+from dataclasses import replace
+from typing import Final
 
 from grammar.accounts import left_out, unheeded, unspoken
 from grammar.chart import Chart, Node, Slot, TooMuch
-from grammar.discourse import Ambiguous, Discourse, NotUnderstood, Thing
+from grammar.discourse import Discourse
+from grammar.doubts import Ambiguous, NotUnderstood
 from grammar.freetext import Doubt, doubtful, words_for
 from grammar.language import Language, load_language
 from grammar.lexicon import Lexicon
@@ -25,7 +25,7 @@ from grammar.names import Names, names_of
 from grammar.naming import joined_up, place_called
 from grammar.plan import Plan, Text, Value
 from grammar.plausible import implausible
-from grammar.readings import Read, read
+from grammar.readings import read
 from grammar.refusals import (
     forbidden,
     is_half,
@@ -36,10 +36,11 @@ from grammar.refusals import (
     why_not,
 )
 from grammar.requests import Request
-from grammar.slips import mended
+from grammar.slips import SHORTEST_CORRECTED, fillers_by_first, mended, misspelt
 from grammar.slots import Slots, command_words
 from grammar.tidy import Unbound, charging_last, is_one_of_each, returning, scoped, without_unused
 from grammar.tokens import COMMA, Token, tokenise
+from grammar.understanding import Clarification, Context, Understanding, rejected
 
 _log: Final = logging.getLogger(__name__)
 
@@ -51,95 +52,6 @@ FILLER_PASSED_OVER: Final = 0.1
 MOST_SUGGESTIONS: Final = 3
 EMERGENCY: Final = "emergency"
 """The answer that matters more than why a sentence is refused."""
-SHORTEST_CORRECTED: Final = 4
-"""Letters of a word that may be misspelt."""
-
-Status = Literal["ok", "clarify", "rejected"]
-
-
-@dataclass(frozen=True)
-class Context:
-    """What a conversation remembers between two sentences."""
-
-    plan: Plan | None = None
-    """The last plan."""
-    text: str = ""
-    """The last sentence."""
-    thing: Thing | None = None
-    person: Thing | None = None
-    place: Value | None = None
-    """What was spoken of last: "it", "her", "there"."""
-    source: Value | None = None
-    """Where the thing was taken from."""
-    question: Clarification | None = None
-    """The question that waits for an answer."""
-    before: Context | None = None
-    """What was known when the last sentence was said, for it to be understood anew."""
-    carried_out: bool = False
-    """Whether the last plan has been carried out, so that what comes is not a part of it."""
-    origin: str | None = None
-    """The place where the robot was before that."""
-    chosen: tuple[Clarification, str] | None = None
-    """The question that was answered for the last plan, and the choice that was taken."""
-    earlier: Context | None = None
-    """As it was before the last sentence, for what is said of the one before that."""
-
-    def referents(self) -> Context:
-        """Only what was spoken of last."""
-        person = self.person
-        if person is not None and not self.carried_out:
-            person = replace(person, here=False)  # nobody has gone there yet
-        return Context(thing=self.thing, person=person, place=self.place, source=self.source)
-
-
-@dataclass(frozen=True)
-class Clarification:
-    """A question back: which of several was meant, or what was left out."""
-
-    text: str
-    """The sentence it is about."""
-    start: int
-    end: int
-    """The characters that may mean several things."""
-    choices: tuple[str, ...]
-    before: str = ""
-    """What must stand before the choice, where a contraction was opened: "ins Büro"."""
-    question: str = ""
-    """As it was asked."""
-    asked: bool = True
-    """Whether it was put as a question; otherwise the words were only not understood, and an answer
-    puts others in their place."""
-
-    def completed(self, choice: str) -> str:
-        """The sentence with the choice in place."""
-        space = " " if self.start == self.end and not choice.startswith(" ") else ""
-        return self.text[: self.start] + self.before + space + choice + self.text[self.end :]
-
-
-@dataclass(frozen=True)
-class Understanding:
-    utterance: str
-    status: Status
-    plan: Plan | None = None
-    confidence: float = 0.0
-    """From 0 to 1; below 1 where spellings were corrected or something was assumed."""
-    message: str | None = None
-    """Why it was not understood, or the question back."""
-    suggestions: list[str] = field(default_factory=list)
-    """Sentences that would be understood."""
-    parts: list[Read] = field(default_factory=list)
-    """Which words were read as what, as far as the sentence was understood."""
-    unclear: str = ""
-    """The words that were not understood, or could mean several things."""
-    request: Request | None = None
-    """What is asked of the application instead; such a sentence has no plan."""
-    context: Context = field(default_factory=Context)
-    """What to pass with the next sentence of the conversation."""
-
-    @property
-    def reading(self) -> list[tuple[str, str]]:
-        """Which words were read as what: (words, meaning), in their order."""
-        return [(part.words, part.meaning) for part in self.parts]
 
 
 def understand(
@@ -156,10 +68,6 @@ def understand(
     if len(text) > LONGEST_TEXT or len(text.split()) > MOST_WORDS:
         return rejected(text, pack.phrase("too_long"), context)
     return conversation.understood(text, lexicon, pack, context)
-
-
-def rejected(text: str, message: str, context: Context) -> Understanding:
-    return Understanding(text, "rejected", message=message, context=context)
 
 
 class Reader:
@@ -380,7 +288,7 @@ class Reader:
             said_twice = at > 0 and words[at - 1] == token.norm and token.kind == "word"
             if token.norm == COMMA or said_twice:
                 skips.setdefault(at, []).append((at + 1, COMMA_PASSED_OVER))
-            for filler in _fillers_by_first(self.language).get(token.norm, ()):
+            for filler in fillers_by_first(self.language).get(token.norm, ()):
                 if tuple(words[at : at + len(filler)]) == filler:
                     skips.setdefault(at, []).append((at + len(filler), FILLER_PASSED_OVER))
         return skips
@@ -400,7 +308,7 @@ class Reader:
                 continue
             if any(token.norm in words for words in known):
                 continue
-            found = _misspelt(token.norm, self.language, self.lexicon)
+            found = misspelt(token.norm, self.language, self.lexicon)
             if found:
                 corrections[at] = found
         return corrections
@@ -581,37 +489,4 @@ def _source(discourse: Discourse) -> Value | None:
     return next((place for place in places if isinstance(place, Text)), None)
 
 
-@functools.cache
-def _fillers_by_first(language: Language) -> dict[str, list[tuple[str, ...]]]:
-    fillers: dict[str, list[tuple[str, ...]]] = {}
-    for filler in language.fillers:
-        fillers.setdefault(filler[0], []).append(filler)
-    return fillers
-
-
-@functools.lru_cache(maxsize=2048)
-def _misspelt(word: str, language: Language, lexicon: Lexicon) -> tuple[str, ...]:
-    """Known words that are one small slip away: a letter left out, doubled, added or swapped with
-    its neighbour; in longer words also one wrong letter, in long ones two slips."""
-    from rapidfuzz.distance import OSA
-    from rapidfuzz.process import extract
-
-    known = sorted(
-        each
-        for each in language.words | names_of(language, lexicon).words
-        if len(each) >= SHORTEST_CORRECTED and each[0] == word[0]
-    )
-    most = 2 if len(word) >= 8 else 1
-    found = extract(word, known, scorer=OSA.distance, score_cutoff=most, limit=4)
-    near: list[str] = []
-    for other, distance, _ in found:
-        if found and distance > found[0][1]:
-            break
-        wrong = (Counter(word) - Counter(other)).total() if len(other) == len(word) else 0
-        if wrong > (0 if len(word) < 6 else 1):  # a ballroom is no bathroom
-            continue
-        near.append(other)
-    return tuple(near[:3])
-
-
-__all__ = ["Clarification", "Context", "Status", "Token", "Understanding", "understand"]
+__all__ = ["Clarification", "Context", "Token", "Understanding", "understand"]

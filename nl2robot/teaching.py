@@ -18,7 +18,8 @@ from grammar.naming import naming
 from grammar.plan import Plan
 from grammar.requests import Request
 from grammar.samples import samples
-from grammar.understand import Understanding, understand
+from grammar.understand import understand
+from grammar.understanding import Understanding
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.routines import Routine, Routines, spelled

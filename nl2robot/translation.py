@@ -15,7 +15,8 @@ import msgspec
 from grammar.language import load_language
 from grammar.plan import Plan, to_data
 from grammar.requests import ABOUT_RUNS, Request, agreed
-from grammar.understand import Context, understand
+from grammar.understand import understand
+from grammar.understanding import Context
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.plain import visible

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import grammar.meanings.agreement
 import grammar.meanings.amounts
+import grammar.meanings.answered
 import grammar.meanings.answers
 import grammar.meanings.best_places
 import grammar.meanings.body
@@ -16,6 +17,7 @@ import grammar.meanings.branches
 import grammar.meanings.conditions
 import grammar.meanings.control
 import grammar.meanings.conversation
+import grammar.meanings.descriptions
 import grammar.meanings.driving
 import grammar.meanings.exceptions
 import grammar.meanings.facts
@@ -28,6 +30,7 @@ import grammar.meanings.messages
 import grammar.meanings.news
 import grammar.meanings.nouns
 import grammar.meanings.people
+import grammar.meanings.persons
 import grammar.meanings.place_sets
 import grammar.meanings.places
 import grammar.meanings.polls
@@ -43,6 +46,8 @@ import grammar.meanings.sights
 import grammar.meanings.speaking
 import grammar.meanings.stops
 import grammar.meanings.surveys
+import grammar.meanings.telling_if
+import grammar.meanings.there
 import grammar.meanings.things
 import grammar.meanings.visiting
 import grammar.meanings.volunteers

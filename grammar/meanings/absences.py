@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing
-from grammar.meanings.nouns import is_me
+from grammar.meanings.persons import is_me
 from grammar.meanings.searches import searches
 from grammar.plan import Ask, Call, Condition, Holds, If, Value
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, NotUnderstood
+from grammar.discourse import Discourse
+from grammar.doubts import NotUnderstood
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import Survey, asked_before, in_loop, note
 from grammar.plan import (

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any, Final
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, NotUnderstood, as_value
+from grammar.discourse import Discourse, as_value
+from grammar.doubts import NotUnderstood
 from grammar.meanings.registry import meaning
 from grammar.plan import Number
 

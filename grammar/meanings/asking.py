@@ -11,7 +11,7 @@ import msgspec
 from grammar.discourse import ANYONE, Discourse, Steps, Thing
 from grammar.meanings.absences import answer_variable
 from grammar.meanings.finding import go, if_found, if_met, meet, visits_only, where_sent
-from grammar.meanings.nouns import is_me
+from grammar.meanings.persons import is_me
 from grammar.meanings.surveys import Survey
 from grammar.plan import (
     Ask,

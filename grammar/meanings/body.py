@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, NotUnderstood, Steps, as_value
+from grammar.discourse import Discourse, Steps, as_value
+from grammar.doubts import NotUnderstood
 from grammar.meanings.finding import speak_to
 from grammar.meanings.news import on_screen
 from grammar.meanings.registry import meaning

@@ -13,18 +13,21 @@ from typing import Final
 from msgspec.structs import replace as structs_replace
 
 from grammar.chart import Leaf, Node, what_it_means
-from grammar.discourse import (
-    ANYONE,
-    Branched,
-    Claim,
-    Discourse,
-    Meeting,
-    NotUnderstood,
-    Steps,
-    Thing,
-)
+from grammar.discourse import Branched, Claim, Discourse, Meeting, Steps
+from grammar.doubts import NotUnderstood
 from grammar.meanings.absences import Addressed, addressed_before
-from grammar.meanings.conditions import condition_of, negated, said_so
+from grammar.meanings.answered import said_so
+from grammar.meanings.claims import (
+    TELL,
+    claim_of,
+    counted_first,
+    found_claim,
+    leave_off,
+    meet_there,
+    told_so,
+    turned,
+)
+from grammar.meanings.conditions import condition_of, negated
 from grammar.meanings.deliveries import (
     Taken,
     delivered_last,
@@ -35,12 +38,9 @@ from grammar.meanings.deliveries import (
     still_in_hand,
     taken_back,
 )
-from grammar.meanings.finding import go, not_found, speak_to
+from grammar.meanings.finding import not_found
 from grammar.meanings.news import BACK, News, go_back
-from grammar.meanings.nouns import is_me
-from grammar.meanings.polls import polled
 from grammar.meanings.registry import meaning
-from grammar.meanings.reports import coming_back, known_words, tell_speaker, told_again
 from grammar.meanings.searches import (
     Search,
     either_way,
@@ -52,27 +52,20 @@ from grammar.meanings.searches import (
     searching_at,
     thing_sought,
 )
-from grammar.meanings.sights import named_some
-from grammar.meanings.speaking import put_for, sentence_form
 from grammar.meanings.turns import in_their_turn
 from grammar.plan import (
     Ask,
     Call,
-    Compare,
     Condition,
     Holds,
     If,
-    Items,
     Not,
     Recall,
     Remember,
     Step,
-    Text,
     Truth,
 )
 from grammar.tidy import mentions, nodes
-from grammar.wordforms import plural
-from grammar.wordorder import direct_clause
 
 ABOUT_ANSWERS: Final = frozenset(
     {
@@ -83,9 +76,6 @@ ABOUT_ANSWERS: Final = frozenset(
 )
 LOOKING: Final = frozenset({"look_in", "look_on", "find", "go_find"})
 """Commands that look for something and do nothing else."""
-TELL: Final = "tell_condition"
-COUNT: Final = "count"
-"""The variable that a number is kept in which a condition is about."""
 
 
 @meaning("if")
@@ -428,178 +418,7 @@ def branch(d: Discourse, part: Leaf | Node, met: Meeting | None, claim: Step | N
     return steps
 
 
-def claim_of(d: Discourse, node: Node, condition: Condition, met: Meeting | None) -> Step | None:
-    """What a condition says, as a sentence of its own: "if there is a cup, tell me"."""
-    part = node.parts["condition"]
-    if what_it_means(part) in ("so", "answered"):
-        # Of a round it would be told at each place, and never that it is nowhere.
-        return found_claim(d, condition, met) if met is not None and not d.in_loop else None
-    if what_it_means(part) == "answers_many":  # "if anyone says yes, tell Alice": how many did
-        return polled(d, "many", None).words[0]
-    if node.production.fixed.get("turned") or node.production.fixed.get("unless"):
-        return found_claim(d, condition, met)
-    end = part.end
-    while d.tokens[end - 1].kind == "mark":
-        end -= 1
-    clause = as_fact(d, direct_clause(d, part.start, end))
-    return Call("say", {"text": Text(sentence_form(clause))})
-
-
-def as_fact(d: Discourse, clause: str) -> str:
-    """What was waited for, in the words for what is so: "soit sorti" -> "est sorti", and of the
-    robot as it speaks of itself: "you see a cup" -> "I see a cup"."""
-    facts: dict[str, str] = d.language.speech.get("indicative", {})
-    clause = " ".join(facts.get(word, word) for word in clause.split(" "))
-    return put_for(d, "of_robot", clause)
-
-
-def found_claim(d: Discourse, condition: Condition, met: Meeting | None) -> Step | None:
-    """What has been found, or how many were counted."""
-    if met is not None and met.holds:
-        return d.say("yes_seen", thing=named_some(d, met.thing))
-    if met is not None and met.thing.text == ANYONE:
-        return d.say("nobody_seen")
-    if met is not None:
-        return not_found(d, met.thing)
-    if isinstance(condition, Compare) and isinstance(condition.left, Ask):
-        thing = condition.left.arguments.get("thing")
-        if condition.left.method == "count" and isinstance(thing, Text):
-            things = plural(d.called(thing.value), d.language)
-            return d.say("counted", things=things, value=Recall(COUNT))
-    return None
-
-
-def counted_first(condition: Condition, branches: Steps) -> tuple[Steps, Condition]:
-    """A number that is told in a branch is counted before, for it may be told elsewhere."""
-    counts = isinstance(condition, Compare) and isinstance(condition.left, Ask)
-    if not counts or not mentions(tuple(branches), Recall(COUNT)):
-        return [], condition
-    assert isinstance(condition, Compare)
-    kept = Compare(Recall(COUNT), condition.operator, condition.right)
-    return [Remember(COUNT, condition.left)], kept
-
-
-def turned(met: Meeting | None) -> Meeting | None:
-    """The same if the condition is turned round."""
-    return None if met is None else replace(met, holds=not met.holds)
-
-
-def meet_there(d: Discourse, met: Meeting | None) -> None:
-    """The scene where a condition holds that is about somebody or something."""
-    if met is None:
-        return
-    thing = replace(met.thing, here=met.holds, pronoun=False)
-    d.missing = None if met.holds else replace(met.thing, place=met.thing.place or d.at)
-    d.lacking = None if met.holds or met.sought else d.missing
-    if isinstance(thing.place, Items):  # wherever it was found
-        d.at = d.with_person = None
-        d.away = True
-    elif thing.place is not None:  # it was looked for there
-        d.went(thing.place)
-        d.looked_in = thing.place
-    if not met.holds:
-        thing = replace(thing, place=None, furniture=None)
-    if thing.person:
-        d.person, d.thing_last = thing, False
-        d.with_person = thing.value if met.holds else None
-        if met.holds and not thing.known:
-            d.visitor = thing
-    else:
-        d.thing, d.thing_last = thing, True
-
-
-def leave_off(d: Discourse, after: dict[str, object]) -> None:
-    """The scene behind both branches: where the robot is only if it is there either way, and who
-    was spoken of in the first."""
-    at, with_person = d.at, d.with_person
-    d.set_scene(after)
-    if d.at != at:
-        d.at = None
-    if d.with_person != with_person:
-        d.with_person = None
-        if d.person is not None and d.person.known:
-            d.person = replace(d.person, here=False)
-
-
 def looks_on(part: Leaf | Node) -> bool:
     """Whether a branch begins with looking somewhere else: "try the lab and bring it here"."""
     first = next((each for each in inside(part) if each.production.rule == "command"), None)
     return first is not None and first.means in LOOKING
-
-
-@meaning(TELL)
-def tell_condition(d: Discourse, node: Node) -> Steps:
-    """ "if there are more than three people, tell Alice": that there are more than three people."""
-    if "condition" not in node.parts:  # "..., if not, let me know"
-        return told_so(d, node, d.claim.saying if d.claim is not None else None)
-    before_it, condition = condition_of(d, node)
-    met = turned(d.met) if node.production.fixed.get("unless") else d.met
-    kept = addressed_before(d, met) if not before_it else None
-    if kept is not None and met is not None:
-        return absent(
-            d,
-            node,
-            kept,
-            met,
-            lambda: coming_back(d, node, told_again(d, d.get(node, "person_ref"))),
-        )
-    person_said = node.parts.get("person_ref")
-    asked_whether = person_said and person_said.end <= node.parts["condition"].start
-    if asked_whether and is_me(d.get(node, "person_ref")) and is_so(d, node):
-        return told_again(d, d.get(node, "person_ref"))
-    if asked_whether and what_it_means(node.parts["condition"]) == "answers_same":
-        return [*before_it, *told_either_way(d, node, condition)]
-    delivery = delivered_last(d)
-    if delivery is not None and met is not None and lacks(delivery, met):
-        taken = taken_back(d, delivery, met)
-        if taken is not None:  # "bring me a coffee; if there is none, let me know"
-            return [*before_it, *failing(d, node, taken, met)]
-    claim = claim_of(d, node, condition, met)
-    if met is None and not before_it:
-        as_before(d, condition)
-    start = d.scene()
-    meet_there(d, met)
-    then = told_so(d, node, claim)
-    after = d.scene()
-    d.set_scene(start)
-    part = other_branch(d, node, condition)
-    otherwise: Steps = []
-    if part is not None:
-        otherwise = branch(d, part, turned(met), found_claim(d, condition, turned(met)))
-    else:
-        meet_there(d, turned(met))
-    leave_off(d, after)
-    counted, condition = counted_first(condition, [*then, *otherwise])
-    whole = If(condition, tuple(then), tuple(otherwise))
-    d.branched = Branched(whole, start, met, d.answer)
-    return [*before_it, *counted, whole]
-
-
-def is_so(d: Discourse, node: Node) -> bool:
-    """Whether the speaker wants to know what somebody has answered: "let me know if he is", which
-    is also told if he is not."""
-    so = what_it_means(node.parts["condition"]) == "so"
-    return so and d.answer is not None and "otherwise" not in node.parts
-
-
-def told_so(d: Discourse, node: Node, claim: Step | None) -> Steps:
-    """Tell whoever is to be told that something is so."""
-    person: Thing | None = d.get(node, "person_ref")
-    if "at_place" in node.parts:  # "tell the kitchen": whoever is there
-        return [*go(d, d.get(node, "at_place")), *(known_words(d) if claim is None else [claim])]
-    if is_me(person):
-        outer = d.claim
-        d.claim = None if claim is None else Claim(claim, d.known_by_now())
-        told = coming_back(d, node, tell_speaker(d))
-        d.claim = outer
-        return told
-    return speak_to(d, person, known_words(d) if claim is None else [claim])
-
-
-def told_either_way(d: Discourse, node: Node, condition: Condition) -> Steps:
-    """ "tell me if it is the same": also if it is not."""
-    person: Thing = d.get(node, "person_ref")
-    part = node.parts["condition"]
-    clause = d.words(part.start, part.end)
-    told = If(condition, (d.say("so_it_is", clause=clause),), (d.say("not_so", clause=clause),))
-    return [*go_back(d, []), told] if is_me(person) else speak_to(d, person, [told])

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import START, Discourse, NotUnderstood, Steps, Thing
+from grammar.discourse import START, Discourse, Steps, Thing
+from grammar.doubts import NotUnderstood
 from grammar.meanings.alternatives import exclusive, for_all, itself, side_by_side
 from grammar.meanings.branches import in_branch
 from grammar.meanings.finding import go, not_found

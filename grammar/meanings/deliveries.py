@@ -14,7 +14,7 @@ from typing import Any
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing, Where
-from grammar.meanings.nouns import is_me
+from grammar.meanings.persons import is_me
 from grammar.meanings.searches import search_of, searches
 from grammar.meanings.surveys import Survey
 from grammar.plan import Ask, Call, Condition, Holds, If, Items, Recall, Step, Text, Value

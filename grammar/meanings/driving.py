@@ -6,19 +6,12 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import (
-    SETTING,
-    Discourse,
-    NotUnderstood,
-    Steps,
-    Thing,
-    Where,
-    as_value,
-)
+from grammar.discourse import SETTING, Discourse, Steps, Thing, Where, as_value
+from grammar.doubts import NotUnderstood
 from grammar.meanings.finding import go, look_for, noun_of, where_sent
 from grammar.meanings.leading import lead
 from grammar.meanings.loops import for_each_of_them, looped
-from grammar.meanings.nouns import is_me
+from grammar.meanings.persons import is_me
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import counted_alone, tell_speaker

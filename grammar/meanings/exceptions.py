@@ -5,7 +5,8 @@ from __future__ import annotations
 from msgspec.structs import replace
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, NotUnderstood, Steps, Thing
+from grammar.discourse import Discourse, Steps, Thing
+from grammar.doubts import NotUnderstood
 from grammar.meanings.places import place_called_after
 from grammar.meanings.registry import meaning
 from grammar.meanings.rounds import last_round

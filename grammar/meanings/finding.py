@@ -8,7 +8,7 @@ from typing import Final
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.meanings.genders import gender_of_thing
-from grammar.meanings.nouns import is_me
+from grammar.meanings.persons import is_me
 from grammar.meanings.places import sought
 from grammar.naming import the
 from grammar.plan import (

@@ -10,14 +10,14 @@ from msgspec.structs import replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing
-from grammar.meanings.branches import claim_of
+from grammar.meanings.claims import claim_of
 from grammar.meanings.conditions import condition_of
 from grammar.meanings.deliveries import first_clause, inside
 from grammar.meanings.finding import speak_to
 from grammar.meanings.lookouts import ABOUT_IT
 from grammar.meanings.news import BACK, News, go_back
 from grammar.meanings.news import in_round as in_a_round
-from grammar.meanings.nouns import is_me
+from grammar.meanings.persons import is_me
 from grammar.meanings.rounds import goes_to, told_after_round
 from grammar.plan import (
     Ask,

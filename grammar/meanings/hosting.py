@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, Where
+from grammar.discourse import Discourse, Steps, Thing, Where
+from grammar.doubts import NotUnderstood
 from grammar.meanings.driving import go_to
 from grammar.meanings.finding import meet, named, speak_to, where_sent
 from grammar.meanings.genders import means_thing

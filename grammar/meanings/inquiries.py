@@ -7,7 +7,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from grammar.chart import Node
-from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
+from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
+from grammar.doubts import NotUnderstood
 from grammar.meanings.news import go_back
 from grammar.meanings.places import only_taken_apart
 from grammar.meanings.questions import ask_one

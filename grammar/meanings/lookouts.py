@@ -15,11 +15,12 @@ from typing import Final
 from msgspec.structs import replace
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, as_value
+from grammar.discourse import Discourse, Steps, Thing, as_value
+from grammar.doubts import NotUnderstood
 from grammar.meanings.conditions import negated
 from grammar.meanings.finding import look_for, speak_to
 from grammar.meanings.news import News, Told, go_back, in_round, last_found
-from grammar.meanings.nouns import is_me
+from grammar.meanings.persons import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.rounds import Trait, found_places, last_round, round_of, same_round
 from grammar.meanings.searches import named_places, search_in

@@ -8,8 +8,9 @@ from math import ceil
 from typing import Final
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import ANYONE, Discourse, Meeting, NotUnderstood, Steps, Thing, as_value
-from grammar.meanings.branches import meet_there
+from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing, as_value
+from grammar.doubts import NotUnderstood
+from grammar.meanings.claims import meet_there
 from grammar.meanings.conditions import FULL_HOUR, condition_of
 from grammar.meanings.deliveries import first_clause
 from grammar.meanings.finding import go, look_for, noun_of
@@ -345,7 +346,7 @@ def each_place(d: Discourse, items: Value, steps: Leaf | Node | None, goes: bool
         d.in_loop = outer
     first = body[0] if body else None
     moves = isinstance(first, Call) and first.method in ("goto", "guide", "find")
-    from grammar.meanings.quantifiers import until_found
+    from grammar.meanings.several_places import until_found
 
     search = until_found(d, here, items, body)
     if search:  # "look for it in all wards": until it is found

@@ -15,7 +15,7 @@ from grammar.discourse import Discourse, Steps, Thing, capital
 from grammar.meanings.finding import go, speak_to
 from grammar.meanings.genders import gender_of_thing
 from grammar.meanings.news import back_to_speaker
-from grammar.meanings.nouns import is_me, person_me
+from grammar.meanings.persons import is_me, person_me
 from grammar.meanings.questions import base_form, turn_to_you
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning

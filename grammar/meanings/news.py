@@ -15,7 +15,7 @@ import msgspec
 from grammar.chart import Node, what_it_means
 from grammar.discourse import START, Discourse, Steps, Thing
 from grammar.meanings.finding import go, speak_to
-from grammar.meanings.nouns import is_me
+from grammar.meanings.persons import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import asked_yet, moved
 from grammar.plan import (

@@ -6,21 +6,13 @@ from dataclasses import replace
 from typing import Final
 
 from grammar.chart import Node
-from grammar.discourse import (
-    ANYONE,
-    Ambiguous,
-    Discourse,
-    NotUnderstood,
-    Steps,
-    Thing,
-    Where,
-    as_value,
-)
+from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where, as_value
+from grammar.doubts import Ambiguous, NotUnderstood
 from grammar.meanings.conditions import condition_of
 from grammar.meanings.finding import look_for, meet, named, speak_to, where_sent
 from grammar.meanings.genders import means_thing
 from grammar.meanings.leading import lead
-from grammar.meanings.nouns import is_me
+from grammar.meanings.persons import is_me
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.speaking import spoken
@@ -202,7 +194,7 @@ def fetch_it(d: Discourse) -> Steps:
 @meaning("guide_list")
 def guide_list(d: Discourse, node: Node) -> Steps:
     """ "guide the visitors through all labs"."""
-    from grammar.meanings.quantifiers import over_places
+    from grammar.meanings.several_places import over_places
 
     person = led(d, node)
     return [

@@ -4,7 +4,8 @@ and c", "Alice's and Bob's office"."""
 from __future__ import annotations
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import Discourse, NotUnderstood
+from grammar.discourse import Discourse
+from grammar.doubts import NotUnderstood
 from grammar.lexicon import Name, series_of
 from grammar.meanings.places import is_of, unknown_place
 from grammar.meanings.registry import meaning

@@ -7,7 +7,8 @@ from dataclasses import replace
 from typing import Any, Final
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import START, Discourse, NotUnderstood, Thing, Where
+from grammar.discourse import START, Discourse, Thing, Where
+from grammar.doubts import NotUnderstood
 from grammar.lexicon import Name
 from grammar.meanings.registry import meaning
 from grammar.plan import Ask, Call, Items, Recall, Remember, Text, Value

@@ -14,7 +14,8 @@ from typing import Any, Final
 import msgspec
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, Where
+from grammar.discourse import Discourse, Steps, Thing, Where
+from grammar.doubts import NotUnderstood
 from grammar.meanings.answers import Said, Wanted, is_about, wanted, yes
 from grammar.meanings.news import Told, last_found
 from grammar.meanings.registry import meaning

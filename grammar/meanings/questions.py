@@ -7,11 +7,12 @@ from dataclasses import replace
 from typing import Any, Final
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where, capital
+from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where, capital
+from grammar.doubts import NotUnderstood
+from grammar.meanings.answered import says_the_same
 from grammar.meanings.asking import Audience, asked, audience, put, remember_answer
-from grammar.meanings.conditions import says_the_same
+from grammar.meanings.descriptions import described
 from grammar.meanings.finding import go, speak_to
-from grammar.meanings.nouns import described, is_me, known_by_name
 from grammar.meanings.options import (
     MOST_OPTIONS,
     numbers_offered,
@@ -19,6 +20,7 @@ from grammar.meanings.options import (
     places_asked_for,
     without_little_words,
 )
+from grammar.meanings.persons import is_me, known_by_name
 from grammar.meanings.references import answers_in, nouns_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import tell_speaker

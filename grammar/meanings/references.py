@@ -11,7 +11,8 @@ import re
 from collections.abc import Iterator
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import Discourse, NotUnderstood
+from grammar.discourse import Discourse
+from grammar.doubts import NotUnderstood
 from grammar.meanings.news import Told
 from grammar.meanings.polls import polled
 from grammar.meanings.registry import meaning

@@ -14,7 +14,8 @@ from typing import Final, TypeVar
 import msgspec
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, Where, as_value
+from grammar.discourse import Discourse, Steps, Thing, Where, as_value
+from grammar.doubts import NotUnderstood
 from grammar.meanings.genders import gender_of_thing
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, as_value
+from grammar.discourse import Discourse, Steps, Thing, as_value
+from grammar.doubts import NotUnderstood
 from grammar.meanings.conditions import condition_of
 from grammar.meanings.control import guard_finds
 from grammar.meanings.loops import looped, one_round

@@ -9,18 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from grammar.chart import Node, what_it_means
-from grammar.discourse import (
-    START,
-    Discourse,
-    NotUnderstood,
-    Steps,
-    Thing,
-    Where,
-)
+from grammar.discourse import START, Discourse, Steps, Thing, Where
+from grammar.doubts import NotUnderstood
 from grammar.meanings import news, polls
 from grammar.meanings.absences import undelivered
 from grammar.meanings.finding import is_here, speak_to
-from grammar.meanings.nouns import is_me
+from grammar.meanings.persons import is_me
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import (

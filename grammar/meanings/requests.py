@@ -8,7 +8,8 @@ from typing import Any
 import msgspec
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import START, Discourse, NotUnderstood, Steps
+from grammar.discourse import START, Discourse, Steps
+from grammar.doubts import NotUnderstood
 from grammar.lexicon import Name, Routine
 from grammar.meanings.registry import meaning
 from grammar.plan import Call, ForEach, Plan, Remember, Text

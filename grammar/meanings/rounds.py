@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from msgspec.structs import replace
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import ANYONE, Discourse, Meeting, NotUnderstood, Steps, Thing, Where
+from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing, Where
+from grammar.doubts import NotUnderstood
 from grammar.meanings.answers import Said
 from grammar.meanings.finding import speak_to
 from grammar.meanings.news import News, Told, go_back, in_round, last_found, take_back
-from grammar.meanings.nouns import is_me, thing_it
+from grammar.meanings.nouns import thing_it
+from grammar.meanings.persons import is_me
 from grammar.meanings.places import kind_places, sought
 from grammar.meanings.polls import polled
 from grammar.meanings.registry import meaning

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
+from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
+from grammar.doubts import NotUnderstood
 from grammar.meanings import news
+from grammar.meanings.descriptions import described
 from grammar.meanings.finding import found, in_state, is_here, not_found
-from grammar.meanings.nouns import described
 from grammar.meanings.places import place_called_after, sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report, told_report

@@ -6,11 +6,12 @@ import re
 from typing import Final
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, capital
+from grammar.discourse import Discourse, Steps, Thing, capital
+from grammar.doubts import NotUnderstood
 from grammar.freetext import words_for
 from grammar.language import load_language
 from grammar.meanings.finding import speak_to
-from grammar.meanings.nouns import is_me
+from grammar.meanings.persons import is_me
 from grammar.meanings.questions import turn_to_you
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning

@@ -8,7 +8,8 @@ from __future__ import annotations
 from typing import Final
 
 from grammar.chart import Node
-from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps
+from grammar.discourse import ANYONE, Discourse, Steps
+from grammar.doubts import NotUnderstood
 from grammar.meanings.alternatives import itself
 from grammar.meanings.registry import meaning
 from grammar.plan import Ask, Call, ForEach, Holds, If, Items, Recall, Text

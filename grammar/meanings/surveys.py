@@ -14,7 +14,8 @@ from typing import Any
 import msgspec
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, NotUnderstood, Steps, Thing
+from grammar.discourse import Discourse, Steps, Thing
+from grammar.doubts import NotUnderstood
 from grammar.meanings.registry import meaning
 from grammar.plan import (
     Ask,
@@ -250,8 +251,8 @@ def counting_to(d: Discourse, node: Node) -> Condition:
 
 def reached(d: Discourse, node: Node) -> Condition:
     """Whether so many of those who were asked have given an answer."""
+    from grammar.meanings.answered import of_those_asked
     from grammar.meanings.answers import Wanted
-    from grammar.meanings.conditions import of_those_asked
     from grammar.meanings.polls import counted
 
     surveys = asked_before(d)

@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from grammar.chart import Node
-from grammar.discourse import ANYONE, Discourse, NotUnderstood, Steps, Thing, Where
+from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
+from grammar.doubts import NotUnderstood
 from grammar.meanings.deliveries import Delivery, meant_for
+from grammar.meanings.descriptions import described
 from grammar.meanings.finding import (
     go,
     if_missing,
@@ -16,7 +18,8 @@ from grammar.meanings.finding import (
     speak_to,
     where_sent,
 )
-from grammar.meanings.nouns import described, is_me, thing_it
+from grammar.meanings.nouns import thing_it
+from grammar.meanings.persons import is_me
 from grammar.meanings.places import home_of, kind_places, piece_called, place_there, sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.remarks import fetched_there, known_to_be
@@ -129,7 +132,7 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
 def where_seen(d: Discourse, thing: Thing) -> Thing:
     """A thing at the place that was only looked at for it: "see whether there is a cup in the
     kitchen and bring it to me"."""
-    from grammar.meanings.conditions import seen_there
+    from grammar.meanings.there import seen_there
 
     about = d.report.thing if d.report is not None else None
     if not thing.pronoun or about is None or about.value != thing.value:
@@ -358,7 +361,7 @@ def whole(d: Discourse, node: Node) -> bool:
 @meaning("bring_each")
 def bring_each(d: Discourse, node: Node) -> Steps:
     """ "bring every ward a blanket": one after the other."""
-    from grammar.meanings.quantifiers import over_places
+    from grammar.meanings.several_places import over_places
 
     def one(place: Value) -> Steps:
         return deliver(d, d.get(node, "thing"), None, Where(place))

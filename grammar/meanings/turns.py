@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Thing
+from grammar.meanings.answered import people_asked
 from grammar.meanings.answers import Wanted
-from grammar.meanings.conditions import people_asked
 from grammar.meanings.deliveries import inside
 from grammar.meanings.polls import counted
 from grammar.meanings.surveys import Survey, in_loop, of_one_question

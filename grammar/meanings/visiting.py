@@ -13,7 +13,8 @@ from typing import Final
 import msgspec
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, NotUnderstood, Steps, Thing, Where
+from grammar.discourse import Discourse, Steps, Thing, Where
+from grammar.doubts import NotUnderstood
 from grammar.meanings.alternatives import itself
 from grammar.meanings.finding import meet, speak_to
 from grammar.meanings.leading import lead

@@ -15,9 +15,10 @@ import msgspec
 from grammar.chart import Node
 from grammar.discourse import ANYONE, START, Discourse, Steps, Thing
 from grammar.meanings.asking import asked, remember_answer
+from grammar.meanings.descriptions import described
 from grammar.meanings.finding import go
-from grammar.meanings.nouns import by_furniture, described, known_by_name
 from grammar.meanings.options import options_of
+from grammar.meanings.persons import by_furniture, known_by_name
 from grammar.meanings.places import kind_places, only_taken_apart
 from grammar.meanings.registry import meaning
 from grammar.meanings.searches import search_of

@@ -10,12 +10,13 @@ import msgspec
 from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.inference import takes_time
-from grammar.meanings.branches import ABOUT_ANSWERS, claim_of, if_, meet_there
+from grammar.meanings.branches import ABOUT_ANSWERS, if_
+from grammar.meanings.claims import claim_of, meet_there
 from grammar.meanings.conditions import condition_of, negated
 from grammar.meanings.deliveries import inside
 from grammar.meanings.finding import speak_to
 from grammar.meanings.news import Told, go_back, in_round
-from grammar.meanings.nouns import is_me
+from grammar.meanings.persons import is_me
 from grammar.meanings.polls import told_as_asked
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import known_words

@@ -6,7 +6,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, Meeting, NotUnderstood, Steps, Thing, Where
+from grammar.discourse import Discourse, Meeting, Steps, Thing, Where
+from grammar.doubts import NotUnderstood
 from grammar.meanings.deliveries import Delivery, delivered_last, taken_back
 from grammar.meanings.finding import look_for
 from grammar.meanings.registry import meaning

@@ -11,7 +11,8 @@ import msgspec
 
 from grammar.language import load_language
 from grammar.readings import Read
-from grammar.understand import Understanding, understand
+from grammar.understand import understand
+from grammar.understanding import Understanding
 from nl2robot.commands.options import add_language, add_world, names_of, words
 from nl2robot.errors import ExitStatus
 from nl2robot.knowledge import Knowledge

@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 import yaml
 
-from grammar.understand import Context, understand
+from grammar.understand import understand
+from grammar.understanding import Context
 from nl2robot.knowledge import Knowledge
 from sim.world import load_world
 

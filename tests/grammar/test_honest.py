@@ -18,7 +18,8 @@ from grammar.language import languages, load_language
 from grammar.lexicon import Lexicon, Name
 from grammar.program import write_program
 from grammar.sampler import random_sentence
-from grammar.understand import Context, Reader, understand
+from grammar.understand import Reader, understand
+from grammar.understanding import Context
 from tests.grammar.hospitals import hospital
 from tests.grammar.ward import WARD, program
 

@@ -15,7 +15,8 @@ from grammar.language import languages, load_language
 from grammar.plan import Ask, Call, Node, Recall
 from grammar.program import write_program
 from grammar.tidy import nodes
-from grammar.understand import Context, Understanding, understand
+from grammar.understand import understand
+from grammar.understanding import Context, Understanding
 from robot_api.methods import METHODS
 from tests.grammar.hospitals import hospital
 from tests.grammar.ward import WARD, program, same

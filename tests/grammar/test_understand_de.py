@@ -12,7 +12,8 @@ from grammar.explain import explain
 from grammar.language import load_language
 from grammar.naming import naming
 from grammar.program import write_program
-from grammar.understand import Context, Understanding, understand
+from grammar.understand import understand
+from grammar.understanding import Context, Understanding
 from nl2robot.knowledge import Knowledge
 from sim.world import load_world
 from tests.grammar.ward import program, same

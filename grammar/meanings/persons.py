@@ -1,0 +1,239 @@
+"""Who is meant: by name, kind, pronoun, or as a group."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from grammar.chart import Leaf, Node
+from grammar.discourse import ANYONE, Discourse, Thing, Where
+from grammar.doubts import NotUnderstood
+from grammar.meanings.descriptions import described
+from grammar.meanings.places import (
+    listed,
+    nearest,
+    owner_of,
+    sought,
+)
+from grammar.meanings.registry import meaning
+from grammar.plan import Ask, Items, Text
+from grammar.wordforms import singular
+
+
+@meaning("person_name")
+def person_name(d: Discourse, node: Node) -> Thing:
+    leaf = node.parts["person"]
+    assert isinstance(leaf, Leaf)
+    name = d.one_of(leaf).name
+    d.named.append(name)
+    d.person = d.last_named = Thing(Text(name), known=True, person=True)  # "Alice in her office"
+    found = replace(described(d, name, node), value=Text(name), known=True, person=True)
+    d.person, d.thing_last = found, False
+    return found
+
+
+@meaning("person_unknown")
+def person_unknown(d: Discourse, node: Node) -> Thing:
+    part = node.parts["stranger"]
+    raise unknown_person(d, d.words(part.start, part.end), node)
+
+
+def unknown_person(d: Discourse, words: str, node: Node) -> NotUnderstood:
+    known = nearest(words, d.lexicon.people)
+    message = d.language.phrase("unknown_person", name=words)
+    span = (node.start, node.end)
+    return NotUnderstood(message, known, span if known else (0, 0), gap=span)
+
+
+@meaning("person_kind")
+def person_kind(d: Discourse, node: Node) -> Thing:
+    """ "the visitor waving in the lobby", "a nurse", "this gentleman"."""
+    kind = str(d.get(node, "kind_of_person", ANYONE))
+    found = replace(
+        by_furniture(d, described(d, kind, node)),
+        person=True,
+        here=bool(node.production.fixed.get("here")),
+        plural=bool(node.production.fixed.get("plural")) or kind_in_plural(d, node),
+        every=bool(node.production.fixed.get("plural")),
+        noun=kind,
+    )
+    for each in d.lexicon.people:  # "the person named Alice" is Alice
+        if found.text == f"{kind} named {each.name}":
+            found = replace(found, value=Text(each.name), known=True)
+    d.person, d.thing_last = found, False
+    return found
+
+
+def kind_in_plural(d: Discourse, node: Node) -> bool:
+    """ "the visitors", not "the visitor"."""
+    part = node.parts.get("kind_of_person")
+    if not isinstance(part, Leaf):
+        return False
+    said = " ".join(d.norms(part.start, part.end))
+    return singular(said, d.language) != said
+
+
+def by_furniture(d: Discourse, person: Thing) -> Thing:
+    """A person told by the furniture they are at: "woman next to the door"."""
+    if person.furniture is None or person.furniture == d.at_furniture:
+        return person
+    if person.preposition:
+        return replace(person, value=sought(d, person), furniture=None)
+    at = d.language.phrase("at_furniture", furniture=person.furniture)
+    return replace(person, value=Text(f"{person.text} {at}"), furniture=None)
+
+
+@meaning("person_pronoun")
+def person_pronoun(d: Discourse, node: Node) -> Thing:
+    """ "him", "her", "them": whose place this is, the person spoken of last, or whoever is here."""
+    host = host_here(d, node)
+    if host is not None:
+        d.called_so(host, node.start, node.end)
+        d.named.append(host.text)
+        d.person = host
+        return host
+    if d.person is not None and d.person.group is not None and d.last_named is not None:
+        several = d.language.speech.get("things_too", ())
+        if not set(d.norms(node.start, node.end)) & set(several):
+            return d.last_named  # "him", after "Alice and Bob ... tell Dr Weber"
+    everybody = d.person is not None and d.person.every and d.person.group is not None
+    if everybody and not d.is_plural(node):
+        # "ask every visitor ... and send him away": each in his turn
+        raise NotUnderstood(d.language.phrase("one_person"))
+    if d.person is not None and not d.may_be(d.person, node.start, node.end):
+        # "ask Bob if he is free; if so, tell Alice, if not, tell her ..."
+        other = d.one_called(node.start, node.end)
+        if other is not None:
+            return replace(other, here=d.with_person == other.value)
+    if d.person is not None:
+        d.called_so(d.person, node.start, node.end)
+        met = d.person.here or d.with_person == d.person.value
+        elsewhere = d.person.place is not None and not met
+        return replace(d.person, here=not elsewhere and (met or not d.person.known))
+    owner = owner_of(d)
+    if owner is not None:
+        d.named.append(owner.value)
+        host = Thing(owner, known=True, person=True, here=True)
+        d.called_so(host, node.start, node.end)
+        return host
+    if d.last_named is not None and d.with_person is None and not d.is_plural(node):
+        return d.last_named  # somebody named in the other branch
+    return Thing(d.with_person or Text(ANYONE), person=True, here=True)
+
+
+def host_here(d: Discourse, node: Node) -> Thing | None:
+    """Whoever's place the robot was sent to, if nobody was spoken of since: "tell Alice that ...
+    Then go to Bob's office and ask him ..."."""
+    owner = owner_of(d) if d.at is not None and d.place == d.at else None
+    before = d.person
+    if owner is None or before is None or d.is_plural(node):
+        return None
+    host = Thing(owner, known=True, person=True, here=True)
+    said_to_be_here = before.place == d.at and not before.here
+    left = not before.known and d.with_person is None  # a visitor who was left behind
+    nearer = before is d.person_on_arrival and not said_to_be_here and before.value != owner
+    if not (left or nearer):
+        return None
+    return host if d.may_be(host, node.start, node.end) else None
+
+
+@meaning("person_group")
+def person_group(d: Discourse, node: Node) -> Thing:
+    """ "Alice, Bob and Carol"."""
+    from grammar.meanings.finding import together
+
+    d.person = together(listed(d, node))
+    d.group = d.person.group
+    return d.person
+
+
+@meaning("person_either")
+def person_either(d: Discourse, node: Node) -> list[Thing] | Thing:
+    """ "Alice or Bob": one of them; for a condition, both as a group."""
+    from grammar.meanings.finding import together
+
+    people = listed(d, node)
+    return people if d.taking_apart else together(people)
+
+
+def known_by_name(d: Discourse, found: Thing, kind: str) -> tuple[Text, ...]:
+    """All people of a kind, if the world knows them by name and nothing tells which are meant."""
+    here = found.place is not None or d.at is not None
+    if found.text != kind or here or kind in ("visitor", "patient"):
+        return ()
+    return tuple(Text(each.name) for each in d.lexicon.people if each.kind == kind)
+
+
+@meaning("person_group_kind")
+def person_group_kind(d: Discourse, node: Node) -> Thing:
+    """ "all nurses": those whom the world knows by name; of others, whoever is there."""
+    kind = str(d.get(node, "kind_of_person", ANYONE))
+    found = replace(by_furniture(d, described(d, kind, node)), person=True, plural=True)
+    but: Thing | None = d.get(node, "but")
+    named = known_by_name(d, found, kind)
+    if named:
+        left_out = but.group.items if but and isinstance(but.group, Items) else (but and but.value,)
+        d.group = Items(tuple(name for name in named if name not in left_out))
+        return replace(found, known=True, group=d.group)
+    if but is not None:
+        if found.text != ANYONE:
+            raise NotUnderstood(d.language.phrase("but_whom"))
+        found = replace(found, but=but.group or Items((but.value,)))
+    d.group = Ask("people")
+    d.person, d.thing_last = found, False
+    return replace(found, group=d.group, every=True)
+
+
+@meaning("person_count")
+def person_count(d: Discourse, node: Node) -> Thing:
+    """ "three visitors": one after the other, whoever they are."""
+    kind = str(d.get(node, "kind_of_person", ANYONE))
+    found = replace(described(d, kind, node), person=True, plural=True)
+    spot: Where | None = d.get(node, "from")
+    found = found if spot is None else replace(found, place=spot.place)
+    number = int(d.get(node, "count"))
+    named = known_by_name(d, found, kind)
+    if d.tokens[node.start].norm in d.language.speech.get("definite", ()) and len(named) == number:
+        d.group = Items(named)  # "the two doctors", where the world knows two
+        return replace(found, known=True, group=d.group)
+    found = replace(found, count=number)
+    d.person, d.thing_last = replace(found, here=True, plural=False), False
+    return found
+
+
+@meaning("person_coming")
+def person_coming(d: Discourse, node: Node) -> Thing:
+    """ "every visitor who comes in": one after the other, without end."""
+    kind = str(d.get(node, "kind_of_person", ANYONE))
+    found = Thing(Text(kind), person=True, here=True)
+    d.person, d.thing_last = found, False
+    spot: Where | None = d.get(node, "from")
+    return replace(found, coming=True, place=None if spot is None else spot.place)
+
+
+@meaning("person_first")
+def person_first(d: Discourse, node: Node) -> Thing:
+    """ "the first visitor you meet": whoever comes first; on guard, each of them."""
+    if d.on_duty == "guard" and node.production.fixed.get("whoever"):
+        return person_coming(d, node)
+    kind = str(d.get(node, "kind_of_person", ANYONE))
+    found = replace(by_furniture(d, described(d, kind, node)), person=True, first=True)
+    d.person, d.thing_last = replace(found, first=False, place=None, here=True), False
+    return found
+
+
+@meaning("person_group_them")
+def person_group_them(d: Discourse, node: Node) -> Thing:
+    """ "both of them", "each of them"."""
+    if d.group is None:
+        found = d.person or Thing(Text(ANYONE), person=True)
+        return replace(found, here=True, plural=True, every=True)
+    return Thing(Text(ANYONE), person=True, plural=True, known=True, group=d.group)
+
+
+@meaning("person_me")
+def person_me(d: Discourse, node: Node) -> Thing:
+    return Thing(Text(ANYONE), person=True, here=True, me=True)
+
+
+def is_me(person: Thing | None) -> bool:
+    return person is not None and person.me

@@ -1,0 +1,123 @@
+"""What is done in several places, or in the first of them that is so."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from grammar.chart import Node
+from grammar.discourse import (
+    Discourse,
+    Steps,
+    Thing,
+)
+from grammar.meanings.best_places import Best, Such, first_such, survey
+from grammar.meanings.finding import found, look_for, not_found
+from grammar.meanings.one_round import One, guarded, round_of_steps
+from grammar.meanings.searches import named_places, search_in, searched
+from grammar.meanings.several_things import (
+    another_one,
+)
+from grammar.plan import (
+    Ask,
+    Call,
+    Choice,
+    End,
+    ForEach,
+    Holds,
+    If,
+    Not,
+    Recall,
+    Remember,
+    Step,
+    Text,
+    Truth,
+    Value,
+)
+
+
+def over_places(d: Discourse, node: Node, places: Value, one: One) -> Steps:
+    place = Recall(d.variable("place"))
+    d.at = None
+    d.loops[place.name] = places
+    body = round_of_steps(d, lambda: one(place))
+    d.at = d.with_person = None
+    return until_found(d, place, places, body) or [
+        ForEach(place.name, places, tuple(another_one(d, body)))
+    ]
+
+
+def until_found(d: Discourse, place: Recall, places: Value, body: Steps) -> Steps:
+    """ "search every ward for the thermometer": until it is found; nothing if that is not what is
+    done at each place."""
+    first = body[0] if len(body) == 1 else None
+    search = searched(first)
+    if search is None or not isinstance(first, If):
+        return []
+    known = named_places(d, places)
+    thing = d.thing if d.thing_last else d.person
+    if known is not None and thing is not None:
+        d.thing, d.person = (
+            replace(each, place=None) if each else each for each in (d.thing, d.person)
+        )
+        return search_in(d, replace(thing, place=None), known)
+    missing = first.then
+    found_it = Recall(d.variable("found"))
+    success = (Remember(found_it.name, Truth(True)), End())
+    return [
+        Remember(found_it.name, Truth(False)),
+        ForEach(place.name, places, (If(search, success),)),
+        If(Not(Holds(found_it)), missing),
+    ]
+
+
+def over_either_place(d: Discourse, node: Node, places: list[Value], one: One) -> Steps:
+    """ "look for it in the lobby or the kitchen": in the one, then in the other."""
+    looked: Value | None = None
+    for place in places:
+        d.at = None
+        search = d.sequence(lambda p=place: d.done.extend(one(p)))  # type: ignore[misc]
+        first = search[0] if len(search) == 1 else None
+        if not (isinstance(first, Call) and first.method == "find"):
+            named_places = tuple(each.value for each in places if isinstance(each, Text))
+            raise d.which(node.start, node.end, named_places)
+        looked = first.arguments["thing"]
+    assert looked is not None
+    return search_in(d, Thing(looked), places)
+
+
+def over_any_place(d: Discourse, node: Node, places: Value, one: One) -> Steps:
+    """ "any office": one of them, no matter which."""
+    if isinstance(places, Text):
+        return one(places)
+    place = Recall(d.variable("place"))
+    d.place = place
+    return [Remember(place.name, Choice(places)), *one(place)]
+
+
+def over_place_best(d: Discourse, node: Node, best: Best, one: One) -> Steps:
+    """ "the office with the fewest people": gone round for first."""
+    going, place = survey(d, best)
+    d.place = place
+    return [*going, *one(place)]
+
+
+def over_place_such(d: Discourse, node: Node, such: Such, one: One) -> Steps:
+    """ "an empty office": the first that is; if none is, that is said."""
+    going, place, none = first_such(d, such)
+    d.place = place
+    return [*going, If(none, (d.say("no_such_places"),), tuple(guarded(d, one(place))))]
+
+
+def over_place_where(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
+    """ "where Bob is": he is looked for, and that is the place."""
+    searching = look_for(d, thing)
+    place = Recall(d.variable("place"))
+    d.at = d.place = place
+    outer, d.at_people = d.at_people, True  # what is brought there need not be there
+    body = one(place)
+    d.at_people = outer
+    if body == [Call("goto", {"place": place})]:
+        return searching
+    here: Step = Remember(place.name, Ask("location"))
+    there = Holds(Ask("find", found(d, thing).arguments))
+    return [If(there, (here, *guarded(d, body)), (not_found(d, thing),))]

@@ -1,0 +1,209 @@
+"""What is done with several things: fetched one by one, for a hand holds one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Final
+
+from grammar.chart import Node
+from grammar.discourse import START, Discourse, Steps, Thing
+from grammar.doubts import Ambiguous, NotUnderstood
+from grammar.meanings.finding import found, named, not_found
+from grammar.meanings.one_round import One, round_of_steps
+from grammar.naming import place_called
+from grammar.plan import (
+    Ask,
+    Both,
+    Call,
+    Compare,
+    Condition,
+    End,
+    ForEach,
+    Holds,
+    If,
+    Increase,
+    Items,
+    Not,
+    Number,
+    Recall,
+    Remember,
+    Repeat,
+    Step,
+    Value,
+    While,
+)
+
+HANDED: Final = frozenset({"bring", "grab", "put"})
+"""Commands that change where things are."""
+
+
+def over_things(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
+    """ "two cups", "all the cups in the kitchen": one after the other, for the hand holds one."""
+    if node.means != "thing":
+        take_back(d, thing)
+    if thing.place is None and d.taken_from is not None:
+        thing = replace(thing, place=d.taken_from.place, furniture=d.taken_from.furniture)
+    if thing.place is None and d.at is not None:
+        thing = replace(thing, place=d.at)
+    single = replace(thing, count=None, every=False, plural=False, pronoun=False)
+    if thing.count is None:  # "them" are all of them
+        thing = replace(thing, every=True)
+
+    d.at = None if thing.count is not None else thing.place
+    d.thing, d.thing_last = single, True
+    body = round_of_steps(d, lambda: one(single if d.at is None else replace(single, here=True)))
+    if is_grab(body):  # "collect the cups": where to is said next
+        d.collected, d.thing, d.thing_last = thing, thing, True
+        return []
+    d.collected = None
+    if moves_nothing(body):
+        raise NotUnderstood(d.language.phrase("one_thing"))
+    steps = rounds(d, node, thing, single, body)
+    if d.delivered is not None:
+        d.delivered_in = steps[-1]
+    d.thing, d.thing_last = thing, True
+    return steps
+
+
+def rounds(d: Discourse, node: Node, thing: Thing, single: Thing, body: Steps) -> Steps:
+    """The loop over several things: as many as were named, or all that are there."""
+    target = put_where(body)
+    if thing.place is not None or target is None:
+        if thing.count is not None:
+            return [Repeat(Number(thing.count), tuple(body))]
+        if thing.place is not None:
+            return [While(Holds(Ask("find", found(d, single).arguments)), tuple(body))]
+        if not (isinstance(body[-1], Call) and body[-1].method == "give"):
+            raise where_from(d, node, thing)
+    source = Recall(d.variable("source"))
+    search = Holds(Ask("find", {**found(d, single).arguments, "place": source}))
+    if target is None:  # what is handed over is not found again
+        return [ForEach(source.name, Ask("places"), (While(search, tuple(without_find(body))),))]
+    body = without_find(body)
+    other = is_other(d, source, target)
+    if thing.count is None:
+        return [ForEach(source.name, Ask("places"), (While(Both((other, search)), tuple(body)),))]
+    brought = Recall(d.variable("brought"))
+    few = Compare(brought, "<", Number(thing.count))
+    loop = While(Both((few, other, search)), (*body, Increase(brought.name)))
+    only = d.say("found_only", number=brought, things=named(d, single))
+    return [
+        Remember(brought.name, Number(0)),
+        ForEach(source.name, Ask("places"), (loop,)),
+        If(few, (only,)),
+    ]
+
+
+def without_find(body: Steps) -> Steps:
+    """A round whose loop has already found the thing."""
+    return [step for step in body if not (isinstance(step, Call) and step.method == "find")]
+
+
+def another_one(d: Discourse, body: Steps) -> Steps:
+    """The steps of a round that brings one to a place: from any place that is none of those."""
+    target = put_where(body)
+    search = next((at for at, step in enumerate(body) if is_search(step)), None)
+    if target is None or search is None:
+        return body
+    looking = body[search]
+    assert isinstance(looking, Call)
+    source = Recall(d.variable("source"))
+    there = Holds(Ask("find", {**looking.arguments, "place": source}))
+    missing = body[search + 1 :]
+    place = If(Both((is_other(d, source, target), there)), (*missing, End()))
+    return [*body[:search], ForEach(source.name, Ask("places"), (place,))]
+
+
+def is_search(step: Step) -> bool:
+    """Whether a step looks for a thing anywhere."""
+    return isinstance(step, Call) and step.method == "find" and "place" not in step.arguments
+
+
+def is_other(d: Discourse, source: Recall, target: Value) -> Condition:
+    """Whether a place is none of those that something is brought to."""
+    targets = d.loops.get(target.name) if isinstance(target, Recall) else None
+    if targets is None:
+        return Compare(source, "!=", target)
+    return Not(Compare(source, "in", targets))
+
+
+def put_where(body: Steps) -> Value | None:
+    """The place that a thing is brought to and put down; None for one that is handed over."""
+    going = [step for step in body if isinstance(step, Call) and step.method == "goto"]
+    last = body[-1] if body else None
+    if not (going and isinstance(last, Call) and last.method == "put"):
+        return None
+    target = going[-1].arguments.get("place")
+    return None if target == Recall(START) else target
+
+
+def is_grab(body: Steps) -> bool:
+    """Whether a round leaves the thing in the hand."""
+    return bool(body) and isinstance(body[-1], Call) and body[-1].method == "grab"
+
+
+def moves_nothing(body: Steps) -> bool:
+    """Whether a round takes up what it has just put down."""
+    return not any(isinstance(step, Call) and step.method in ("find", "goto") for step in body)
+
+
+def take_back(d: Discourse, thing: Thing) -> None:
+    """ "collect the cups in the ward and take them to the kitchen": straight there, and not first
+    to who says so."""
+    if d.done and d.done[-1] is d.delivered_in:
+        d.done.pop()
+        d.delivered_in = d.delivered = None
+    if d.listed_last and d.done[-len(d.listed_last) :] == d.listed_last:
+        del d.done[-len(d.listed_last) :]  # "find three cups in the ward and bring them here"
+        d.listed_last = []
+
+
+def where_from(d: Discourse, node: Node, thing: Thing) -> Ambiguous:
+    """The question where all the cups are that are to be brought."""
+    where = d.language.speech["from_place"]
+    return Ambiguous(
+        d.language.phrase("from_where", things=d.words(node.start, node.end)),
+        node.end,
+        node.end,
+        tuple(
+            where.format(place=place_called(place.name, d.lexicon, d.language))
+            for place in d.lexicon.places
+        ),
+    )
+
+
+def over_thing_list(d: Discourse, node: Node, things: list[Thing], one: One) -> Steps:
+    """ "the cup and the book"."""
+    plain = all(thing.place is None and not thing.furniture for thing in things)
+    if not plain:
+        return [step for thing in things for step in round_of_steps(d, lambda t=thing: one(t))]  # type: ignore[misc]
+    each = Recall(d.variable("thing"))
+    d.at = None
+    body = round_of_steps(d, lambda: one(Thing(each)))
+    d.at = d.with_person = None
+    return [ForEach(each.name, Items(tuple(thing.value for thing in things)), tuple(body))]
+
+
+def over_either_thing(d: Discourse, node: Node, things: list[Thing], one: One) -> Steps:
+    """ "the red cup, or if there is none the blue one": the first that is found."""
+    return first_found(d, things, one)
+
+
+def first_found(d: Discourse, things: list[Thing], one: One) -> Steps:
+    """Look for one after the other; the steps are those for the first that is found."""
+    before = (d.at, d.holding, d.with_person, frozenset(d.variables))
+    otherwise: Steps = [not_found(d, things[-1])]
+    for thing in reversed(things):
+        d.at, d.holding, d.with_person = before[:3]
+        d.variables.intersection_update(before[3])  # the same names in either branch
+        d.found_already = True
+        body = round_of_steps(d, lambda t=thing: one(replace(t, here=True)))  # type: ignore[misc]
+        d.found_already = False
+        if not body:
+            otherwise = [If(Not(Holds(Ask("find", found(d, thing).arguments))), tuple(otherwise))]
+            continue
+        otherwise = [
+            If(Holds(Ask("find", found(d, thing).arguments)), tuple(body), tuple(otherwise))
+        ]
+    d.at = d.with_person = None
+    return otherwise

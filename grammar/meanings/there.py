@@ -1,0 +1,229 @@
+"""Conditions on who and what is there: seen, found, counted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from grammar.chart import Node
+from grammar.discourse import ANYONE, START, Discourse, Meeting, Thing, Where
+from grammar.doubts import NotUnderstood
+from grammar.meanings.conditions import negated
+from grammar.meanings.deliveries import delivered_last, own_place
+from grammar.meanings.finding import noun_of, whether_found
+from grammar.meanings.news import in_round
+from grammar.meanings.places import sought
+from grammar.meanings.registry import meaning
+from grammar.meanings.searches import just_awaited, just_looked_for
+from grammar.plan import (
+    Ask,
+    Both,
+    Call,
+    Compare,
+    Condition,
+    Either,
+    Holds,
+    Items,
+    Not,
+    Number,
+    Recall,
+    Remember,
+    Text,
+    Value,
+)
+
+
+@meaning("is_seen")
+def is_seen(d: Discourse, node: Node) -> Condition:
+    """ "you see a cup", "Alice is there", "nobody is in the lobby", "a visitor is waving"."""
+    return looked_for(d, node, search=False)
+
+
+@meaning("is_found")
+def is_found(d: Discourse, node: Node) -> Condition:
+    """ "you find a cup": the robot drives about to look for it, but not on a round."""
+    return looked_for(d, node, search=not in_round(d))
+
+
+def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
+    thing = noun_of(d, node)
+    if thing.every and not thing.person:  # "if all the beds are taken": one is seen or not
+        words = d.words(node.start, node.end)
+        gap = (node.start, node.end)
+        raise NotUnderstood(d.language.phrase("cannot_check", what=words), gap=gap)
+    said_there = d.tokens[node.end - 1].norm in d.language.speech.get("there", ())
+    if said_there and thing.place is None and d.at == Recall(START):
+        there = d.at_pick_up if d.place == d.at else d.place
+        thing = replace(thing, place=there)  # the robot has come back from there meanwhile
+    if thing.person and thing.count is not None:  # "five people are there"
+        many = _so_many(d, thing, thing.count, ">=")
+        return negated(many) if node.production.fixed.get("no") else many
+    brought = delivered_last(d)
+    if said_there and brought is not None and thing.person and thing.place is None:
+        thing = replace(thing, place=own_place(d, thing))
+    if isinstance(thing.group, Items):
+        result = _each_of_them(d, node, thing.group.items, search)
+    else:
+        result = _is_doing(d, node, thing) or is_there(d, thing, search)
+    if search and d.met is not None:
+        d.met = replace(d.met, sought=True)
+    if node.production.fixed.get("no"):
+        d.met = replace(d.met, holds=False) if d.met is not None else None
+        result = Not(result)
+        if "state" in node.parts:  # "the cup is not clean": there is one, but none that is so
+            plain = {name: part for name, part in node.parts.items() if name != "state"}
+            result = Both((is_there(d, noun_of(d, replace(node, parts=plain)), search), result))
+    return result
+
+
+def _is_doing(d: Discourse, node: Node, thing: Thing) -> Condition | None:
+    """Whether somebody is seen who does something: "visitor waving"; who goes by a name is looked
+    for first."""
+    doing = node.parts.get("doing")
+    if doing is None:
+        return None
+    so = Text(f"{thing.text} {d.described_by(doing)}")
+    if not thing.known:
+        return is_there(d, replace(thing, value=so))
+    seen = Holds(Ask("sees", {"thing": so}))
+    if thing.here or d.with_person == thing.value:
+        return seen
+    there = is_there(d, thing, search=True)
+    d.met = None
+    return Both((there, seen))
+
+
+def is_there(d: Discourse, thing: Thing, search: bool = False) -> Condition:
+    """Whether somebody or something is seen here, or found where it is said to be."""
+    if thing.person and thing.text == ANYONE and thing.place is None:
+        agreed = just_agreed(d)
+        if agreed is not None:
+            return agreed
+    known = just_looked_for(d, thing) or just_awaited(d, thing) or just_checked(d, thing)
+    if known is None:
+        if search and thing.place is None and isinstance(d.at, Text):
+            thing = replace(thing, place=d.at)  # "go to the kitchen and if you find a cup, ..."
+        elsewhere = thing.place is not None and thing.place != d.at
+        if search or elsewhere:
+            known = whether_found(d, thing)
+        else:
+            known = Holds(Ask("sees", {"thing": sought(d, thing)}))
+    if thing.person:
+        d.person, d.thing_last = thing, False
+    d.met = Meeting(thing)
+    return known
+
+
+def just_agreed(d: Discourse, no: bool = False) -> Condition | None:
+    """Whether the search that the step before is has found somebody who says yes."""
+    from grammar.meanings.volunteers import just_found
+
+    known = just_found(d)
+    if known is None:
+        return None
+    condition, person = known
+    d.met = Meeting(person, holds=not no)
+    return negated(condition) if no else condition
+
+
+def just_checked(d: Discourse, thing: Thing) -> Condition | None:
+    """The check before, if it was for this: "see if there is a cup. If there is a cup, ..."."""
+    from grammar.meanings.reports import Report, checked
+
+    report: Report | None = d.report
+    about = report.thing if report is not None else None
+    if about is None or thing.place not in (None, about.place):
+        return None
+    nobody = about.person and thing.person and thing.text == ANYONE  # of one who was looked for
+    if about.value != thing.value and not nobody:
+        return None
+    return seen_there(d) or (Holds(known) if (known := checked(d)) is not None else None)
+
+
+def seen_there(d: Discourse) -> Condition | None:
+    """What was checked in a place that was gone to only for that, as a search in that place."""
+    from grammar.meanings.reports import Report, checked
+
+    report: Report | None = d.report
+    about = report.thing if report is not None else None
+    if about is None or about.place is None or checked(d) is None:
+        return None
+    first = Call("goto", {"place": about.place})
+    last = d.done[-1] if d.done else None
+    if len(d.done) < 2 or d.done[-2] != first or not isinstance(last, Remember):
+        return None
+    if last.value != Ask("sees", {"thing": sought(d, about)}):
+        return None
+    del d.done[-2:]
+    d.report = None
+    return Holds(Ask("find", {"thing": sought(d, about), "place": about.place}))
+
+
+def _each_of_them(d: Discourse, node: Node, people: tuple[Value, ...], search: bool) -> Condition:
+    """ "Alice and Bob are in their offices", "Alice or Bob is there"."""
+    found: list[Condition] = []
+    for value in people:
+        person = Thing(value, known=True, person=True)
+        d.person = person
+        spot: Where | None = d.get(node, "from")
+        if spot is not None:
+            person = replace(person, place=spot.place, furniture=spot.furniture)
+        found.append(is_there(d, person, search))
+    d.met = None
+    part = node.parts.get("person_ref") or node.parts["thing"]
+    either = node.production.fixed.get("any") or set(d.language.speech.get("or", ())) & set(
+        d.norms(part.start, part.end)
+    )
+    if either and d.person is not None and d.person.person:  # whoever of them it is
+        d.person = Thing(Text(ANYONE), person=True, plural=True, here=True)
+    return Either(tuple(found)) if either else Both(tuple(found))
+
+
+@meaning("place_empty")
+def place_empty(d: Discourse, node: Node) -> Condition:
+    """ "the lobby is empty": nobody is there."""
+    anybody = Thing(Text(ANYONE), d.get(node, "place"), person=True)
+    there = is_there(d, anybody)
+    d.met = Meeting(anybody, holds=bool(node.production.fixed.get("occupied")))
+    return there if node.production.fixed.get("occupied") else Not(there)
+
+
+@meaning("counted")
+def counted(d: Discourse, node: Node) -> Condition:
+    """ "there are more than three people"."""
+    thing = counted_thing(d, node)
+    spot: Where | None = d.get(node, "where")
+    if spot is not None:
+        thing = replace(thing, place=spot.place, furniture=spot.furniture)
+    operator = d.get(node, "operator", "==")
+    if operator in ("<", "<=") and not thing.person:  # "..., bring one": for where they are short
+        d.lacking = replace(thing, place=thing.place or d.at)
+    return _so_many(d, thing, int(d.get(node, "count")), operator)
+
+
+def _so_many(d: Discourse, thing: Thing, number: int, operator: str) -> Compare:
+    """Whether there are so many of somebody or something, where the robot has to go for that."""
+    if thing.place is not None and thing.place != d.at:
+        d.went(thing.place)
+        d.pending.append(Call("goto", {"place": thing.place}))
+    if thing.person:
+        thing = replace(thing, count=None)
+        d.person = replace(thing, plural=True, place=None, here=True)
+        d.last_counted = d.person
+    return Compare(Ask("count", {"thing": sought(d, thing)}), operator, Number(number))
+
+
+def counted_thing(d: Discourse, node: Node) -> Thing:
+    """What a condition counts: what was counted before, where it does not say."""
+    if "thing" in node.parts or "person_ref" in node.parts:
+        return noun_of(d, node)
+    if d.last_counted is None:
+        raise NotUnderstood(d.language.phrase("count_what"))
+    return d.last_counted
+
+
+@meaning("counted_between")
+def counted_between(d: Discourse, node: Node) -> Condition:
+    """ "there are between three and ten people"."""
+    count = Ask("count", {"thing": sought(d, counted_thing(d, node))})
+    least, most = (Number(int(d.get(node, each))) for each in ("least", "most"))
+    return Both((Compare(count, ">=", least), Compare(count, "<=", most)))
