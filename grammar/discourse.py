@@ -186,6 +186,10 @@ class Discourse:
     """What the last poll was to find out: "who", "many"."""
     taken_from: Where | None = None
     """Where the things of a command are taken from, if that is said of no noun phrase."""
+    said_to_be: list[Thing] = field(default_factory=list)
+    """Things that were said to be somewhere (`grammar.meanings.sources`)."""
+    fetching: Any = None
+    """The last command that takes things of which nobody has said where they are."""
     asking_one: bool = False
     """Whether a question is put to somebody by name: whether anybody has called is about others."""
     asking_each: bool = False

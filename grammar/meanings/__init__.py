@@ -42,7 +42,9 @@ import grammar.meanings.repeating
 import grammar.meanings.reports
 import grammar.meanings.requests
 import grammar.meanings.rounds
+import grammar.meanings.sharing
 import grammar.meanings.sights
+import grammar.meanings.sources
 import grammar.meanings.speaking
 import grammar.meanings.stops
 import grammar.meanings.surveys

@@ -43,6 +43,7 @@ from grammar.meanings.several_things import (
     over_thing_list,
     over_things,
 )
+from grammar.meanings.sources import keep_fetching, sourced
 from grammar.meanings.surveys import each_asked, uses_answer
 from grammar.meanings.volunteers import over_willing
 from grammar.plan import (
@@ -70,11 +71,13 @@ LIST_PARTS: Final = frozenset({"more_names", "either_names", "more_things", "eit
 TOGETHER: Final = frozenset(
     {
         "answer", "answers_reached", "ask", "ask_again", "ask_to", "find", "greet", "phrase",
-        "report", "said_with", "same_for", "say", "say_it", "say_that", "tell", "tell_joke",
+        "report", "said_with", "same_for", "say", "say_it", "say_that", "shared_with", "shares", "tell", "tell_joke",
         "tell_that", "wait_for",
     }
 )  # fmt: skip
 """Commands that know themselves what to do with several people."""
+FETCHES: Final = HANDED | {"shared_with", "shares"}
+"""Commands that take things from somewhere."""
 ALWAYS: Final = frozenset(
     {
         "each_place", "person_either", "person_said", "person_willing", "place_any", "place_best",
@@ -91,14 +94,20 @@ CLAUSES: Final = frozenset({"command", "closing", "clause", "steps", "body", "wh
 
 def distributed(d: Discourse, node: Node, make: Make) -> Steps:
     """The steps of a command, in a loop for each of its noun phrases that speak of several."""
+    again = sourced(d, node)
+    if again is not None:
+        return again
+    scene, known = d.scene(), frozenset(d.variables)
     within = setting_of(node) or node
     several = [part for part in phrases(within) if speaks_of_several(d, node, part)]
     several.sort(key=lambda part: part.production.rule == "thing")  # things change hands inside
     outer = d.taken_from
     things = any(part.production.rule == "thing" for part in several)
-    d.taken_from = d.get(node, "from") if things and "from" in node.parts else None
+    d.taken_from = d.get(node, "from") if things and "from" in node.parts else outer
     steps = over(d, several, make)
     d.taken_from = outer
+    if node.means in FETCHES:
+        keep_fetching(d, node, make, steps, scene, known)
     return steps
 
 

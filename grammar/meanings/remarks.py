@@ -19,6 +19,7 @@ from grammar.doubts import NotUnderstood
 from grammar.meanings.genders import gender_of_thing
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report
+from grammar.meanings.sources import told_where
 from grammar.meanings.speaking import sentence_form
 from grammar.plan import Ask, Call, Text, Value
 from grammar.tidy import replaced
@@ -112,6 +113,7 @@ def remark_where(d: Discourse, node: Node) -> Steps:
         if isinstance(what, Thing):  # of several, each is where it is
             d.thing, d.thing_last = replace(what, place=place, furniture=spot.furniture), True
             known_to_be(d, what.value, place)
+            told_where(d, d.thing)
     return aside(d, node)
 
 

@@ -10,6 +10,7 @@ from grammar.discourse import START, Discourse, Steps, Thing
 from grammar.doubts import Ambiguous, NotUnderstood
 from grammar.meanings.finding import found, named, not_found
 from grammar.meanings.one_round import One, round_of_steps
+from grammar.meanings.sources import where_told
 from grammar.naming import place_called
 from grammar.plan import (
     Ask,
@@ -43,8 +44,10 @@ def over_things(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
         take_back(d, thing)
     if thing.place is None and d.taken_from is not None:
         thing = replace(thing, place=d.taken_from.place, furniture=d.taken_from.furniture)
+    thing = where_told(d, thing)
     if thing.place is None and d.at is not None:
         thing = replace(thing, place=d.at)
+    at = d.at
     single = replace(thing, count=None, every=False, plural=False, pronoun=False)
     if thing.count is None:  # "them" are all of them
         thing = replace(thing, every=True)
@@ -54,6 +57,7 @@ def over_things(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
     body = round_of_steps(d, lambda: one(single if d.at is None else replace(single, here=True)))
     if is_grab(body):  # "collect the cups": where to is said next
         d.collected, d.thing, d.thing_last = thing, thing, True
+        d.at = at
         return []
     d.collected = None
     if moves_nothing(body):

@@ -26,6 +26,7 @@ from grammar.meanings.remarks import fetched_there, known_to_be
 from grammar.meanings.reports import Report, found_out
 from grammar.meanings.searches import search_of
 from grammar.meanings.sights import best_there, which_there
+from grammar.meanings.sources import told_where, where_told
 from grammar.meanings.speaking import sentence_form
 from grammar.meanings.surveys import Survey, note
 from grammar.plan import Call, ForEach, Items, Recall, Step, Text, Value
@@ -372,6 +373,7 @@ def bring_each(d: Discourse, node: Node) -> Steps:
 def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None) -> Steps:
     """Pick a thing up, go where it is to be, and put it down or hand it over."""
     scene = d.scene()
+    thing = where_told(d, thing)
     steps = _delivered(d, thing, person, spot)
     d.delivery = Delivery(thing, person, spot, tuple(steps), scene)
     return steps
@@ -456,6 +458,7 @@ def statement(d: Discourse, node: Node) -> Steps:
         fetched_there(d, thing, thing.place)
     else:
         d.thing, d.thing_last = thing, True
+        told_where(d, thing)
     said = sentence_form(d.words(node.start, node.end))
     d.report, d.report_step = Report("only", Text(said), about_here=False), None
     return []

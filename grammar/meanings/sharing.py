@@ -1,0 +1,128 @@
+"""Things that are shared out: "an apple for me and one for Bob", "two apples, one for each".
+
+A robot holds one thing, so that each share is fetched and handed over by itself. Where the first is
+taken from, the others are, too, unless something else is said; and what was to be fetched before
+("get two apples from the kitchen") is now fetched for those who get it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from grammar.chart import Leaf, Node
+from grammar.discourse import Discourse, Steps, Thing, Where
+from grammar.doubts import NotUnderstood
+from grammar.meanings.nouns import spoken_of
+from grammar.meanings.registry import meaning
+from grammar.meanings.several_things import take_back
+from grammar.meanings.sources import where_told
+from grammar.meanings.things import deliver
+from grammar.plan import Items
+
+
+@dataclass(frozen=True)
+class Share:
+    """What one of them gets."""
+
+    thing: Thing
+    person: Thing
+
+
+@meaning("one_more")
+def one_more(d: Discourse, node: Node) -> Thing:
+    """ "one", "the other one": of what was spoken of, where that is taken from."""
+    return replace(
+        spoken_of(d, node), count=None, every=False, plural=False, here=False, pronoun=False
+    )
+
+
+@meaning("several_of")
+def several_of(d: Discourse, node: Node) -> Thing:
+    """ "two apples", before it is said who gets which."""
+    thing: Thing = d.get(node, "thing")
+    return replace(thing, count=int(d.get(node, "count")))
+
+
+@meaning("share")
+def share(d: Discourse, node: Node) -> Share:
+    """ "a coffee for Alice": who gets what."""
+    return Share(d.get(node, "thing"), d.get(node, "person_ref"))
+
+
+@meaning("receivers")
+def receivers(d: Discourse, node: Node) -> list[Thing]:
+    """ "Bob and me": each gets one."""
+    named = [d.build(part) for part in node.parts.values()]
+    return [
+        person
+        for each in named
+        for person in (each if isinstance(each, list) else named_in(each))
+    ]
+
+
+def named_in(person: Thing) -> list[Thing]:
+    """Somebody, or all of those who are named together."""
+    if not isinstance(person.group, Items):
+        return [person]
+    return [Thing(name, known=True, person=True) for name in person.group.items]
+
+
+@meaning("shares")
+def shares(d: Discourse, node: Node) -> Steps:
+    """ "Alice a coffee and Bob a tea"."""
+    whole: Thing | None = d.get(node, "whole")
+    source: Where | None = d.get(node, "from")
+    begun = begun_before(d) if whole is None else whole
+    return shared_out(d, shares_in(d, node), begun, source)
+
+
+@meaning("shared_with")
+def shared_with(d: Discourse, node: Node) -> Steps:
+    """ "an apple for Bob and me", "... to both of them, one each"."""
+    begun = begun_before(d)
+    thing: Thing = d.get(node, "thing") or one_more(d, node)
+    people: list[Thing] = d.get(node, "all")
+    return shared_out(d, [Share(thing, person) for person in people], begun, None)
+
+
+def shares_in(d: Discourse, node: Node) -> list[Share]:
+    """The shares of a list, from left to right."""
+    found: list[Share] = []
+    each: Leaf | Node | None = node
+    while isinstance(each, Node):
+        found.append(d.build(each.parts["first"]))
+        each = each.parts.get("rest")
+    return found
+
+
+def begun_before(d: Discourse) -> Thing | None:
+    """Several things that were to be fetched, before it was said for whom."""
+    several = d.thing if d.thing is not None and d.thing.several else None
+    if several is not None:
+        take_back(d, several)
+        d.collected = d.holding = None
+    return several
+
+
+def shared_out(
+    d: Discourse, given: list[Share], whole: Thing | None, source: Where | None
+) -> Steps:
+    """One delivery for each share, taken from where the first one is unless it says otherwise."""
+    if whole is not None and whole.count is not None and whole.count != len(given):
+        raise NotUnderstood(
+            d.language.phrase("not_all_shared", number=whole.count, shares=len(given))
+        )
+    first = where_told(d, whole or given[0].thing)
+    source = source or d.taken_from
+    place = first.place if source is None else source.place
+    furniture = first.furniture if source is None else source.furniture
+    place = place or d.at
+    steps: Steps = []
+    for each in given:
+        thing = each.thing
+        if thing.place is None and not thing.here:
+            thing = replace(thing, place=place, furniture=thing.furniture or furniture)
+        if thing.place is None:
+            d.at = None  # nobody says that it is where the share before was brought to
+        steps += d.sequence(lambda t=thing, p=each.person: d.done.extend(deliver(d, t, p, None)))  # type: ignore[misc]
+    return steps
