@@ -219,6 +219,8 @@ class Discourse:
     """Whether a noun phrase that speaks of several is made for the loop over them."""
     found_already: bool = False
     """Whether what a command is about was looked for by the steps around it."""
+    stop: Value | None = None
+    """The place of the loop around, if it is one over places."""
     at_people: bool = False
     """Whether the robot is where it is to meet people, so that things need not be there, too."""
     loops: dict[str, Value] = field(default_factory=dict)

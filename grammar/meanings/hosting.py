@@ -7,13 +7,13 @@ from dataclasses import replace
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
+from grammar.meanings.carrying import deliver
 from grammar.meanings.driving import go_to
 from grammar.meanings.finding import meet, named, speak_to, where_sent
 from grammar.meanings.genders import means_thing
 from grammar.meanings.leading import lead
 from grammar.meanings.people import guide, led
 from grammar.meanings.registry import meaning
-from grammar.meanings.things import deliver
 from grammar.plan import Call, Text, Value
 
 

@@ -9,13 +9,13 @@ from dataclasses import replace
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
+from grammar.meanings.carrying import deliver
 from grammar.meanings.news import go_back
 from grammar.meanings.places import only_taken_apart
 from grammar.meanings.questions import ask_one
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import tell_speaker
 from grammar.meanings.surveys import Survey, each_asked
-from grammar.meanings.things import deliver
 from grammar.plan import Call, Recall, Repeat, Text, Value
 from grammar.tidy import mentions, nodes
 

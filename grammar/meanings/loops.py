@@ -341,9 +341,10 @@ def each_place(d: Discourse, items: Value, steps: Leaf | Node | None, goes: bool
     d.at = here if goes else None
     body: Steps = []
     if steps is not None:
-        outer, d.in_loop = d.in_loop, True
+        outer = d.in_loop, d.stop
+        d.in_loop, d.stop = True, here
         body = d.build(steps)
-        d.in_loop = outer
+        d.in_loop, d.stop = outer
     first = body[0] if body else None
     moves = isinstance(first, Call) and first.method in ("goto", "guide", "find")
     from grammar.meanings.several_places import until_found

@@ -63,7 +63,7 @@ def news(d: Discourse, node: Node) -> Steps:
     if d.thing is not None and d.delivered == d.thing.value and _speaks_of_it(d, node):
         return []  # "get the key from Alice and come back with it": it is here by now
     if d.asked_for is not None and d.thing is not None and _speaks_of_it(d, node):
-        from grammar.meanings.things import deliver
+        from grammar.meanings.carrying import deliver
 
         return deliver(d, replace(d.thing, pronoun=True), person, None)
     if search is not None:

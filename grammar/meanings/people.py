@@ -8,6 +8,7 @@ from typing import Final
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where, as_value
 from grammar.doubts import Ambiguous, NotUnderstood
+from grammar.meanings.carrying import deliver
 from grammar.meanings.conditions import condition_of
 from grammar.meanings.finding import look_for, meet, named, speak_to, where_sent
 from grammar.meanings.genders import means_thing
@@ -16,7 +17,7 @@ from grammar.meanings.persons import is_me
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.speaking import spoken
-from grammar.meanings.things import deliver, given_last
+from grammar.meanings.things import given_last
 from grammar.meanings.waiting import awaited
 from grammar.naming import place_called
 from grammar.plan import Call, Forever, Items, Recall, Text, Value

@@ -151,6 +151,10 @@ def before_fetching(d: Discourse, node: Node) -> Value:
         if isinstance(step, Call) and step.method == "goto" and "place" in step.arguments
     ]
     places = [place for place in sent if place not in (d.at_pick_up, Recall(START))]
+    if (
+        not places and d.stop is not None
+    ):  # "for each lab, get a cup in the kitchen and put it there"
+        return d.stop
     if not places:
         raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
     return places[-1]

@@ -71,8 +71,8 @@ LIST_PARTS: Final = frozenset({"more_names", "either_names", "more_things", "eit
 TOGETHER: Final = frozenset(
     {
         "answer", "answers_reached", "ask", "ask_again", "ask_to", "find", "greet", "phrase",
-        "report", "said_with", "same_for", "say", "say_it", "say_that", "shared_with", "shares", "tell", "tell_joke",
-        "tell_that", "wait_for",
+        "report", "said_with", "same_for", "say", "say_it", "say_that", "shared_with",
+        "shares", "tell", "tell_joke", "tell_that", "wait_for",
     }
 )  # fmt: skip
 """Commands that know themselves what to do with several people."""
@@ -102,8 +102,10 @@ def distributed(d: Discourse, node: Node, make: Make) -> Steps:
     several = [part for part in phrases(within) if speaks_of_several(d, node, part)]
     several.sort(key=lambda part: part.production.rule == "thing")  # things change hands inside
     outer = d.taken_from
-    things = any(part.production.rule == "thing" for part in several)
+    things = any(OVER[part.means] in (over_things, over_thing_list) for part in several)
+    place = d.place
     d.taken_from = d.get(node, "from") if things and "from" in node.parts else outer
+    d.place = place  # "there" is not where they are taken from
     steps = over(d, several, make)
     d.taken_from = outer
     if node.means in FETCHES:
@@ -328,6 +330,7 @@ OVER: Final[dict[str, Callable[[Discourse, Node, Any, One], Steps]]] = {
     "person_either": over_either_person,
     "person_said": over_those_who,
     "person_willing": over_willing,
+    "several_of": over_things,
     "thing": over_things,
     "thing_it": over_things,
     "things": over_thing_list,

@@ -10,6 +10,7 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.answers import Said
+from grammar.meanings.carrying import deliver
 from grammar.meanings.finding import speak_to
 from grammar.meanings.news import News, Told, go_back, in_round, last_found, take_back
 from grammar.meanings.nouns import thing_it
@@ -19,7 +20,6 @@ from grammar.meanings.polls import polled
 from grammar.meanings.registry import meaning
 from grammar.meanings.searches import searched, searches
 from grammar.meanings.surveys import asked_yet, note, replacing
-from grammar.meanings.things import deliver
 from grammar.naming import joined_up
 from grammar.plan import (
     Ask,

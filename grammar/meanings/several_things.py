@@ -55,6 +55,8 @@ def over_things(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
     d.at = None if thing.count is not None else thing.place
     d.thing, d.thing_last = single, True
     body = round_of_steps(d, lambda: one(single if d.at is None else replace(single, here=True)))
+    if not body:
+        return []
     if is_grab(body):  # "collect the cups": where to is said next
         d.collected, d.thing, d.thing_last = thing, thing, True
         d.at = at

@@ -12,11 +12,11 @@ from dataclasses import dataclass, replace
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
+from grammar.meanings.carrying import deliver
 from grammar.meanings.nouns import spoken_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.several_things import take_back
 from grammar.meanings.sources import where_told
-from grammar.meanings.things import deliver
 from grammar.plan import Items
 
 
@@ -54,9 +54,7 @@ def receivers(d: Discourse, node: Node) -> list[Thing]:
     """ "Bob and me": each gets one."""
     named = [d.build(part) for part in node.parts.values()]
     return [
-        person
-        for each in named
-        for person in (each if isinstance(each, list) else named_in(each))
+        person for each in named for person in (each if isinstance(each, list) else named_in(each))
     ]
 
 
@@ -83,6 +81,17 @@ def shared_with(d: Discourse, node: Node) -> Steps:
     thing: Thing = d.get(node, "thing") or one_more(d, node)
     people: list[Thing] = d.get(node, "all")
     return shared_out(d, [Share(thing, person) for person in people], begun, None)
+
+
+@meaning("lacking_there")
+def lacking_there(d: Discourse, node: Node) -> Steps:
+    """ "two chairs are missing in the lab": what is brought next is for there."""
+    spot: Where = d.get(node, "where")
+    thing: Thing = d.get(node, "thing")
+    d.thing, d.thing_last = thing, True
+    d.lacking = replace(thing, place=spot.place, furniture=spot.furniture)
+    d.background.append(d.words(node.start, node.end))
+    return []
 
 
 def shares_in(d: Discourse, node: Node) -> list[Share]:

@@ -1,7 +1,7 @@
 """Where things are taken from, if that is said in a sentence of its own.
 
-"Every meeting room needs a bottle of water. The bottles are in the kitchen." Said before, it is kept
-and used where a thing is fetched and nothing else is said of where it is; said afterwards, the
+"Every meeting room needs a bottle of water. The bottles are in the kitchen." Said before, it is
+kept and used where a thing is fetched and nothing else is said of where it is; said afterwards, the
 command before is made anew with it.
 """
 
@@ -15,6 +15,7 @@ from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.language import Language
+from grammar.meanings.deliveries import inside, meant_for
 from grammar.meanings.one_round import Make
 from grammar.meanings.registry import meaning
 from grammar.plan import Ask, Call, Recall, Step, Text, Value
@@ -64,7 +65,7 @@ def where_told(d: Discourse, thing: Thing) -> Thing:
 def is_called(d: Discourse, known: Thing, value: Value) -> bool:
     """Whether a thing may be meant by what another was called: "the bottles", "the water", for a
     bottle of water; "everything" is anything."""
-    if known.value == value or known.every and not known.noun:
+    if known.value == value or (known.every and not known.noun):
         return True
     if not isinstance(value, Text) or not known.text:
         return False
@@ -90,14 +91,18 @@ def keep_fetching(
 
 def unsourced(steps: Steps) -> Iterator[Value]:
     """The things that are taken where the robot is, or wherever they are found."""
-    inside = nodes(tuple(steps))
+    inside = list(nodes(tuple(steps)))
     sought = {
         each.arguments["thing"]
         for each in inside
         if isinstance(each, Call | Ask) and each.method == "find" and has_place(each)
     }
     for each in inside:
-        if isinstance(each, Call) and each.method == "grab" and each.arguments["thing"] not in sought:
+        if (
+            isinstance(each, Call)
+            and each.method == "grab"
+            and each.arguments["thing"] not in sought
+        ):
             yield each.arguments["thing"]
 
 
@@ -136,11 +141,30 @@ def sourced(d: Discourse, node: Node) -> Steps | None:
     if fetching is None or "from" not in node.parts or not isinstance(thing, Node):
         return None
     whereto = node.parts.get("where")
-    there = whereto is None or (isinstance(whereto, Node) and whereto.means == "place_there")
+    there = whereto is None or any(each.means == "place_there" for each in inside(whereto))
     if thing.means != "thing_it" or "person_ref" in node.parts or not there:
         return None
     source: Where = d.get(node, "from")
     return made_anew(d, fetching, source) if source.place is not None else None
+
+
+@meaning("can_get")
+def can_get(d: Discourse, node: Node) -> Steps:
+    """ "you can take them from the lounge": no more than where they are, unless nothing else has
+    been said of them."""
+    from grammar.meanings.carrying import deliver
+
+    spot: Where = d.get(node, "from")
+    again = sourced(d, node)
+    if again is not None:
+        return again
+    thing: Thing = d.get(node, "thing")
+    before = d.delivery
+    there = replace(thing, place=spot.place, furniture=spot.furniture, pronoun=False)
+    told_where(d, there)
+    d.thing, d.thing_last = there, True
+    fetched = before is not None and is_called(d, there, before.thing.value)
+    return [] if fetched or not thing.pronoun else deliver(d, there, *meant_for(d, there))
 
 
 @meaning("all_there")
@@ -148,8 +172,6 @@ def all_there(d: Discourse, node: Node) -> Steps:
     """ "everything is in the kitchen"."""
     spot: Where = d.get(node, "from")
     if spot.place is None:
-        raise NotUnderstood(
-            d.language.phrase("not_understood", part=d.words(node.start, node.end))
-        )
+        raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
     told_where(d, Thing(Text(""), place=spot.place, furniture=spot.furniture, every=True))
     return []

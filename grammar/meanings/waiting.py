@@ -11,9 +11,10 @@ from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.inference import takes_time
 from grammar.meanings.branches import ABOUT_ANSWERS, if_
+from grammar.meanings.carrying import take_back_delivery
 from grammar.meanings.claims import claim_of, meet_there
 from grammar.meanings.conditions import condition_of, negated
-from grammar.meanings.deliveries import inside
+from grammar.meanings.deliveries import hands_it_over, inside
 from grammar.meanings.finding import speak_to
 from grammar.meanings.news import Told, go_back, in_round
 from grammar.meanings.persons import is_me
@@ -72,6 +73,8 @@ def when(d: Discourse, node: Node) -> Steps:
     if not before and waited_for_them(d, node, condition):
         done: Steps = d.build(node.parts["then"])
         return done
+    if hands_it_over(node.parts["then"]) and d.thing is not None:
+        take_back_delivery(d, d.thing)  # "get the cup and hand it to Bob when he comes"
     body: Steps = d.build(node.parts["then"])
     if node.production.fixed.get("always") or _is_duty(d, node, condition):
         return each_time(before, condition, body)

@@ -105,7 +105,7 @@ def looked_further(d: Discourse, places: list[Value]) -> Steps | None:
 @meaning("bring_instead")
 def bring_instead(d: Discourse, node: Node) -> Steps:
     """ "if there is none, a banana": brought as what there was none of should have been."""
-    from grammar.meanings.things import deliver
+    from grammar.meanings.carrying import deliver
 
     thing: Thing = d.get(node, "thing")
     wanted: Delivery | None = d.meant_for if isinstance(d.meant_for, Delivery) else None

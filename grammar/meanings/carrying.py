@@ -1,0 +1,171 @@
+"""Picking things up, carrying them, and putting them down or handing them over."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
+from grammar.doubts import NotUnderstood
+from grammar.meanings.deliveries import Delivery
+from grammar.meanings.finding import go, look_for, meet, where_sent
+from grammar.meanings.persons import is_me
+from grammar.meanings.places import sought
+from grammar.meanings.searches import search_of
+from grammar.meanings.sources import where_told
+from grammar.meanings.surveys import Survey, note
+from grammar.plan import Call, Items, Recall, Step, Text, Value
+
+
+def pick_up(d: Discourse, thing: Thing) -> Steps:
+    """Find a thing and take it; nothing if it is in the hand by what was said."""
+    if thing.person:
+        raise NotUnderstood(d.language.phrase("what_is_it", word=thing.text))
+    if d.holding == thing.value or handed_over(d, thing):
+        return []
+    take_back_delivery(d, thing)
+    thing = where_seen(d, thing)
+    if d.holding == thing.value:
+        return []
+    last = d.done[-1] if d.done else None
+    if last == Call("put", {"thing": thing.value}):
+        d.done.pop()  # "take the cup to the kitchen and give it to Alex": never put down
+        return []
+    if thing.pronoun and thing.value in d.now_at:
+        thing = replace(thing, place=d.now_at[thing.value], furniture=None, here=False)
+    search = search_of(last)
+    looked = search is not None and search.is_for(d, thing)  # "find the cup and bring it to me"
+    nearby = d.at is not None and not d.at_people and thing.place is None
+    nearby = nearby and not isinstance(thing.value, Recall)  # what somebody asked for is anywhere
+    is_here = thing.here or nearby or (d.at is not None and thing.place == d.at)
+    steps: Steps = [] if looked or is_here else look_for(d, thing)
+    d.holding = thing.value
+    d.thing, d.thing_last = thing, True
+    return [*steps, Call("grab", {"thing": sought(d, thing)})]
+
+
+def where_seen(d: Discourse, thing: Thing) -> Thing:
+    """A thing at the place that was only looked at for it: "see whether there is a cup in the
+    kitchen and bring it to me"."""
+    from grammar.meanings.there import seen_there
+
+    about = d.report.thing if d.report is not None else None
+    if not thing.pronoun or about is None or about.value != thing.value:
+        return thing
+    return thing if seen_there(d) is None else replace(thing, place=about.place, pronoun=False)
+
+
+def handed_over(d: Discourse, thing: Thing) -> bool:
+    """Whether somebody was asked for a thing that now goes elsewhere: the robot then takes it right
+    behind the question."""
+    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    if d.asked_for is None or thing.value != d.asked_for or survey is None:
+        return False
+    note(d, survey.call, [Call("grab", {"thing": thing.value})], [])
+    d.asked_for = None
+    d.holding = thing.value
+    d.thing, d.thing_last = thing, True
+    return True
+
+
+def take_back_delivery(d: Discourse, thing: Thing) -> None:
+    """ "get the cup and put it on the table": "get" alone would have handed it to the speaker."""
+    brought = list(d.brought)
+    if brought and d.done[-len(brought) :] == brought and _is_given(brought[-1], thing):
+        # "if she needs the cup, get it from the kitchen and bring it to Bob": to him only
+        del d.done[-len(brought) :]
+        d.brought, d.holding, d.at = (), thing.value, thing.place
+        return
+    handed = Call("give", {"thing": thing.value})
+    at = max((at for at, step in enumerate(d.done) if step == handed), default=0)
+    if d.delivered == thing.value and at:
+        last = at == len(d.done) - 1
+        del d.done[at - 1 : at + 1]
+        d.delivered = None
+        d.holding = thing.value
+        if last:  # but "get the box, then go to Henry and give it to him": he is where it is now
+            d.at = d.at_pick_up
+
+
+def _is_given(step: Step, thing: Thing) -> bool:
+    return isinstance(step, Call) and step.arguments.get("thing") == thing.value
+
+
+def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None) -> Steps:
+    """Pick a thing up, go where it is to be, and put it down or hand it over."""
+    scene = d.scene()
+    thing = where_told(d, thing)
+    steps = _delivered(d, thing, person, spot)
+    d.delivery = Delivery(thing, person, spot, tuple(steps), scene)
+    return steps
+
+
+def _delivered(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None) -> Steps:
+    before = d.at
+    if spot is not None and spot.place is None and thing.place not in (None, before):
+        spot = replace(spot, place=before)  # "on the table" is where the robot was sent
+    if person is not None:
+        fetch_before_waiting(d, thing, person)
+    no_way = spot is not None and spot.place is None and thing.place is None
+    if no_way and d.holding != thing.value and not thing.pronoun:
+        steps: Steps = [Call("grab", {"thing": sought(d, thing)})]  # both are here
+    else:
+        steps = pick_up(d, thing)
+    d.holding = None
+    d.thing, d.thing_last = thing, True
+    give: dict[str, Value] = {"thing": thing.value}
+    if spot is not None:
+        if spot.place is not None:
+            steps += go(d, spot.place)
+        if spot.furniture:
+            give["where"] = Text(spot.furniture)
+        if d.at is not None and not d.in_loop:
+            d.now_at = {**d.now_at, thing.value: d.at}
+        return [*steps, Call("put", give)]
+    if person is None or is_me(person):
+        start = d.start()
+        if steps or d.at != start:
+            steps.append(Call("goto", {"place": start}))
+        d.at_pick_up = d.at
+        d.went(start)
+        d.delivered = thing.value
+        return [*steps, Call("give", give)]
+    left = any(isinstance(step, Call) and step.method in ("find", "goto") for step in steps)
+    if left and person.here and not person.known:  # back to where they are
+        place = before or d.start()
+        d.went(place)
+        steps.append(Call("goto", {"place": place}))
+    elif left or not person.here:
+        person = where_sent(d, person) if not steps else person
+        steps += meet(d, replace(person, here=False)) or look_for(d, person)
+    d.thing, d.thing_last = thing, True
+    if person.text != ANYONE:
+        give["person"] = person.value
+    return [*steps, Call("give", give)]
+
+
+def fetch_before_waiting(d: Discourse, thing: Thing, person: Thing) -> None:
+    """ "wait in the lobby for Bob and give him the folder": nobody who has come is left alone for
+    it, so that it is fetched first."""
+    here = d.at
+    at = len(d.done)
+    while at and is_waiting(d.done[at - 1]):
+        at -= 1
+    waiting = d.done[at:]
+    awaited = (
+        isinstance(waiting[-1], Call) and waiting[-1].arguments.get("thing") if waiting else None
+    )
+    elsewhere = isinstance(thing.place, Text | Items) and thing.place != here
+    if awaited is None or awaited != person.value or not elsewhere or thing.value == d.holding:
+        return
+    del d.done[at:]
+    d.at = None
+    d.done.extend(pick_up(d, thing))
+    if not any(isinstance(each, Call) and each.method == "goto" for each in waiting):
+        d.done.append(Call("goto", {"place": d.start() if here is None else here}))
+    d.done.extend(waiting)
+    d.at, d.with_person = here, person.value
+
+
+def is_waiting(step: Step) -> bool:
+    """Whether a step goes somewhere or waits there for somebody."""
+    return isinstance(step, Call) and step.method in ("goto", "wait_for")
