@@ -112,8 +112,8 @@ def remark_where(d: Discourse, node: Node) -> Steps:
         what = thing or d.thing
         if isinstance(what, Thing):  # of several, each is where it is
             d.thing, d.thing_last = replace(what, place=place, furniture=spot.furniture), True
-            known_to_be(d, what.value, place)
             told_where(d, d.thing)
+            known_to_be(d, what.value, place)
     return aside(d, node)
 
 

@@ -42,7 +42,7 @@ def told_where(d: Discourse, thing: Thing) -> None:
     if thing.person or not isinstance(thing.place, Text):
         return
     d.said_to_be.append(thing)
-    source = Where(thing.place, thing.furniture)
+    source = Where(thing.place)
     fetching = just_fetched(d)
     if fetching is not None and any(is_called(d, thing, each) for each in fetching.things):
         d.done.extend(made_anew(d, fetching, source))

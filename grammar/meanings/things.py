@@ -327,6 +327,7 @@ def statement(d: Discourse, node: Node) -> Steps:
         thing = replace(thing, place=d.at)  # "go to the hall, there is a woman"
     if thing.place is not None:
         d.place = thing.place
+        told_where(d, thing)
         known_to_be(d, thing.value, thing.place)
     if thing.person:
         d.person, d.thing_last = thing, False
@@ -334,7 +335,6 @@ def statement(d: Discourse, node: Node) -> Steps:
         fetched_there(d, thing, thing.place)
     else:
         d.thing, d.thing_last = thing, True
-        told_where(d, thing)
     said = sentence_form(d.words(node.start, node.end))
     d.report, d.report_step = Report("only", Text(said), about_here=False), None
     return []
