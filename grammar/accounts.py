@@ -14,10 +14,11 @@ from collections.abc import Iterator, Set
 from typing import Final
 
 from grammar.chart import Leaf, Node
+from grammar.discourse import Steps
 from grammar.freetext import weighty_words
 from grammar.language import Language
 from grammar.lexicon import Lexicon, Name, Question
-from grammar.plan import Ask, Call, Plan, Text
+from grammar.plan import Ask, Call, Number, Plan, Text
 from grammar.tidy import nodes
 from grammar.tokens import Token
 
@@ -31,6 +32,7 @@ NO_PART: Final = frozenset(
 """Meanings whose words need not be in the plan: taken back, or said for what follows."""
 LEFT_OUT: Final = "but"
 """What an exception is bound to: it shows in what the plan does not do."""
+SPEAKING: Final = frozenset({"say", "ask", "answer"})
 ALIKE: Final = 0.5
 """The part of a word that its form in the plan begins with, too: "cookies" and "cooky"."""
 SHORTEST: Final = 3
@@ -115,15 +117,47 @@ def unspoken(
 def unheeded(tree: Node, tokens: tuple[Token, ...], language: Language) -> list[str]:
     """Words for how something is to be done that change nothing ("quickly"), as they were said:
     no name and no text has them."""
-    taken = {at for leaf in _leaves(tree, NAMES | TEXTS) for at in range(leaf.start, leaf.end)}
-    words = [token.norm for token in tokens]
     found: dict[int, int] = {}
-    for way in map(language.tokens_of, language.speech.get("unheeded", ())):
-        for at in range(len(words) - len(way) + 1):
-            if tuple(words[at : at + len(way)]) == way and at not in taken:
-                found[at] = max(len(way), found.get(at, 0))
+    for way in language.speech.get("unheeded", ()):
+        for at, length in _said(way, tree, tokens, language):
+            found[at] = max(length, found.get(at, 0))
     spelled = [token.spelled or token.norm for token in tokens]
     return [" ".join(spelled[at : at + length]) for at, length in sorted(found.items())]
+
+
+def in_manner(
+    steps: Steps,
+    tree: Node,
+    tokens: tuple[Token, ...],
+    language: Language,
+    resolved: Set[int] = frozenset(),
+) -> tuple[Steps, list[str]]:
+    """The steps with the volume set before them if something is to be said "quietly", and these
+    words where nothing is said, or its volume is set anyway."""
+    volumes: dict[str, int] = language.speech.get("volumes", {})
+    said = [
+        way
+        for way in volumes
+        if any(at not in resolved for at, _ in _said(way, tree, tokens, language))
+    ]
+    if not said:
+        return steps, []
+    methods = {each.method for each in nodes(tuple(steps)) if isinstance(each, Call | Ask)}
+    if "set_volume" in methods or not methods & SPEAKING:
+        return steps, [] if "set_volume" in methods else said
+    return [Call("set_volume", {"percent": Number(volumes[said[0]])}), *steps], []
+
+
+def _said(
+    way: str, tree: Node, tokens: tuple[Token, ...], language: Language
+) -> Iterator[tuple[int, int]]:
+    """Where some words stand, and how many they are, but for those in names and texts."""
+    taken = {at for leaf in _leaves(tree, NAMES | TEXTS) for at in range(leaf.start, leaf.end)}
+    sought = language.tokens_of(way)
+    words = tuple(token.norm for token in tokens)
+    for at in range(len(words) - len(sought) + 1):
+        if words[at : at + len(sought)] == sought and at not in taken:
+            yield at, len(sought)
 
 
 @functools.lru_cache(maxsize=4096)

@@ -21,6 +21,9 @@ STEPS_ALLOWED: Final = 60_000
 CORRECTION: Final = 4.0
 """What reading a misspelt word as a known one costs."""
 
+FORM: Final = 0.3
+"""What reading a verb in another form costs: "when you have greeted him"."""
+
 Match = tuple[int, float, Any]
 """What a slot finds: the token after it, the cost, the value."""
 
@@ -94,11 +97,13 @@ class Chart:
         *,
         skips: Mapping[int, list[tuple[int, float]]],
         corrections: Mapping[int, tuple[str, ...]],
+        forms: Mapping[int, tuple[str, ...]],
     ) -> None:
         self.network = network
         self.tokens = tokens
         self.skips = skips
         self.corrections = corrections
+        self.forms = forms
         self._slots: list[Slot | None] = [slots.get(name) for name in network.names]
         self._ends: list[dict[int, dict[int, _End]]] = [{} for _ in network.names]
         self._matches: dict[tuple[int, int], list[Match]] = {}
@@ -157,7 +162,7 @@ class Chart:
                         result[at] = (total, state.final[1], way)
             if at < count:
                 word = tokens[at].norm
-                spelled = self.corrections.get(at, ())
+                spelled, formed = self.corrections.get(at, ()), self.forms.get(at, ())
                 for end, extra in self.skips.get(at, ()):
                     beyond = agenda.setdefault(end, {})
                     for number, (cost, way) in here.items():
@@ -174,6 +179,10 @@ class Chart:
                         if following is not None:
                             step: _Way = (way, None, -1, at, at + 1, other)
                             _reach(agenda, at + 1, following, cost + CORRECTION, step)
+                    for other in formed:
+                        following = state.words.get(other)
+                        if following is not None:
+                            _reach(agenda, at + 1, following, cost + FORM, way)
                     for callee, binding, following in state.calls:
                         if network.starts[callee] < 0:
                             for end, extra, value in self._slot(callee, at):
@@ -185,7 +194,7 @@ class Chart:
                             words is not None
                             and word not in words
                             and at not in self.skips
-                            and not any(other in words for other in spelled)
+                            and not any(other in words for other in (*spelled, *formed))
                         ):
                             continue
                         for end, inner in self._spans(callee, at).items():

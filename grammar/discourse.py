@@ -6,6 +6,7 @@ something; `grammar.meanings` holds a small function for every meaning that the 
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
@@ -261,6 +262,24 @@ class Discourse:
             inner = [each for each in part.parts.values() if isinstance(each, Node)]
             return self.build(inner[0]) if inner else self.words(part.start, part.end)
         raise LookupError(f"no meaning is called {part.means!r}")
+
+    def tried(self, part: Leaf | Node) -> Any:
+        """What a part of the parse would mean here, and nothing else is changed."""
+        before = {
+            name: copy.copy(value) if isinstance(value, list | dict | set) else value
+            for name, value in vars(self).items()
+        }
+        known = dict(vars(self))
+        try:
+            return self.build(part)
+        finally:
+            vars(self).update(known)
+            for name, value in before.items():
+                if isinstance(value, list):
+                    known[name][:] = value
+                elif isinstance(value, dict | set):
+                    known[name].clear()
+                    known[name].update(value)
 
     def _command(self, node: Node) -> Steps:
         from grammar.meanings import MEANINGS

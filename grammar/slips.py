@@ -93,6 +93,27 @@ def _in_plain_form(
         yield token if verb is None else replace(token, norm=verb, kind="verb")
 
 
+def perfects(
+    tokens: tuple[Token, ...], language: Language, verbs: Collection[str]
+) -> Iterator[tuple[int, tuple[str, ...]]]:
+    """The participles of verbs that a command can begin with, and these verbs: "when you have
+    greeted him" speaks of greeting him. Unlike a gerund it may also be a word of a rule."""
+    data = language.speech.get("perfects", {"after": (), "between": (), "ending": "-", "forms": {}})
+    ending, past = str(data["ending"]), language.speech.get("past_forms", {})
+    called_for = False
+    for at, token in enumerate(tokens):
+        if called_for and token.norm in data["between"]:
+            continue
+        if called_for:
+            stem = token.norm.removesuffix(ending)
+            irregular = (data["forms"].get(token.norm), past.get(token.norm))
+            bases = irregular if any(irregular) or stem == token.norm else plain_forms(stem)
+            found = tuple(dict.fromkeys(base for base in bases if base in verbs))
+            if found:
+                yield at, found
+        called_for = token.norm in data["after"]
+
+
 def plain_forms(stem: str) -> Iterator[str]:
     """What a verb may be without its ending: "greet", "giv" -> "give", "runn" -> "run"."""
     yield stem

@@ -14,7 +14,7 @@ import logging
 from dataclasses import replace
 from typing import Final
 
-from grammar.accounts import left_out, unheeded, unspoken
+from grammar.accounts import in_manner, left_out, unheeded, unspoken
 from grammar.chart import Chart, Node, Slot, TooMuch
 from grammar.discourse import Discourse
 from grammar.doubts import Ambiguous, NotUnderstood
@@ -36,7 +36,7 @@ from grammar.refusals import (
     why_not,
 )
 from grammar.requests import Request
-from grammar.slips import SHORTEST_CORRECTED, fillers_by_first, mended, misspelt
+from grammar.slips import SHORTEST_CORRECTED, fillers_by_first, mended, misspelt, perfects
 from grammar.slots import Slots, command_words
 from grammar.tidy import Unbound, charging_last, is_one_of_each, returning, scoped, without_unused
 from grammar.tokens import COMMA, Token, tokenise
@@ -84,6 +84,7 @@ class Reader:
         self.tokens = mended(tokenise(text, language.spelling), language, known, commands)
         self.skips = self._skips()
         self.corrections = self._corrections()
+        self.forms = dict(perfects(self.tokens, language, commands))
 
     def understand(self) -> Understanding:
         if not self.tokens:
@@ -145,12 +146,14 @@ class Reader:
             return rejected(self.text, self.language.phrase("too_complicated"), self.context)
         if not steps:
             return self._asking_nothing(chart)
+        steps, unused = in_manner(steps, tree, self.tokens, self.language, discourse.resolved)
+        unused += unheeded(tree, self.tokens, self.language)
         try:
             plan = scoped(
                 Plan(
                     (*discourse.prologue(), *steps),
                     self.language.code,
-                    (*discourse.background, *unheeded(tree, self.tokens, self.language)),
+                    (*discourse.background, *unused),
                 )
             )
         except Unbound:
@@ -268,6 +271,7 @@ class Reader:
             self.slots,
             skips=self.skips,
             corrections=self.corrections,
+            forms=self.forms,
         )
 
     @property

@@ -28,6 +28,8 @@ from grammar.tidy import mentions, nodes
 
 NEEDS_IT: Final = frozenset({"grab", "put", "give", "guide", "follow", "describe"})
 """Methods that say themselves when what was looked for is not there."""
+WAYS: Final = frozenset({"goto", "find", "location"})
+"""Methods that only lead to where something is done."""
 SAID: Final = frozenset({"statement", "remark", "remark_name", "remark_where"})
 """Clauses that say how something is, and ask for nothing."""
 LED: Final = frozenset({"guide", "follow"})
@@ -60,6 +62,15 @@ def steps(d: Discourse, node: Node) -> Steps:
                 further += [part for part in (each.parts.get("rest"),) if isinstance(part, Node)]
                 further.append(chained(first.parts["later"]))
                 each = chained(first.parts["earlier"])
+                continue
+            if first.production.means == "once_done" and "later" not in first.parts:
+                rest = each.parts["rest"]
+                assert isinstance(rest, Node)
+                if done_already(d, first):
+                    each = rest
+                else:
+                    further.append(rest)
+                    each = chained(first.parts["earlier"])
                 continue
             first, beside = side_by_side(d, first)
             d.done.extend(in_branch(d, first) or with_each_asked(d, first) or in_round(d, first))
@@ -209,6 +220,20 @@ def found_thing(d: Discourse, step: Call) -> Thing:
     return Thing(value, known=named, person=named)
 
 
+def done_already(d: Discourse, node: Node) -> bool:
+    """Whether what is said to come first has been said before: "Greet Bob. When you have greeted
+    him, come back." is no second greeting."""
+    if node.production.means != "once_done" or not d.done:
+        return False
+    again = d.tried(node.parts["earlier"])
+    named = [each for each in nodes(tuple(again)) if isinstance(each, Call)]
+    calls = [each for each in named if each.method not in WAYS] or named
+    before = [each for each in nodes(tuple(d.done)) if isinstance(each, Call)]
+    known = [(each.method, each.arguments) for each in before]
+    return bool(calls) and all((each.method, each.arguments) in known for each in calls)
+
+
+@meaning("once_done")
 @meaning("reversed")
 def reversed_(d: Discourse, node: Node) -> Steps:
     """ "before you go, say goodbye" and "go after you have said goodbye"."""
@@ -220,7 +245,8 @@ def reversed_(d: Discourse, node: Node) -> Steps:
         d.set_scene(before)
         d.thing, d.thing_last = thing, thing_last
     at = len(d.done)
-    d.done.extend(d.build(earlier))
+    if not done_already(d, node):
+        d.done.extend(d.build(earlier))
     for part in clauses(later):  # each may take back what was done before it
         d.done.extend(d.build(part))
     result = d.done[at:]

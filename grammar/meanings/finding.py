@@ -261,6 +261,8 @@ def is_here(d: Discourse, person: Thing) -> bool:
 
 
 def not_found(d: Discourse, thing: Thing) -> Call:
+    if thing.text == ANYONE:
+        return d.say("nobody_found")
     return d.say("not_found", thing=named(d, thing))
 
 

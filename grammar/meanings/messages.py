@@ -19,7 +19,7 @@ from grammar.meanings.persons import is_me, person_me
 from grammar.meanings.questions import base_form, turn_to_you
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning
-from grammar.meanings.speaking import sentence_form
+from grammar.meanings.speaking import put_for, sentence_form
 from grammar.names import names_of
 from grammar.plan import Call, Recall, Text
 from grammar.tokens import COMMA, STOP, Token
@@ -308,3 +308,20 @@ def _noun_follows(d: Discourse, at: int, end: int, data: Mapping[str, Any]) -> b
         return False
     word = d.tokens[at].norm
     return word not in d.language.closed and word not in data["after_object"]
+
+
+@meaning("remind")
+def remind(d: Discourse, node: Node) -> Steps:
+    """ "remind me of the meeting", "remind Bob in ten minutes to come"."""
+    delay: Steps = d.get(node, "delay") or []
+    person: Thing | None = d.get(node, "person_ref")
+    part = node.parts["text"]
+    phrase = str(node.production.fixed.get("phrase", "reminder"))
+    if is_me(person):
+        what = put_for(d, "of_speaker", d.words(part.start, part.end))
+    elif phrase == "only":  # "remind her at noon that she has a visitor"
+        what = told_to(d, part, person)
+    else:
+        what = turn_to_you(d, part.start, part.end)
+    words = d.sentence(phrase, what=what, value=sentence_form(what))
+    return [*delay, *speak_to(d, person, [Call("say", {"text": words})])]

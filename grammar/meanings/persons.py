@@ -210,6 +210,14 @@ def person_coming(d: Discourse, node: Node) -> Thing:
     return replace(found, coming=True, place=None if spot is None else spot.place)
 
 
+@meaning("whoever_at")
+def whoever_at(d: Discourse, node: Node) -> Thing:
+    """ "tell reception", "ask the kitchen": whoever is there."""
+    person = d.person = Thing(Text(ANYONE), d.get(node, "place"), person=True)
+    d.thing_last = False
+    return person
+
+
 @meaning("person_first")
 def person_first(d: Discourse, node: Node) -> Thing:
     """ "the first visitor you meet": whoever comes first; on guard, each of them."""

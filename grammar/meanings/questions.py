@@ -355,6 +355,8 @@ def ask_to(d: Discourse, node: Node) -> Steps:
     kinds = ("to_you_asked", "to_you_who", "to_you")
     you = next(each for each in kinds if each in d.language.speech)
     text = turn_to_you(d, part.start, part.end, you, person) if part is not None else ""
+    if part is not None and (how := manner_after(d, part.end)):  # "ask them to speak quietly"
+        text = f"{text} {how}"
     if "wished" in node.parts:  # "qu'elle vienne ici"
         text = f"{d.get(node, 'wished')} {text}".strip()
     verb = node.parts.get("verb")
@@ -369,6 +371,17 @@ def ask_to(d: Discourse, node: Node) -> Steps:
     words = answers_in(d, text, first.start, first.end)
     request = d.sentence(str(node.production.fixed.get("phrase", "please_do")), what=words)
     return speak_to(d, person, [Call("say", {"text": request})])
+
+
+def manner_after(d: Discourse, at: int) -> str:
+    """Words for how loud something is to be done that were passed over behind a text, as a part of
+    it."""
+    for way in d.language.speech.get("volumes", ()):
+        words = d.language.tokens_of(way)
+        if tuple(d.norms(at, min(at + len(words), len(d.tokens)))) == tuple(words):
+            d.resolved.update(range(at, at + len(words)))
+            return d.words(at, at + len(words))
+    return ""
 
 
 @meaning("ask_in")

@@ -12,7 +12,6 @@ from grammar.freetext import words_for
 from grammar.language import load_language
 from grammar.meanings.finding import speak_to
 from grammar.meanings.persons import is_me
-from grammar.meanings.questions import turn_to_you
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning
 from grammar.plan import Call, ForEach, Items, Number, Recall, Text, Value
@@ -77,21 +76,6 @@ def spoken(d: Discourse, node: Node) -> Value:
 def sentence_form(text: str) -> str:
     text = text.strip().strip('"“”„«»').strip()
     return capital(text) if text[-1:] in ".!?…" else capital(text) + "."
-
-
-@meaning("remind")
-def remind(d: Discourse, node: Node) -> Steps:
-    """ "remind me of the meeting", "remind Bob in ten minutes to come"."""
-    delay: Steps = d.get(node, "delay") or []
-    person: Thing | None = d.get(node, "person_ref")
-    part = node.parts["text"]
-    if is_me(person):
-        what = put_for(d, "of_speaker", d.words(part.start, part.end))
-    else:
-        what = turn_to_you(d, part.start, part.end)
-    phrase = str(node.production.fixed.get("phrase", "reminder"))
-    words = d.sentence(phrase, what=what, value=sentence_form(what))
-    return [*delay, *speak_to(d, person, [Call("say", {"text": words})])]
 
 
 def put_for(d: Discourse, words: str, text: str) -> str:
