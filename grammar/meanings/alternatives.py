@@ -72,6 +72,24 @@ def for_all(d: Discourse, chain: Node) -> Node:
     return chain
 
 
+def done_first(chain: Node) -> Node:
+    """What is to be done before the last of several clauses is done before all of them: "go to the
+    lobby and wait there once you have greeted Bob"."""
+    before: list[Node] = []
+    each: Leaf | Node | None = chain
+    while isinstance(each, Node):
+        last = itself(_node(each.parts["first"]))
+        if last.production.means == "once_done" and "later" in last.parts and before:
+            prior = {name: part for name, part in last.parts.items() if name != "later"}
+            rest = replace(each, parts={**each.parts, "first": last.parts["later"]})
+            for step in reversed(before):
+                rest = replace(step, parts={**step.parts, "rest": rest})
+            return replace(chain, parts={"first": replace(last, parts=prior), "rest": rest})
+        before.append(each)
+        each = each.parts.get("rest") if each.production.fixed.get("joint") == "and" else None
+    return chain
+
+
 def _asks(part: Leaf | Node) -> bool:
     """Whether a clause asks something, or is a condition itself."""
     means = {each.production.means for each in inside(part)}

@@ -7,7 +7,7 @@ from typing import Final
 from grammar.chart import Leaf, Node
 from grammar.discourse import START, Discourse, Steps, Thing
 from grammar.doubts import NotUnderstood
-from grammar.meanings.alternatives import exclusive, for_all, itself, side_by_side
+from grammar.meanings.alternatives import done_first, exclusive, for_all, itself, side_by_side
 from grammar.meanings.branches import in_branch
 from grammar.meanings.finding import go, not_found
 from grammar.meanings.found_places import if_such
@@ -46,7 +46,7 @@ def steps(d: Discourse, node: Node) -> Steps:
         joint = "stop"
         places: Items | None = None
         while each is not None:
-            each = for_all(d, each)
+            each = done_first(for_all(d, each))
             before = len(d.done)
             d.begins.append(before)
             first = each.parts["first"]

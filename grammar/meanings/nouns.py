@@ -17,6 +17,7 @@ from grammar.meanings.places import (
     source_of,
 )
 from grammar.meanings.registry import meaning
+from grammar.plan import Text
 from grammar.wordforms import head_word, singular
 
 
@@ -173,6 +174,15 @@ def thing_it(d: Discourse, node: Node) -> Thing:
         return person_pronoun(d, node)
     word = d.words(node.start, node.end)
     raise NotUnderstood(d.language.phrase("what_is_it", word=word), gap=(node.start, node.end))
+
+
+@meaning("thing_opening")
+def thing_opening(d: Discourse, node: Node) -> Thing:
+    """ "the key to the supply room": the supply room key, wherever that is."""
+    place: Text = d.get(node, "place")
+    found = d.thing = Thing(Text(f"{d.called(place.value)} {d.get(node, 'opener')}"))
+    d.thing_last = True
+    return found
 
 
 @meaning("thing_from")

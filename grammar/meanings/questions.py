@@ -165,9 +165,10 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
     rest = subject or question.parts.get("rest")
     d.asked_for = None
     if question.production.fixed.get("wanted"):
-        what = singular(
-            d.noun_words(question.parts["noun"].start, question.parts["noun"].end), d.language
-        )
+        noun = question.parts["noun"]
+        what = singular(d.noun_words(noun.start, noun.end), d.language)
+        if isinstance(noun, Node):  # "the key to the supply room"
+            what = d.build(noun).text
         d.asked_for = Text(what)
         d.thing, d.thing_last = Thing(d.asked_for, noun=head_word(what, d.language)), True
         return
@@ -248,7 +249,10 @@ def question(d: Discourse, node: Node) -> str:
     if "verb" in values:
         verb, particle = parted(d, values["verb"])
         base = past_base(d, verb) if past else None
-        if base is not None:
+        perfect = perfect_form(d, verb, values["rest"]) if yes_no_asked(node) else None
+        if perfect is not None:
+            form = perfect
+        elif base is not None:
             form, verb = str(past), base
         elif base_form(d, verb) != verb and not turned_each:
             form = str(node.production.fixed.get("third", form))
@@ -270,6 +274,19 @@ def question(d: Discourse, node: Node) -> str:
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
     return capital(text.replace(" ?", mark).replace(" ,", ",").replace(" .", "."))
+
+
+def yes_no_asked(node: Node) -> bool:
+    return bool(node.production.fixed.get("yes_no"))
+
+
+def perfect_form(d: Discourse, verb: str, rest: str) -> str | None:
+    """The form of a question after what somebody has done: "has sorted the post" -> "Have you
+    sorted the post?"."""
+    forms: dict[str, str] = d.language.speech.get("perfect_questions", {})
+    first, _, more = rest.strip().partition(" ")
+    done = verb.lower() in forms and bool(more) and past_base(d, first) is not None
+    return forms[verb.lower()] if done else None
 
 
 def _ends_phrase(d: Discourse, at: int, end: int) -> bool:
