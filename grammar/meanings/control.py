@@ -64,12 +64,11 @@ def steps(d: Discourse, node: Node) -> Steps:
                 each = chained(first.parts["earlier"])
                 continue
             if first.production.means == "once_done" and "later" not in first.parts:
-                rest = each.parts["rest"]
-                assert isinstance(rest, Node)
+                following = chained(each.parts["rest"])
                 if done_already(d, first):
-                    each = rest
+                    each = following
                 else:
-                    further.append(rest)
+                    further.append(following)
                     each = chained(first.parts["earlier"])
                 continue
             first, beside = side_by_side(d, first)

@@ -165,10 +165,10 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
     rest = subject or question.parts.get("rest")
     d.asked_for = None
     if question.production.fixed.get("wanted"):
-        noun = question.parts["noun"]
-        what = singular(d.noun_words(noun.start, noun.end), d.language)
-        if isinstance(noun, Node):  # "the key to the supply room"
-            what = d.build(noun).text
+        asked_for = question.parts["noun"]
+        what = singular(d.noun_words(asked_for.start, asked_for.end), d.language)
+        if isinstance(asked_for, Node):  # "the key to the supply room"
+            what = d.build(asked_for).text
         d.asked_for = Text(what)
         d.thing, d.thing_last = Thing(d.asked_for, noun=head_word(what, d.language)), True
         return
