@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import START, Discourse, Steps, Thing
@@ -227,9 +227,14 @@ def done_already(d: Discourse, node: Node) -> bool:
     again = d.tried(node.parts["earlier"])
     named = [each for each in nodes(tuple(again)) if isinstance(each, Call)]
     calls = [each for each in named if each.method not in WAYS] or named
-    before = [each for each in nodes(tuple(d.done)) if isinstance(each, Call)]
-    known = [(each.method, each.arguments) for each in before]
-    return bool(calls) and all((each.method, each.arguments) in known for each in calls)
+    before = [_deed(each) for each in nodes(tuple(d.done)) if isinstance(each, Call)]
+    return bool(calls) and all(_deed(each) in before for each in calls)
+
+
+def _deed(call: Call) -> tuple[str, Any]:
+    """What tells a call from others, whoever is asked."""
+    asked = call.arguments.get("question") if call.method == "ask" else None
+    return call.method, asked or call.arguments
 
 
 @meaning("once_done")
