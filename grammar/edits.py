@@ -258,6 +258,8 @@ class Sentence:
                 continue
             if lead and (lead in away) != (before in away):
                 continue  # "from the kitchen" is no other place to go to
+            if lead and not before and {old.rule, piece.rule} == {"person_ref", "place_ref"}:
+                continue  # "in ward b" is nobody to be asked instead
             score = (
                 old.means not in PRONOUNS,
                 old.rule == piece.rule,
