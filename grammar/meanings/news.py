@@ -58,7 +58,7 @@ class News:
 @meaning("news")
 def news(d: Discourse, node: Node) -> Steps:
     """ "come back and tell me who said yes", "announce the result in the lobby"."""
-    search = None if {"told", "back"} & node.parts.keys() else searched_last(d, node, "whom")
+    search = searched_last(d, node, "whom") if asks_where(node) else None
     person: Thing | None = d.get(node, "whom")
     if d.thing is not None and d.delivered == d.thing.value and _speaks_of_it(d, node):
         return []  # "get the key from Alice and come back with it": it is here by now
@@ -112,12 +112,26 @@ def _speaks_of_it(d: Discourse, node: Node) -> bool:
     return len(words) == 1 and words[0] in d.language.speech.get("things_too", ())
 
 
+def asks_where(node: Node) -> bool:
+    """Whether nothing is to be told but where something is: "find Bob and tell me where he is"; or
+    nothing is said of what is to be told: "find Bob and let me know"."""
+    told = node.parts.get("told")
+    if told is None:
+        return "back" not in node.parts
+    first = told.parts.get("first") if isinstance(told, Node) else None
+    only = isinstance(told, Node) and told.parts.keys() == {"first"}
+    return only and isinstance(first, Node) and first.means == "lookout_told" and (
+        first.production.fixed["tell"] == "which"
+    )
+
+
 def searched_last(d: Discourse, node: Node, whom: str) -> Thing | None:
     """What the last step looks for, if nothing else was found out: "find Bob and let me know", but
     not "and tell me the answer"."""
     last = d.done[-1] if d.done else None
     told_to = node.parts.get(whom)
-    if told_to is not None and told_to.end < node.end - 1:
+    told = node.parts.get("told")
+    if told is None and told_to is not None and told_to.end < node.end - 1:
         return None
     known = (d.report, d.answer, d.code, d.claim, d.news)
     if not (isinstance(last, Call) and last.method == "find") or any(each for each in known):

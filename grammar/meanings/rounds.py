@@ -19,6 +19,7 @@ from grammar.meanings.places import kind_places, sought
 from grammar.meanings.polls import polled
 from grammar.meanings.registry import meaning
 from grammar.meanings.searches import searched, searches
+from grammar.meanings.sights import told_where
 from grammar.meanings.surveys import asked_yet, note, replacing
 from grammar.naming import joined_up
 from grammar.plan import (
@@ -397,7 +398,8 @@ def places_told(d: Discourse, node: Node) -> Told:
     elif at is None:
         at = round_of_visits(d)
     if not named and at is None:
-        raise NotUnderstood(d.language.phrase("which_places"))
+        sought_for: Trait = d.get(node, "place_trait")
+        return told_where(d, None if sought_for.denied else sought_for.thing)
     loop = None if at is None else d.done[at]
     place = loop.variable if isinstance(loop, ForEach) else d.variable("place")
     before, d.at = d.at, Recall(place)

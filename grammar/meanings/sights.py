@@ -284,6 +284,13 @@ def where_found(d: Discourse, node: Node) -> Steps:
     return located(d, thing)
 
 
+def told_where(d: Discourse, thing: Thing | None) -> news.Told:
+    """ "where the wheelchair is", if no places were spoken of: it may be anywhere."""
+    if thing is None or thing.pronoun:
+        raise NotUnderstood(d.language.phrase("which_places"))
+    return news.Told(located(d, thing), [])
+
+
 def located(d: Discourse, thing: Thing) -> Steps:
     """Look for something or somebody, come back and say where it is."""
     if d.done and d.done[-1] == found(d, thing):
