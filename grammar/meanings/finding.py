@@ -242,7 +242,7 @@ def where_sent(d: Discourse, person: Thing) -> Thing:
         return person
     if not isinstance(d.at, Text) or not (person.known or particular(person)):
         return person
-    return replace(person, place=d.at)
+    return person if d.at == d.looked_in else replace(person, place=d.at)
 
 
 def particular(person: Thing) -> bool:

@@ -16,12 +16,14 @@ import msgspec
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, Where, as_value
 from grammar.doubts import NotUnderstood
+from grammar.freetext import words_for
 from grammar.meanings.genders import gender_of_thing
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report
 from grammar.meanings.sources import told_where
 from grammar.meanings.speaking import sentence_form
 from grammar.plan import Ask, Call, Text, Value
+from grammar.slots import command_words
 from grammar.tidy import replaced
 
 SUBJECTS: Final = ("person_ref", "place", "thing")
@@ -37,6 +39,7 @@ def remark(d: Discourse, node: Node) -> Steps:
     if d.tokens[node.start].norm in d.language.speech.get("no_remark", ()):
         words = d.words(node.start, node.end)  # "wherever there are none, ...": a condition
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
+    refuse_order(d, node)
     for name, part in node.parts.items():
         if name in SUBJECTS:
             verb = d.tokens[part.end].spelled if part.end < node.end else ""
@@ -49,6 +52,15 @@ def remark(d: Discourse, node: Node) -> Steps:
         d.report = Report("only", Text(sentence_form(_said(d, node))), about_here=False)
         d.report_step = None
     return aside(d, node)
+
+
+def refuse_order(d: Discourse, node: Node) -> None:
+    """Where nouns have articles, "va à l'accueil et attends Julie" tells of nobody called "va"."""
+    first = d.tokens[node.start].norm
+    orders = command_words(d.language) - words_for(d.language).nouns_too - d.language.closed
+    if d.language.speech.get("head_first") and first in orders:
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("not_understood", part=words))
 
 
 def aside(d: Discourse, node: Node) -> Steps:

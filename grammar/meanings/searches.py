@@ -111,6 +111,7 @@ def just_awaited(d: Discourse, thing: Thing) -> Condition | None:
     if last.arguments["thing"] != thing.value or thing.place not in (None, d.at):
         return None
     d.done.pop()
+    d.looked_in = d.at  # others are not looked for just there: "if he does not come, tell Alice"
     return Holds(Ask("wait_for", last.arguments))
 
 
