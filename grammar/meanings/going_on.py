@@ -50,7 +50,7 @@ STAYS_OUTSIDE: Final = frozenset(
     {
         *("news", "round_count", "compared"),
         *("come_back", "go", "go_places", "go_person", "go_find", "dock", "stop", "bring_too"),
-        *("for_each_place", "for_each_place_such", "for_each_of_them", "check_each_place"),
+        *("for_each_place", "for_each_place_such", "check_each_place"),
         *("do_that_times", "do_that_again", "do_that_until", "do_that_while", "do_that_forever"),
         *("skip_empty", "ended", "tour", "tour_goes_on"),
         *("same_for", "tell_that", "tell_me_that", "say_it", "reversed", "delayed", "bring_each"),
@@ -231,6 +231,8 @@ def goes_on(d: Discourse, loop: ForEach, first: Node) -> bool:
     """Whether a clause belongs to the round before it."""
     if not (loop.steps and goes_to(loop.steps[0], loop.variable)):
         return False
+    if first.production.means == "for_each_of_them":
+        return True  # "go to all wards. In each of them, ..."
     always = first.production.means == "when" and first.production.fixed.get("always")
     if always or first.production.means in ("if", "tell_condition"):
         about = {each.production.means for each in inside(first.parts["condition"])}

@@ -25,6 +25,7 @@ from grammar.discourse import (
     Thing,
 )
 from grammar.meanings.answers import wanted
+from grammar.meanings.deliveries import inside
 from grammar.meanings.finding import go
 from grammar.meanings.one_round import Make, One, leaves, round_of_steps
 from grammar.meanings.persons import kind_in_plural
@@ -162,7 +163,8 @@ def speaks_of_several(d: Discourse, node: Node, part: Node) -> bool:
 
 
 def all_of(d: Discourse, part: Node) -> bool:
-    """Whether it speaks of all there are: "the boxes in the supply room"."""
+    """Whether it speaks of all there are: "the boxes in the supply room", "go round the offices and
+    bring the cups to the kitchen"."""
     head = part.parts.get("head")
     if d.tokens[part.start].norm not in d.language.speech.get("definite", ()) or head is None:
         return False
@@ -171,10 +173,13 @@ def all_of(d: Discourse, part: Node) -> bool:
         return False  # "the chips"
     if "superlative" in part.parts or singular(said, d.language) == said:
         return False
+    if any(each.means == "each_place" for each in inside(part)):
+        return True  # "the cups in the meeting rooms"
     before = d.thing, d.thing_last
     thing: Thing = d.build(part)
     d.thing, d.thing_last = before
-    return not thing.here and (thing.place is not None or bool(thing.furniture))
+    in_round = d.in_loop and isinstance(d.at, Recall)
+    return not thing.here and (in_round or thing.place is not None or bool(thing.furniture))
 
 
 def said_as_named(d: Discourse, head: Leaf) -> bool:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
+from msgspec import structs
+
 from grammar.chart import Node
 from grammar.discourse import START, Discourse, Steps, Thing
 from grammar.doubts import Ambiguous, NotUnderstood
@@ -40,8 +42,7 @@ HANDED: Final = frozenset({"bring", "grab", "put"})
 
 def over_things(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
     """ "two cups", "all the cups in the kitchen": one after the other, for the hand holds one."""
-    if node.means != "thing":
-        take_back(d, thing)
+    around = take_back(d) if node.means != "thing" else None
     if thing.place is None and d.taken_from is not None:
         thing = replace(thing, place=d.taken_from.place, furniture=d.taken_from.furniture)
     thing = where_told(d, thing)
@@ -67,6 +68,8 @@ def over_things(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
     steps = rounds(d, node, thing, single, body)
     if d.delivered is not None:
         d.delivered_in = steps[-1]
+    if around is not None:
+        steps = [structs.replace(around, steps=(*around.steps[:-1], *steps))]
     d.thing, d.thing_last = thing, True
     return steps
 
@@ -153,15 +156,20 @@ def moves_nothing(body: Steps) -> bool:
     return not any(isinstance(step, Call) and step.method in ("find", "goto") for step in body)
 
 
-def take_back(d: Discourse, thing: Thing) -> None:
+def take_back(d: Discourse) -> ForEach | None:
     """ "collect the cups in the ward and take them to the kitchen": straight there, and not first
-    to who says so."""
-    if d.done and d.done[-1] is d.delivered_in:
+    to who says so. The round of places in which they were to be fetched, if there was one."""
+    last = d.done[-1] if d.done else None
+    around = last if isinstance(last, ForEach) and last.steps else None
+    inner = last if around is None else around.steps[-1]
+    if d.delivered_in is not None and inner is d.delivered_in:
         d.done.pop()
         d.delivered_in = d.delivered = None
+        return around
     if d.listed_last and d.done[-len(d.listed_last) :] == d.listed_last:
         del d.done[-len(d.listed_last) :]  # "find three cups in the ward and bring them here"
         d.listed_last = []
+    return None
 
 
 def where_from(d: Discourse, node: Node, thing: Thing) -> Ambiguous:
