@@ -23,7 +23,6 @@ from grammar.meanings.reports import Report
 from grammar.meanings.sources import told_where
 from grammar.meanings.speaking import sentence_form
 from grammar.plan import Ask, Call, Text, Value
-from grammar.slots import command_words
 from grammar.tidy import replaced
 
 SUBJECTS: Final = ("person_ref", "place", "thing")
@@ -57,7 +56,7 @@ def remark(d: Discourse, node: Node) -> Steps:
 def refuse_order(d: Discourse, node: Node) -> None:
     """Where nouns have articles, "va à l'accueil et attends Julie" tells of nobody called "va"."""
     first = d.tokens[node.start].norm
-    orders = command_words(d.language) - words_for(d.language).nouns_too - d.language.closed
+    orders = words_for(d.language).verbs - words_for(d.language).nouns_too
     if d.language.speech.get("head_first") and first in orders:
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
