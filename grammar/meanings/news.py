@@ -120,8 +120,11 @@ def asks_where(node: Node) -> bool:
         return "back" not in node.parts
     first = told.parts.get("first") if isinstance(told, Node) else None
     only = isinstance(told, Node) and told.parts.keys() == {"first"}
-    return only and isinstance(first, Node) and first.means == "lookout_told" and (
-        first.production.fixed["tell"] == "which"
+    return (
+        only
+        and isinstance(first, Node)
+        and first.means == "lookout_told"
+        and (first.production.fixed["tell"] == "which")
     )
 
 
