@@ -108,7 +108,7 @@ def begun_before(d: Discourse) -> Thing | None:
     """Several things that were to be fetched, before it was said for whom."""
     several = d.thing if d.thing is not None and d.thing.several else None
     if several is not None:
-        take_back(d, several)
+        take_back(d)
         d.collected = d.holding = None
     return several
 
