@@ -248,7 +248,8 @@ class PaperRobot:
         if person is None and self.partner in here:
             return str(self.partner)
         if person in here:
-            return str(person)
+            self.partner = str(person)  # whoever is asked is who is spoken to next
+            return self.partner
         if self.partner in here and (self.partner, self.place) in self.met:
             return str(self.partner)  # who was waited for just now
         unmet = [who for who in here if not self.asked.get(who)]
