@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 
 from grammar.chart import CORRECTION, Corrected, Match, Slot
@@ -251,7 +251,7 @@ class Slots:
                         break
                     cost += 4.0
                 continue
-            if position > at and self._begins_news(position):
+            if position > at and (self._begins_news(position) or self._only_if(position)):
                 break
             if position > at and (self._begins_command(position) or self._condition(position)):
                 cost += SWALLOWED_COMMAND
@@ -340,13 +340,26 @@ class Slots:
         before = self.tokens[at - 1].norm
         if before not in (COMMA, STOP, COLON, *self._joins):
             return False
-        return any(
-            all(
-                at + more < len(self.tokens) and word in ("*", self.tokens[at + more].norm)
-                for more, word in enumerate(words.split())
-            )
-            for words in self.language.speech.get("news_begins", ())
+        begins = self.language.speech.get("news_begins", ())
+        return any(self._stands_here(at, words.split()) for words in begins)
+
+    def _stands_here(self, at: int, words: Sequence[str]) -> bool:
+        """Whether these are the words from a token on, "*" being any word."""
+        return at + len(words) <= len(self.tokens) and all(
+            word in ("*", self.tokens[at + more].norm) for more, word in enumerate(words)
         )
+
+    def _only_if(self, at: int) -> bool:
+        """Whether it is said at the end of a clause for which answer it is: "... if not"."""
+        tails = [tail.split() for tail in self.language.speech.get("answer_tails", ())]
+        return any(
+            self._stands_here(at, tail) and self._clause_ends(at + len(tail)) for tail in tails
+        )
+
+    def _clause_ends(self, at: int) -> bool:
+        if at >= len(self.tokens):
+            return True
+        return self.tokens[at].kind == "mark" or self.tokens[at].norm in self._joins
 
     def _goes_on(self, at: int) -> bool:
         """Whether after a comma or full stop something else is said to be done: ", then"."""

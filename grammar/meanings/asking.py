@@ -23,6 +23,7 @@ from grammar.plan import (
     Number,
     Recall,
     Repeat,
+    Text,
     Value,
 )
 
@@ -86,12 +87,14 @@ def put(
     if person is None and isinstance(d.with_person, Recall):  # whose turn it is in a round
         known = d.with_person
         call = _to(call, known)
+    elif person is None and isinstance(d.with_person, Text) and d.with_person.value in d.named:
+        known = d.with_person  # whoever was spoken to before
     who_else = d.place if d.in_loop and isinstance(d.place, Recall) and d.place == d.at else None
     asking = asked(d, call, options, known or who_else, nouns)
-    here = person is None or is_me(person) or d.with_person is not None
-    if known is None and who_else is not None and person is not None and not here:
+    if known is None and who_else is not None and not is_me(person) and d.with_person is None:
         # A round comes to places where nobody is.
-        return [*steps, If(Holds(Ask("sees", {"thing": person.value})), (asking,))]
+        anyone = Text(ANYONE) if person is None else person.value
+        return [*steps, If(Holds(Ask("sees", {"thing": anyone})), (asking,))]
     if person is not None and not steps:
         return if_met(d, person, [asking])
     return [*steps, asking]

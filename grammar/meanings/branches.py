@@ -56,6 +56,7 @@ from grammar.meanings.turns import in_their_turn
 from grammar.plan import (
     Ask,
     Call,
+    Compare,
     Condition,
     Holds,
     If,
@@ -63,6 +64,7 @@ from grammar.plan import (
     Recall,
     Remember,
     Step,
+    Text,
     Truth,
 )
 from grammar.tidy import mentions, nodes
@@ -109,6 +111,9 @@ def if_(d: Discourse, node: Node) -> Steps:
     asked = d.answer is not None and d.answer != known
     denied = node.parts.get("otherwise_denied")
     none, found = node.parts.get("otherwise_none"), node.parts.get("otherwise_so")
+    if asked and denied is None and denies(d, condition):
+        # "if not, ask Bob, and if he doesn't have one either, ask Clara": it is Bob who denies it
+        denied = none or node.parts.get("otherwise_not")
     part, further = none or found, None
     if part is not None and met is not None and not met.holds:
         # "if it is not in the lab, look in the store; if it is not there either, ...": both are so
@@ -151,6 +156,14 @@ def if_(d: Discourse, node: Node) -> Steps:
             return [*before_it, *counted, whole, *told]
     d.branched = Branched(whole, start, met, d.answer)
     return [*before_it, *counted, whole]
+
+
+def denies(d: Discourse, condition: Condition) -> bool:
+    """Whether a condition is that somebody answered with no."""
+    refuse = Text(d.language.phrase("no"))
+    return (
+        isinstance(condition, Compare) and condition.operator == "==" and condition.right == refuse
+    )
 
 
 def if_found_so(d: Discourse, node: Node, search: Search) -> Steps:

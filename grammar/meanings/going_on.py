@@ -19,6 +19,7 @@ from grammar.meanings.news import BACK, News, go_back
 from grammar.meanings.news import in_round as in_a_round
 from grammar.meanings.persons import is_me
 from grammar.meanings.rounds import goes_to, told_after_round
+from grammar.meanings.there import counts_answers
 from grammar.plan import (
     Ask,
     Call,
@@ -235,7 +236,12 @@ def goes_on(d: Discourse, loop: ForEach, first: Node) -> bool:
         return True  # "go to all wards. In each of them, ..."
     always = first.production.means == "when" and first.production.fixed.get("always")
     if always or first.production.means in ("if", "tell_condition"):
-        about = {each.production.means for each in inside(first.parts["condition"])}
+        parts = inside(first.parts["condition"])
+        about = {
+            each.production.means
+            for each in parts
+            if each.means != "counted" or not counts_answers(d, each)
+        }
         return bool(about & OF_THE_ROUND) and not any(
             isinstance(each.parts.get("place"), Leaf) for each in inside(first.parts["condition"])
         )

@@ -91,7 +91,7 @@ def person_pronoun(d: Discourse, node: Node) -> Thing:
         d.named.append(host.text)
         d.person = host
         return host
-    if d.person is not None and d.person.group is not None and d.last_named is not None:
+    if d.person is not None and is_several(d.person) and d.last_named is not None:
         several = d.language.speech.get("things_too", ())
         if not set(d.norms(node.start, node.end)) & set(several):
             return d.last_named  # "him", after "Alice and Bob ... tell Dr Weber"
@@ -118,6 +118,11 @@ def person_pronoun(d: Discourse, node: Node) -> Thing:
     if d.last_named is not None and d.with_person is None and not d.is_plural(node):
         return d.last_named  # somebody named in the other branch
     return Thing(d.with_person or Text(ANYONE), person=True, here=True)
+
+
+def is_several(person: Thing) -> bool:
+    """Whether somebody is a group, or all who are somewhere."""
+    return person.group is not None or person.plural
 
 
 def host_here(d: Discourse, node: Node) -> Thing | None:

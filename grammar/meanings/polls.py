@@ -17,6 +17,7 @@ from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.answers import Said, Wanted, is_about, wanted, yes
+from grammar.meanings.follow_ups import said_in_all
 from grammar.meanings.news import Told, last_found
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import (
@@ -355,7 +356,8 @@ def answer_of(d: Discourse, node: Node) -> Told:
         return polled(d, "answers" if said is None else "who", said)
     answer = Recall(str(survey.call.save_as))
     if said is None:
-        return Told([Call("say", {"text": answer})], [])
+        last = survey.call.save_as == d.answer
+        return Told([Call("say", {"text": said_in_all(d) if last else answer})], [])
     meant = wanted(d, survey, said)
     told_yes, told_no = d.say("yes_said", answer=answer), d.say("no_said", answer=answer)
     return Told([If(meant.given(survey), (told_yes,), (told_no,))], [])

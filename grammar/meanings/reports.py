@@ -14,6 +14,7 @@ from grammar.doubts import NotUnderstood
 from grammar.meanings import news, polls
 from grammar.meanings.absences import undelivered
 from grammar.meanings.finding import is_here, speak_to
+from grammar.meanings.follow_ups import said_in_all
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
@@ -214,7 +215,7 @@ def known_words(d: Discourse) -> Steps:
     if d.answer is not None:
         if d.surveys and (in_loop(d, d.surveys[-1].call) or several_asked(d)):
             return polls.polled(d, d.polled_for or "answers", None).words
-        return [Call("say", {"text": Recall(d.answer)})]
+        return [Call("say", {"text": said_in_all(d)})]
     if d.code is not None:
         return [d.say("code_is", value=Recall(d.code))]
     raise NotUnderstood(d.language.phrase("say_what"))

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Final
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, START, Discourse, Meeting, Thing, Where
 from grammar.doubts import NotUnderstood
+from grammar.meanings.answers import yes
 from grammar.meanings.conditions import negated
 from grammar.meanings.deliveries import delivered_last, own_place
 from grammar.meanings.finding import noun_of, whether_found
 from grammar.meanings.news import in_round
 from grammar.meanings.places import sought
+from grammar.meanings.polls import counted as counted_answers
 from grammar.meanings.registry import meaning
 from grammar.meanings.searches import just_awaited, just_looked_for
+from grammar.meanings.surveys import asked_before, asked_yet, of_one_question
 from grammar.plan import (
     Ask,
     Both,
@@ -30,6 +34,9 @@ from grammar.plan import (
     Text,
     Value,
 )
+
+COUNTED: Final = frozenset({"thing", "person_ref"})
+"""The parts of a condition that say what is counted."""
 
 
 @meaning("is_seen")
@@ -189,7 +196,9 @@ def place_empty(d: Discourse, node: Node) -> Condition:
 
 @meaning("counted")
 def counted(d: Discourse, node: Node) -> Condition:
-    """ "there are more than three people"."""
+    """ "there are more than three people"; of those who were asked before, who said yes."""
+    if counts_answers(d, node):
+        return so_many_agreed(d, int(d.get(node, "count")), d.get(node, "operator", "=="))
     thing = counted_thing(d, node)
     spot: Where | None = d.get(node, "where")
     if spot is not None:
@@ -212,9 +221,23 @@ def _so_many(d: Discourse, thing: Thing, number: int, operator: str) -> Compare:
     return Compare(Ask("count", {"thing": sought(d, thing)}), operator, Number(number))
 
 
+def counts_answers(d: Discourse, node: Node) -> bool:
+    """Whether a condition that does not say what is counted is on the answers of those asked."""
+    return not node.parts.keys() & COUNTED and d.last_counted is None and asked_yet(d)
+
+
+def so_many_agreed(d: Discourse, number: int, operator: str) -> Compare:
+    """Whether so many of those who were asked have said yes."""
+    surveys = of_one_question(asked_before(d))
+    agree = yes(d)
+    if not set(agree.options) <= set(surveys[-1].options):
+        raise NotUnderstood(d.language.phrase("count_what"))
+    return Compare(counted_answers(d, surveys, agree), operator, Number(number))
+
+
 def counted_thing(d: Discourse, node: Node) -> Thing:
     """What a condition counts: what was counted before, where it does not say."""
-    if "thing" in node.parts or "person_ref" in node.parts:
+    if node.parts.keys() & COUNTED:
         return noun_of(d, node)
     if d.last_counted is None:
         raise NotUnderstood(d.language.phrase("count_what"))

@@ -1,0 +1,50 @@
+"""What somebody has said who was asked further only because of an answer: "ask Bob if he is coming.
+If so, ask him when. Tell me what he said": yes and when, or no.
+"""
+
+from __future__ import annotations
+
+from grammar.discourse import Discourse
+from grammar.meanings.surveys import Survey, asked_so_far, in_line, in_loop, note
+from grammar.plan import Call, Recall, Remember, Sentence, Text, Value
+
+
+def said_in_all(d: Discourse) -> Value:
+    """What was answered to the last question, or to the one that it hangs on where it was not
+    asked."""
+    assert d.answer is not None
+    first = _hangs_on(d)
+    return Recall(d.answer) if first is None else _noted(d, first)
+
+
+def _hangs_on(d: Discourse) -> Survey | None:
+    """The question to the same person that was asked in any case, if the last one was not."""
+    asked, surely = asked_so_far(d), in_line(d)
+    last = asked[-1] if asked else None
+    if last is None or last.call.save_as != d.answer or in_loop(d, last.call):
+        return None
+    if not surely or any(each is last for each in surely) or surely[-1].call.save_as == d.answer:
+        return None
+    first = surely[-1]
+    same = first.who is not None and first.who == last.who
+    return first if same and not in_loop(d, first.call) else None
+
+
+def _noted(d: Discourse, first: Survey) -> Value:
+    key = ("said in all", id(first.call))
+    if key not in d.notes:
+        d.notes[key] = d.variable("said")
+        note(d, first.call, [Remember(d.notes[key], _answer(first.call))], [])
+    said = d.notes[key]
+    for each in asked_so_far(d):
+        further = ("said further", id(each.call))
+        if each is first or each.who != first.who or further in d.notes:
+            continue
+        d.notes[further] = said
+        both = Sentence((_answer(first.call), Text(", "), _answer(each.call)))
+        note(d, each.call, [Remember(said, both)], [])
+    return Recall(said)
+
+
+def _answer(call: Call) -> Recall:
+    return Recall(str(call.save_as))
