@@ -151,7 +151,9 @@ def speaks_of_several(d: Discourse, node: Node, part: Node) -> bool:
     if part.means == "person_pronoun" and d.thing_last:
         return d.thing is not None and d.thing.several and d.is_plural(part)
     if part.means == "person_pronoun":
-        return d.person is not None and d.person.group is not None and d.is_plural(part)
+        each = node.means in HANDED and each_asked(d) is not None
+        group = d.person is not None and d.person.group is not None
+        return (group or each) and d.is_plural(part)
     if part.means == "thing" and part.production.rule == "simple_thing":
         return False
     if part.means == "thing":
@@ -214,6 +216,10 @@ def over(d: Discourse, several: list[Node], make: Make) -> Steps:
 
 
 def over_people(d: Discourse, node: Node, person: Thing, one: One) -> Steps:
+    if person.plural and person.text == ANYONE and person.place is None:
+        steps = each_their_own(d, one)  # "bring everyone what they asked for"
+        if steps is not None:
+            return steps
     group = person.group
     if isinstance(group, Items):
         return each_named(d, group, person, one)
@@ -294,15 +300,23 @@ def over_them(d: Discourse, node: Node, person: Thing, one: One) -> Steps:
     """ "them": people, or things that were spoken of after them."""
     if d.thing_last and d.thing is not None:
         return over_things(d, node, d.thing, one)
+    steps = each_their_own(d, one)
+    return over_people(d, node, person, one) if steps is None else steps
+
+
+def each_their_own(d: Discourse, one: One) -> Steps | None:
+    """ "ask Alice and Bob what they want and bring it to them": to whose turn it is, if it is what
+    they have answered."""
     asked = each_asked(d)
-    if asked is not None:  # "ask Alice and Bob what they want and bring it to them": each their own
-        scene = d.scene()
-        d.at = None
-        steps = one(asked)
-        if uses_answer(d, steps):
-            return steps
-        d.set_scene(scene)
-    return over_people(d, node, person, one)
+    if asked is None:
+        return None
+    scene = d.scene()
+    d.at = None
+    steps = one(asked)
+    if uses_answer(d, steps):
+        return steps
+    d.set_scene(scene)
+    return None
 
 
 def over_those_who(d: Discourse, node: Node, person: Thing, one: One) -> Steps:
