@@ -27,7 +27,7 @@ class Name:
     attributes: tuple[str, ...] = ()
     """What a person may say of it: "red", "sitting"."""
     inside: str | None = None
-    """The place that a piece of furniture stands in."""
+    """The place that a piece of furniture stands in; of a place, what it is a part of: a floor."""
 
 
 @dataclass(frozen=True)

@@ -99,6 +99,8 @@ class Names:
             self._add_name("place", place)
             for text in (place.name, *place.aliases):
                 self._shorter(place, text)
+        for area in dict.fromkeys(place.inside for place in self.lexicon.places if place.inside):
+            self._add("area", area, area)
         for kind in self.lexicon.place_kinds:
             one, many = kind_words(kind, self.language)
             for word in one:

@@ -106,6 +106,9 @@ class Round:
     """What a round looks for that nobody was told of (`grammar.meanings.lookouts.Lookout`)."""
     stop: Any = None
     """What is looked for at this stop of a round (`grammar.meanings.rounds.Trait`)."""
+    here: Value | None = None
+    """The stop of a round that a clause after it is about: "if one has none, come back and tell me
+    which one"."""
     present: Any = None
     """The news of who of several people is in (`grammar.meanings.presence`)."""
     such: str | None = None

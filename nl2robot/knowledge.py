@@ -59,7 +59,9 @@ class Knowledge:
             return aliases.get(language, ())
 
         lexicon = Lexicon(
-            places=tuple(Name(p.name, p.kind, said(p.aliases)) for p in world.places),
+            places=tuple(
+                Name(p.name, p.kind, said(p.aliases), inside=p.inside) for p in world.places
+            ),
             people=tuple(Name(p.name, p.kind, said(p.aliases), p.is_) for p in world.people),
             objects=tuple(Name(o.name, o.kind, said(o.aliases), o.is_) for o in world.objects),
             furniture=(

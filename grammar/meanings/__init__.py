@@ -14,6 +14,7 @@ import grammar.meanings.answers
 import grammar.meanings.best_places
 import grammar.meanings.body
 import grammar.meanings.branches
+import grammar.meanings.checked
 import grammar.meanings.conditions
 import grammar.meanings.control
 import grammar.meanings.conversation
@@ -51,6 +52,7 @@ import grammar.meanings.surveys
 import grammar.meanings.telling_if
 import grammar.meanings.there
 import grammar.meanings.things
+import grammar.meanings.traits
 import grammar.meanings.visiting
 import grammar.meanings.volunteers
 import grammar.meanings.waiting

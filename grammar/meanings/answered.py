@@ -216,7 +216,7 @@ def said_so(d: Discourse, no: bool, there_is_none: bool = False) -> Condition:
         d.met = Meeting(delivery.thing, holds=False, sought=True)
         return Not(Holds(Ask("find", {"thing": delivery.thing.value})))
     if d.answer is None:
-        from grammar.meanings.reports import checked
+        from grammar.meanings.checked import checked
 
         about = d.report.thing if d.report is not None else None
         looked = seen_there(d)

@@ -39,7 +39,7 @@ from grammar.meanings.deliveries import (
     taken_back,
 )
 from grammar.meanings.finding import not_found
-from grammar.meanings.news import BACK, News, go_back
+from grammar.meanings.news import BACK, News
 from grammar.meanings.registry import meaning
 from grammar.meanings.searches import (
     Search,
@@ -223,17 +223,10 @@ def only_told(part: Leaf | Node | None) -> bool:
     """Whether a branch does nothing but come back and tell: "see if she is there, then tell me"."""
     each = part
     while isinstance(each, Node):
-        first = first_clause(each)
-        if first.means not in ("come_back", "tell_me_that", "tell_that"):
-            return False
-        if not all(is_node_of(part, "person_me") for part in first.parts.values()):
+        if first_clause(each).means not in ("come_back", "tell_me_that", "tell_that"):
             return False
         each = each.parts.get("rest")
     return part is not None
-
-
-def is_node_of(part: Leaf | Node, means: str) -> bool:
-    return isinstance(part, Node) and part.means == means
 
 
 def found_out_either_way(d: Discourse, node: Node, before_it: Steps, condition: Condition) -> Steps:
@@ -248,9 +241,13 @@ def found_out_either_way(d: Discourse, node: Node, before_it: Steps, condition: 
         noted = [Remember(name, condition.value)]
     words: Steps = [If(Holds(Recall(name)), (yes,), (no,))]
     d.report, d.checked = None, name
-    back = go_back(d, [*before_it, *noted])
-    d.news, d.told = News(words, True), words[-1]
-    return [*before_it, *noted, *back, *words]
+    d.done += [*before_it, *noted]
+    d.news = News(words, True, waiting=True)
+    told: Steps = d.build(node.parts["then"])
+    if d.news.waiting:  # "..., then come back": to say it
+        d.news, d.told = News(words, True), words[-1]
+        return [*told, *words]
+    return told
 
 
 def other_hands_it_over(node: Node) -> bool:

@@ -13,11 +13,11 @@ from grammar.meanings.finding import go, not_found
 from grammar.meanings.found_places import if_such
 from grammar.meanings.going_on import in_round
 from grammar.meanings.inquiries import owed, wonder_told
-from grammar.meanings.lookouts import told_at_last
+from grammar.meanings.lookouts import told_at_last, why, why_only
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import summed_at_end
 from grammar.meanings.searches import Search, search_of
-from grammar.meanings.stops import gone_to, said_at_each
+from grammar.meanings.stops import gone_to, looked_at_each, said_at_each
 from grammar.meanings.surveys import moved
 from grammar.meanings.things import goes_on
 from grammar.meanings.visiting import with_each_asked
@@ -72,6 +72,12 @@ def steps(d: Discourse, node: Node) -> Steps:
                     each = chained(first.parts["earlier"])
                 continue
             first, beside = side_by_side(d, first)
+            looked_at_each(d, places, first)
+            rest = each.parts.get("rest")
+            if isinstance(rest, Node) and why_only(first, rest):
+                why(d, first)
+                each = rest
+                continue
             d.done.extend(in_branch(d, first) or with_each_asked(d, first) or in_round(d, first))
             new = d.done[before:]
             places = gone_to(d, first, new) or said_at_each(d, places, new)

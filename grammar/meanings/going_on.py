@@ -8,17 +8,18 @@ from typing import Final
 
 from msgspec.structs import replace
 
-from grammar.chart import Leaf, Node
+from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Steps, Thing
 from grammar.meanings.claims import claim_of
 from grammar.meanings.conditions import condition_of
 from grammar.meanings.deliveries import first_clause, inside
 from grammar.meanings.finding import speak_to
+from grammar.meanings.gone_round import goes_to
 from grammar.meanings.lookouts import ABOUT_IT
 from grammar.meanings.news import BACK, News, go_back
 from grammar.meanings.news import in_round as in_a_round
 from grammar.meanings.persons import is_me
-from grammar.meanings.rounds import goes_to, told_after_round
+from grammar.meanings.rounds import told_after_round
 from grammar.meanings.there import counts_answers
 from grammar.plan import (
     Ask,
@@ -53,7 +54,7 @@ STAYS_OUTSIDE: Final = frozenset(
         *("come_back", "go", "go_places", "go_person", "go_find", "dock", "stop", "bring_too"),
         *("for_each_place", "for_each_place_such", "check_each_place"),
         *("do_that_times", "do_that_again", "do_that_until", "do_that_while", "do_that_forever"),
-        *("skip_empty", "ended", "tour", "tour_goes_on"),
+        *("skip_empty", "ended", "tour", "tour_goes_on", "look_now", "round_check"),
         *("same_for", "tell_that", "tell_me_that", "say_it", "reversed", "delayed", "bring_each"),
         *("when", "repeat", "until", "while", "forever", "at_intervals", "corrected", "guide_list"),
     }
@@ -80,7 +81,7 @@ def in_round(d: Discourse, clause: Node) -> Steps:
         return told_behind(d, loop, first)
     here = Recall(loop.variable)
     outer, d.done = d.done, list(loop.steps)
-    d.at = d.place = here
+    d.at = d.place = d.round.here = here
     lookout = d.round.lookout if means not in (*ABOUT_IT, "if", "when") else None
     d.round.stop, d.round.lookout = None if d.round.lookout is None else d.round.lookout.trait, None
     if lookout is not None:
@@ -92,7 +93,7 @@ def in_round(d: Discourse, clause: Node) -> Steps:
         inner = [*d.done, *(more if lookout is None else lookout.acted_on(more))]
     finally:
         d.done, d.in_loop = outer, in_loop
-    d.at = d.with_person = d.round.stop = None
+    d.at = d.with_person = d.round.stop = d.round.here = None
     loop = replace(loop, steps=tuple(inner))
     if behind is not None:
         d.done.append(loop)
@@ -112,7 +113,7 @@ def found_there_too(d: Discourse, first: Node) -> None:
 def about_places(first: Node) -> bool:
     """Whether a clause tells of what is at a place."""
     info = first.parts.get("info")
-    seen = isinstance(info, Node) and info.means in SEEN
+    seen = isinstance(info, Node) and what_it_means(info) in SEEN
     return first.means == "tell_condition" or (first.means == "report" and seen)
 
 
@@ -228,23 +229,32 @@ def brought_behind(d: Discourse, loop: ForEach) -> Steps:
     return [loop, BACK, *words]
 
 
+def conditional(first: Node) -> bool:
+    """Whether a clause is done only if something is so, each time anew."""
+    always = first.production.means == "when" and first.production.fixed.get("always")
+    return bool(always) or first.production.means in ("if", "tell_condition")
+
+
+def depends_on_stop(d: Discourse, first: Node) -> bool:
+    """Whether the condition of a clause is about what is found wherever the robot is."""
+    condition = [*inside(first.parts["condition"])]
+    about = {
+        each.production.means
+        for each in condition
+        if each.means != "counted" or not counts_answers(d, each)
+    }
+    named = any(isinstance(each.parts.get("place"), Leaf) for each in condition)
+    return bool(about & OF_THE_ROUND) and not named
+
+
 def goes_on(d: Discourse, loop: ForEach, first: Node) -> bool:
     """Whether a clause belongs to the round before it."""
     if not (loop.steps and goes_to(loop.steps[0], loop.variable)):
         return False
     if first.production.means == "for_each_of_them":
         return True  # "go to all wards. In each of them, ..."
-    always = first.production.means == "when" and first.production.fixed.get("always")
-    if always or first.production.means in ("if", "tell_condition"):
-        parts = inside(first.parts["condition"])
-        about = {
-            each.production.means
-            for each in parts
-            if each.means != "counted" or not counts_answers(d, each)
-        }
-        return bool(about & OF_THE_ROUND) and not any(
-            isinstance(each.parts.get("place"), Leaf) for each in inside(first.parts["condition"])
-        )
+    if conditional(first):
+        return depends_on_stop(d, first)
     if len(loop.steps) > 1 or first.production.means in STAYS_OUTSIDE:
         return False
     if d.round.lookout is not None and any(each.means == "thing_it" for each in inside(first)):

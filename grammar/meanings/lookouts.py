@@ -18,18 +18,33 @@ from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, as_value
 from grammar.doubts import NotUnderstood
 from grammar.meanings.conditions import negated
+from grammar.meanings.deliveries import first_clause, inside
 from grammar.meanings.finding import look_for, speak_to
+from grammar.meanings.gone_round import (
+    last_round,
+    of_them,
+    of_those,
+    round_of,
+    same_round,
+    visits_alone,
+)
 from grammar.meanings.news import News, Told, go_back, in_round, last_found
 from grammar.meanings.persons import is_me
+from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
-from grammar.meanings.rounds import Trait, found_places, last_round, round_of, same_round
-from grammar.meanings.searches import named_places, search_in
-from grammar.plan import Call, Collect, End, ForEach, If, Items, Recall, Remember, Value
+from grammar.meanings.rounds import found_places
+from grammar.meanings.searches import named_places, search_in, searched, searches
+from grammar.meanings.sights import named_some
+from grammar.meanings.traits import Trait
+from grammar.plan import Ask, Call, Collect, End, ForEach, Holds, If, Items, Recall, Remember, Value
 
 ABOUT_IT: Final = frozenset(
     {"news", "tell_that", "tell_me_that", "tell_condition", "come_back", "look_now", "report"}
 )
 """Clauses that say what is to be told of a round."""
+
+LOOKS: Final = frozenset({"round_check", "for_each_place", "find", "report", "news"})
+"""Clauses that look for something, or ask where it is."""
 
 
 @dataclass(frozen=True)
@@ -100,7 +115,8 @@ class Lookout:
 @meaning("round_check")
 def round_check(d: Discourse, node: Node) -> Steps:
     """ "check every office for a stapler", "see whether each of the labs has a microscope"."""
-    places: Value = d.get(node, "kinds")
+    them = node.production.fixed.get("of_them")
+    places: Value = of_them(d) if them else of_those(d, d.get(node, "kinds"))
     if same_round(d, places):
         return []
     place = d.variable("place")
@@ -131,15 +147,61 @@ def definite(d: Discourse, node: Node, thing: Thing | None) -> bool:
 def lookout_told(d: Discourse, node: Node) -> Told:
     """ "whether there is one", "where you saw one": of what was looked for."""
     lookout: Lookout | None = d.round.lookout
+    tell = str(node.production.fixed["tell"])
     if lookout is not None:
-        return lookout.told(d, str(node.production.fixed["tell"]))
-    if in_round(d):  # "if one has none, tell me which one"
-        return Told([d.say("such_places", places=as_value(d.at))], [])
+        return lookout.told(d, tell)
+    here = d.at if in_round(d) else d.round.here
+    if here is not None:  # "if one has none, tell me which one"
+        return Told([d.say("such_places", places=as_value(here))], [])
+    looked = looked_on_visits(d, node)
+    if looked is not None:
+        return looked.told(d, tell)
     if d.news is not None:
         return last_found(d)
     if d.round.such is None:
-        raise NotUnderstood(d.language.phrase("which_places"))
+        return told_of_search(d, tell)
     return Told([d.say("it_is_there", place=Recall(d.round.such))], [])
+
+
+def looked_on_visits(d: Discourse, node: Node) -> Lookout | None:
+    """ "go through all rooms and tell me if you see a dog": what is to be looked for on a round in
+    which nothing else is done."""
+    visits = visits_alone(d)
+    if visits is None:
+        return None
+    thing: Thing | None = d.get(node, "thing") or (d.thing if d.thing_last else d.person)
+    if thing is None:
+        raise NotUnderstood(d.language.phrase("which_places"))
+    seen = Trait(Holds(Ask("sees", {"thing": sought(d, thing)})), [], thing)
+    return Lookout(visits.variable, visits.items, seen, thing, d.depth, True, "any")
+
+
+def told_of_search(d: Discourse, tell: str) -> Told:
+    """ "look for a ladder in the lobby and tell Bob whether there is one", "check the lobby and the
+    hall for it and tell me where it is": of the search that the last step is."""
+    condition = searched(d.done[-1] if d.done else None)
+    if condition is None:
+        raise NotUnderstood(d.language.phrase("which_places"))
+    looked = searches(condition)
+    value = looked[0].arguments["thing"]
+    known = (each for each in (d.thing, d.person) if each and sought(d, each) == value)
+    thing = next(known, Thing(value))
+    places = tuple(each.arguments["place"] for each in looked if "place" in each.arguments)
+    if len(places) > 1:
+        place = d.variable("place")
+        d.done[-1] = round_of(d, Items(places), [], place)
+        seen = Trait(Holds(Ask("sees", {"thing": value})), [], thing)
+        return Lookout(place, Items(places), seen, thing, d.depth, True, tell).told(d)
+    if tell != "any" or len(looked) > 1:
+        raise NotUnderstood(d.language.phrase("which_places"))
+    found = d.variable("found")
+    d.done[-1] = Remember(found, looked[0])
+    words = If(
+        Holds(Recall(found)),
+        (d.say("yes_seen", thing=named_some(d, thing)),),
+        (d.say("no_seen", thing=named_some(d, thing)),),
+    )
+    return Told([words], [])
 
 
 def tell_lookout(d: Discourse, person: Thing | None) -> Steps | None:
@@ -160,6 +222,28 @@ def look_now(d: Discourse, node: Node) -> Steps:
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
     return []
+
+
+def why_only(clause: Node, rest: Node) -> bool:
+    """ "I need a projector. Which of the rooms has one?": whether a clause only says why something
+    is looked for. It is then what is spoken of, and nothing is done about it yet."""
+    wish = first_clause(clause)
+    if not wish.production.fixed.get("why"):
+        return False
+    of_it = (each.production.fixed.get("it") or each.means == "thing_it" for each in inside(rest))
+    return first_clause(rest).means in LOOKS and any(of_it)
+
+
+def why(d: Discourse, clause: Node) -> None:
+    """Speak of what is needed, and of no more."""
+    wish = first_clause(clause)
+    part = wish.parts.get("thing") or wish.parts["person_ref"]
+    thing: Thing = d.build(part)
+    if thing.person:
+        d.person, d.thing_last = thing, False
+    else:
+        d.thing, d.thing_last = thing, True
+    d.background.append(d.words(clause.start, clause.end))
 
 
 @meaning("looking_for")

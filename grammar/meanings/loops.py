@@ -14,10 +14,10 @@ from grammar.meanings.claims import meet_there
 from grammar.meanings.conditions import FULL_HOUR, condition_of
 from grammar.meanings.deliveries import first_clause
 from grammar.meanings.finding import go, look_for, noun_of
-from grammar.meanings.going_on import brought_behind
+from grammar.meanings.going_on import about_places, brought_behind, in_round
+from grammar.meanings.gone_round import of_those, same_round
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
-from grammar.meanings.rounds import same_round
 from grammar.meanings.surveys import until_answered
 from grammar.meanings.waiting import at_least, awaited, looking_up, there_first, wait_until
 from grammar.plan import (
@@ -314,13 +314,16 @@ def for_each_place(d: Discourse, node: Node) -> Steps:
     if d.get(node, "same", kind) != kind:  # "from office to kitchen"
         raise NotUnderstood(d.language.phrase("which_places"))
     listed: list[Value] | None = d.get(node, "place_list")
-    items: Value = Items((d.get(node, "place"), *listed)) if listed else kind_places(d, kind)
+    items: Value = (
+        Items((d.get(node, "place"), *listed)) if listed else of_those(d, kind_places(d, kind))
+    )
     goes, body = bool(node.production.fixed.get("go")), node.parts.get("steps")
     if goes and body is None and same_round(d, items):
         return []
     if goes and isinstance(body, Node) and comes_back(body):
         d.done += each_place(d, items, None, goes)
-        after: Steps = d.build(body)
+        told = told_on_return(body)
+        after: Steps = in_round(d, told) if told is not None else d.build(body)
         return after
     return each_place(d, items, body, goes)
 
@@ -329,6 +332,17 @@ def comes_back(body: Node) -> bool:
     """ "visit the labs and come back and ...": what is done when all have been visited."""
     first = first_clause(body)
     return first.means == "come_back" or "back" in first.parts
+
+
+def told_on_return(body: Node) -> Node | None:
+    """What is to be told of the places that were visited, if there is nothing else to do: "visit
+    the labs and come back and tell me if you see a dog"."""
+    back, told = body.parts.get("first"), body.parts.get("rest")
+    if not (isinstance(back, Node) and first_clause(back).means == "come_back"):
+        return None
+    if not isinstance(told, Node) or "rest" in told.parts:
+        return None
+    return told if about_places(first_clause(told)) else None
 
 
 def each_place(d: Discourse, items: Value, steps: Leaf | Node | None, goes: bool) -> Steps:

@@ -37,6 +37,32 @@ def _between(first: str, last: str) -> list[str]:
     return []
 
 
+@meaning("places_alternate")
+def places_alternate(d: Discourse, node: Node) -> Value:
+    """ "the even-numbered offices": those whose names end with such a number."""
+    odd = int(node.production.fixed["odd"])
+    known = d.lexicon.place_kinds[str(d.get(node, "kinds"))]
+    numbers = {each: each.name.split()[-1] for each in known}
+    such = [each for each in known if numbers[each].isdigit() and int(numbers[each]) % 2 == odd]
+    return some_of(d, node, such)
+
+
+@meaning("places_within")
+def places_within(d: Discourse, node: Node) -> Value:
+    """ "the labs on the first floor": those that the world says to be a part of it."""
+    kind = d.get(node, "kinds")
+    known = d.lexicon.places if kind is None else d.lexicon.place_kinds[str(kind)]
+    area = str(d.get(node, "area"))
+    return some_of(d, node, [each for each in known if each.inside == area])
+
+
+def some_of(d: Discourse, node: Node, places: list[Name]) -> Value:
+    """Some places as a round. Raises `NotUnderstood` if there are none."""
+    if not places:
+        raise unknown_place(d, d.words(node.start, node.end), node)
+    return Items(tuple(Text(each.name) for each in places))
+
+
 @meaning("owner_list")
 @meaning("tail_list")
 def rest_of_list(d: Discourse, node: Node) -> list[str]:

@@ -107,6 +107,9 @@ def remark_where(d: Discourse, node: Node) -> Steps:
     """ "bring it to Alice, she is in ward a", "I forgot my bag in the cafeteria": where to look."""
     who_is = node.parts.get("person_ref")
     person: Thing | list[Thing] | None = d.build(who_is) if who_is is not None else None
+    crowd = d.person is not None and d.person.plural and d.person.group is None
+    if person is None and crowd and d.gender(node.start, node.start + 2) and d.last_named:
+        d.person = d.last_named  # "tell Ada how many visitors are in the lobby, she is in ..."
     spot: Where = d.get(node, "where")  # "Alice is in her office": after her
     place = spot.place
     thing: Thing | None = d.get(node, "thing")

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from grammar.chart import Node, what_it_means
+from grammar.chart import Node
 from grammar.discourse import START, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings import news, polls
@@ -16,13 +16,11 @@ from grammar.meanings.absences import undelivered
 from grammar.meanings.finding import is_here, speak_to
 from grammar.meanings.follow_ups import said_in_all
 from grammar.meanings.persons import is_me
-from grammar.meanings.places import sought
+from grammar.meanings.places import is_of, sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import (
-    asked_before,
     in_loop,
     moved,
-    of_one_question,
     several_asked,
 )
 from grammar.plan import (
@@ -34,7 +32,6 @@ from grammar.plan import (
     Remember,
     Step,
     Text,
-    Truth,
     Value,
 )
 from grammar.tidy import nodes
@@ -75,6 +72,8 @@ def report(d: Discourse, node: Node) -> Steps:
     person_at: Where | None = d.get(node, "person_at")
     if person is not None and person_at is not None:  # "tell Bob the time in the kitchen"
         person = replace(person, place=person_at.place, here=False)
+    if person is not None and found is None:
+        person = gone_to_tell(d, person)
     if found is None:
         found = d.get(node, "info")
     if isinstance(found, list):
@@ -90,6 +89,26 @@ def report(d: Discourse, node: Node) -> Steps:
     d.report_open = person is None and bool(fixed.get("open", not fixed.get("to_me")))
     d.report_counts = person is None and bool(fixed.get("counted"))
     return found_out(d, found, person, back=bool(fixed.get("to_me")) or is_me(person))
+
+
+def gone_to_tell(d: Discourse, person: Thing) -> Thing:
+    """ "look at the lobby, then go to Bob's office and tell Bob how many are waiting": what is told
+    there is of the place before, for he sees himself who is with him."""
+    before, last = d.done[-2:] if len(d.done) > 1 else (None, None)
+    if d.at is None or last != Call("goto", {"place": d.at}) or before == news.BACK:
+        return person
+    looked = isinstance(before, Call) and before.method == "goto"
+    if not looked or person.place is not None or not is_their_place(d, d.at, person):
+        return person
+    assert isinstance(before, Call)
+    d.done.pop()
+    own, d.at = d.at, before.arguments["place"]
+    d.place = d.at
+    return replace(person, place=own)
+
+
+def is_their_place(d: Discourse, place: Value | None, person: Thing) -> bool:
+    return person.known and isinstance(place, Text) and is_of(d, place.value, person.text)
 
 
 def found_for(d: Discourse, person: Thing | None, found: Steps) -> Steps:
@@ -161,9 +180,12 @@ def found_out(d: Discourse, found: Report, person: Thing | None, *, back: bool) 
         return steps
     far = person is not None and not is_here(d, person) and found.about_here
     if far and found.value is not None and not isinstance(found.value, Recall):
-        name = d.variable(found.name)  # found out here, told there
-        steps.append(Remember(name, found.value))
+        name = d.variable(found.name)
+        steps.append(Remember(name, found.value))  # found out here, told there
         found = replace(found, value=Recall(name))
+        if person is not None and not is_their_place(d, d.at, person):
+            d.done += steps  # whoever is to be told what is here is not here
+            steps = []
     return [*steps, *told(d, found, person)]
 
 
@@ -307,60 +329,6 @@ def told_report(d: Discourse, found: Report) -> news.Told:
     return news.Told([_saying(d, found)], first)
 
 
-@meaning("whether_told")
-def whether_told(d: Discourse, node: Node) -> news.Told:
-    """ "whether there are five chairs in the lobby", "whether the kitchen is empty": of any
-    condition, found out there and told elsewhere."""
-    part = node.parts["condition"]
-    condition = d.get(node, "condition")
-    before, d.pending = d.pending, []
-    d.checked = d.variable("so")
-    no, yes = Remember(d.checked, Truth(False)), Remember(d.checked, Truth(True))
-    clause = d.words(part.start, part.end)
-    told_yes, told_no = d.say("so_it_is", clause=clause), d.say("not_so", clause=clause)
-    told = If(Holds(Recall(d.checked)), (told_yes,), (told_no,))
-    d.report = None
-    return news.Told([told], [*before, no, If(condition, (yes,))])
-
-
-@meaning("poll_whether")
-def poll_whether(d: Discourse, node: Node) -> news.Told:
-    """ "whether all agree", "if anybody said no": also how many have said so."""
-    surveys = of_one_question(asked_before(d))
-    counted = what_it_means(node.parts["condition"]) == "answers_many"
-    if not counted or (len(surveys) == 1 and not in_loop(d, surveys[0].call)):
-        return whether_told(d, node)
-    condition = d.get(node, "condition")
-    counts = polls.how_many_words(d, surveys, d.said)
-    so, not_so = d.say("yes_so", counts=counts), d.say("no_so", counts=counts)
-    return news.Told([If(condition, (so,), (not_so,))], [])
-
-
-def checked(d: Discourse) -> Value | None:
-    """What was checked last, for "if so" and "if not"; that nobody was named to tell it to is then
-    no reason to tell the speaker."""
-    if d.checked is not None and d.news is not None:
-        news.take_back(d, d.news)
-        return Recall(d.checked)
-    found: Report | None = d.report
-    if found is None or found.otherwise is None or found.value is None:
-        return None
-    if not d.report_open:
-        return found.value if isinstance(found.value, Recall) else None
-    name = found.value.name if isinstance(found.value, Recall) else None
-    at = next((at for at, step in enumerate(d.done) if step is d.report_step), None)
-    if at is None:
-        return None
-    if name is None:
-        name = d.variable(found.name)
-        d.done[at] = Remember(name, found.value)
-    else:
-        d.done.pop(at)
-        _not_back_yet(d)
-    d.report = replace(found, value=Recall(name))
-    return Recall(name)
-
-
 @meaning("found_told")
 def found_told(d: Discourse, node: Node | None = None) -> news.Told:
     """ "the result", "it", "what you found out": whatever was found out last."""
@@ -392,13 +360,13 @@ def _report_again(d: Discourse) -> news.Told:
         found = replace(found, value=Recall(name))
     elif at == len(d.done) - 1:
         d.done.pop()
-        _not_back_yet(d)
+        not_back_yet(d)
     return news.Told([_saying(d, found)], [])
 
 
 def summed_at_end(d: Discourse) -> Steps:
     """What was counted in a round that nobody was told of: brought back to the speaker."""
-    from grammar.meanings.rounds import last_round
+    from grammar.meanings.gone_round import last_round
 
     at = last_round(d)
     found: Report | None = d.report
@@ -427,14 +395,15 @@ def counted_alone(d: Discourse) -> bool:
 
 def summed_or_said(d: Discourse, found: Report) -> news.Told:
     """What was counted in each place of a round; else the report as it is."""
-    from grammar.meanings.rounds import last_round, summed_up
+    from grammar.meanings.gone_round import last_round
+    from grammar.meanings.rounds import summed_up
 
     if found.name == "count" and last_round(d) is not None:
         return summed_up(d, "each")
     return news.Told([_saying(d, found)], [])
 
 
-def _not_back_yet(d: Discourse) -> None:
+def not_back_yet(d: Discourse) -> None:
     """What was to be told to the speaker is told elsewhere: the way back comes to nothing."""
     if d.done and d.done[-1] == news.BACK:
         d.done.pop()

@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from msgspec.structs import replace
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing, Where
+from grammar.discourse import Discourse, Steps, Thing
 from grammar.doubts import NotUnderstood
 from grammar.meanings.answers import Said
-from grammar.meanings.carrying import deliver
 from grammar.meanings.finding import speak_to
-from grammar.meanings.news import News, Told, go_back, in_round, last_found, take_back
-from grammar.meanings.nouns import thing_it
+from grammar.meanings.gone_round import (
+    goes_to,
+    last_round,
+    looked_over,
+    places_of,
+    round_of,
+    round_of_visits,
+)
+from grammar.meanings.news import News, Told, go_back, last_found, take_back
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import kind_places, sought
 from grammar.meanings.polls import polled
 from grammar.meanings.registry import meaning
-from grammar.meanings.searches import searched, searches
 from grammar.meanings.sights import told_where
 from grammar.meanings.surveys import asked_yet, note, replacing
+from grammar.meanings.traits import Trait
 from grammar.naming import joined_up
 from grammar.plan import (
     Ask,
@@ -35,7 +39,6 @@ from grammar.plan import (
     Increase,
     Items,
     Length,
-    Not,
     Number,
     Recall,
     Remember,
@@ -46,66 +49,6 @@ from grammar.plan import (
 )
 from grammar.tidy import nodes
 from grammar.wordforms import plural
-
-
-def places_of(d: Discourse, node: Node) -> Value:
-    """The places that are gone round: all of a kind, or those listed."""
-    listed: list[Value] | None = d.get(node, "place_list")
-    if listed:
-        places = (d.get(node, "place"), *listed)
-        if not all(isinstance(each, Text | Recall) for each in places):
-            raise NotUnderstood(d.language.phrase("which_places"))
-        return Items(places)
-    return kind_places(d, d.get(node, "kinds"))
-
-
-def round_of(d: Discourse, places: Value, what: Steps, place: str) -> Step:
-    """Go to each place and do something there."""
-    going = Call("goto", {"place": Recall(place)})
-    return ForEach(place, places, (going, *what))
-
-
-def last_round(d: Discourse) -> int | None:
-    """Where among the steps so far the last round of places is."""
-    for at in range(len(d.done) - 1, -1, -1):
-        step = d.done[at]
-        if isinstance(step, ForEach) and step.steps and goes_to(step.steps[0], step.variable):
-            return at
-    return None
-
-
-def same_round(d: Discourse, places: Value) -> bool:
-    """Whether these places were gone round just before, and what was found out is told already: "I
-    need to know which labs are free. Go round the labs and tell me"."""
-    at = last_round(d)
-    loop = None if at is None else d.done[at]
-    found: News | None = d.news
-    told = found is not None and d.done[len(d.done) - len(found.words) :] == found.words
-    return told and isinstance(loop, ForEach) and loop.items == places
-
-
-def round_of_visits(d: Discourse) -> int | None:
-    """ "go to the lobby and the kitchen and see where ...", "check the lobby and the kitchen for
-    cups and tell me which ...": what was said of both, as a round."""
-    visits: list[Value] = []
-    condition = searched(d.done[-1] if d.done else None)
-    looked_in = [] if condition is None else [each.arguments for each in searches(condition)]
-    if len(looked_in) > 1 and all("place" in each for each in looked_in):
-        d.done[-1:] = [Call("goto", {"place": each["place"]}) for each in looked_in]
-    while d.done and isinstance(last := d.done[-1], Call) and "place" in last.arguments:
-        if last.method != "goto":
-            break
-        visits.insert(0, last.arguments["place"])
-        d.done.pop()
-    if len(visits) < 2:
-        d.done += [Call("goto", {"place": each}) for each in visits]
-        return None
-    d.done.append(round_of(d, Items(tuple(visits)), [], d.variable("place")))
-    return len(d.done) - 1
-
-
-def goes_to(step: Step, variable: str) -> bool:
-    return step == Call("goto", {"place": Recall(variable)})
 
 
 def brought_back(d: Discourse, node: Node, told: Told) -> Steps:
@@ -128,6 +71,8 @@ def round_told(d: Discourse, node: Node) -> Told:
     thing: Thing | None = d.get(node, "thing")
     kind = str(node.production.fixed["kind"])
     nothing_yet = d.counted is None and d.report is None and last_round(d) is None
+    if nothing_yet and thing is not None:
+        round_of_visits(d)  # "go to the lobby and the hall and tell me how many there are in all"
     if thing is not None and "kind" in node.parts and nothing_yet:
         # "tell me which ward has the fewest beds": to count them is left to do
         return around(d, kind, thing, kind_places(d, d.get(node, "kind")))
@@ -278,94 +223,6 @@ def around(d: Discourse, kind: str, thing: Thing, places: Value) -> Told:
     return Told(told, [])
 
 
-# --- what is true of a place
-
-
-@dataclass(frozen=True)
-class Trait:
-    """Something that is true of a place or not."""
-
-    condition: Condition
-    first: Steps
-    """What finds it out, there."""
-    thing: Thing | None = None
-    """What has to be there, or must not be."""
-    denied: bool = False
-    """Whether it must not be there."""
-
-
-@meaning("trait_seen")
-def trait_seen(d: Discourse, node: Node) -> Trait:
-    """ "is empty", "has a stapler", "there is somebody in"."""
-    thing: Thing | None = d.get(node, "thing") or d.get(node, "person_ref")
-    if node.production.fixed.get("it"):  # "has none": of what was spoken of
-        thing = thing_it(d, node)
-    looked_for = Text(ANYONE) if thing is None else sought(d, thing)
-    seen: Condition = Holds(Ask("sees", {"thing": looked_for}))
-    denied = bool(node.production.fixed.get("no"))
-    return Trait(Not(seen) if denied else seen, [], thing, denied)
-
-
-@meaning("trait_counted")
-def trait_counted(d: Discourse, node: Node) -> Trait:
-    """ "has more than two chairs"."""
-    thing: Thing = d.get(node, "thing")
-    number = Number(int(d.get(node, "count")))
-    count = Ask("count", {"thing": sought(d, thing)})
-    return Trait(Compare(count, d.get(node, "operator", "=="), number), [], thing)
-
-
-@meaning("trait_asked")
-def trait_asked(d: Discourse, node: Node) -> Trait:
-    """ "needs towels": only the people there can tell."""
-    part = node.parts["text"]
-    form = str(node.production.fixed["form"])
-    question = Text(form.format(text=d.words(part.start, part.end)))
-    agree, refuse = d.language.phrase("yes"), d.language.phrase("no")
-    answer = d.variable("answer")
-    options = Items((Text(agree), Text(refuse)))
-    asking = Call("ask", {"question": question, "options": options}, save_as=answer)
-    agreed: Condition = Compare(Recall(answer), "==", Text(agree))
-    return Trait(Not(agreed) if node.production.fixed.get("no") else agreed, [asking])
-
-
-@meaning("trait_holds")
-def trait_holds(d: Discourse, node: Node) -> Condition:
-    """ "if the kitchen is empty", "if it has no stapler": found out there."""
-    place: Value | None = d.get(node, "trait_place")
-    if place is None and d.at is None and d.place is None:  # "if she has a minute"
-        words = d.words(node.start, node.end)
-        gap = (node.start, node.end)
-        raise NotUnderstood(d.language.phrase("cannot_check", what=words), gap=gap)
-    if place is not None and place != d.at:
-        d.went(place)
-        d.pending.append(Call("goto", {"place": place}))
-    trait: Trait = d.get(node, "place_trait")
-    d.pending += trait.first
-    if trait.thing is not None and in_round(d):
-        d.met = Meeting(trait.thing, holds=not trait.denied)
-    return trait.condition
-
-
-@meaning("for_each_place_such")
-def for_each_place_such(d: Discourse, node: Node) -> Steps:
-    """ "bring a stapler to every office that has none": done where it is seen to be so."""
-    place = Recall(d.variable("place"))
-    thing: Thing | None = d.get(node, "thing")
-    d.at = d.place = place
-    trait: Trait = d.get(node, "place_trait")
-    outer, d.in_loop = d.in_loop, True
-    if thing is not None:
-        d.at = None
-        body = deliver(d, thing, None, Where(place))
-    else:
-        body = d.build(node.parts["steps"])
-    d.in_loop = outer
-    d.at = d.with_person = None
-    found_out = (*trait.first, If(trait.condition, tuple(body)))
-    return [round_of(d, kind_places(d, d.get(node, "kinds")), [*found_out], place.name)]
-
-
 # --- which places
 
 
@@ -385,15 +242,17 @@ def places_told(d: Discourse, node: Node) -> Told:
     ):
         # "ask them whether they want coffee and tell me how many of them want coffee"
         return polled(d, "many" if node.production.fixed.get("tell") == "many" else "who", None)
-    of_it = isinstance(trait_part, Node) and trait_part.production.fixed.get("it")
-    if not named and of_it and last_round(d) is None and asked_yet(d):
+    of_people = node.production.fixed.get("tell") == "all" or last_round(d) is None
+    if not named and of_people and asked_yet(d):
         # "ask them whether they have a key and tell me which ones have none"
         return polled(d, "who", Said(trait_part.start, trait_part.end))
     if d.news is not None:  # what was checked on the round is told only as is said now
         take_back(d, d.news)
     d.round.lookout = None
     at = last_round(d)
-    if named and (at is None or not same_places(d, node, d.done[at])):
+    if named and at is None and same_places(d, node, looked_over(d)):
+        at = round_of_visits(d)
+    elif named and (at is None or not same_places(d, node, d.done[at])):
         at = None
     elif at is None:
         at = round_of_visits(d)
@@ -428,9 +287,10 @@ def without_check(d: Discourse, loop: ForEach) -> ForEach:
     return less
 
 
-def same_places(d: Discourse, node: Node, loop: Step) -> bool:
+def same_places(d: Discourse, node: Node, loop: Step | None) -> bool:
     """Whether the places that are asked about are those that a round went to."""
-    assert isinstance(loop, ForEach)
+    if not isinstance(loop, ForEach):
+        return False
     if node.production.fixed.get("all") or loop.items == places_of(d, node):
         return True
     kind = d.get(node, "kinds")

@@ -203,6 +203,8 @@ def counted_info(d: Discourse, node: Node) -> Report:
         furniture=thing.furniture or more.furniture or (first.furniture if first else None),
     )
     d.last_counted = thing
+    if thing.person and d.person is not None:
+        d.person = replace(d.person, plural=True)  # those who are counted are several
     return count_report(d, thing)
 
 

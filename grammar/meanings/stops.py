@@ -11,6 +11,9 @@ from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Steps
 from grammar.doubts import NotUnderstood
 from grammar.meanings.alternatives import itself
+from grammar.meanings.deliveries import first_clause
+from grammar.meanings.going_on import about_places, conditional, depends_on_stop
+from grammar.meanings.gone_round import round_of_visits
 from grammar.meanings.registry import meaning
 from grammar.plan import Ask, Call, ForEach, Holds, If, Items, Recall, Text
 from grammar.tidy import nodes
@@ -25,6 +28,15 @@ def gone_to(d: Discourse, clause: Node, steps: Steps) -> Items | None:
         return None
     going = [step for step in steps if isinstance(step, Call) and step.method == "goto"]
     return Items(tuple(step.arguments["place"] for step in going)) if going == steps else None
+
+
+def looked_at_each(d: Discourse, places: Items | None, clause: Node) -> None:
+    """ "go to the kitchen and the library and count the people": the places gone to before are a
+    round, for what is then to be seen there is to be seen at each of them."""
+    first = first_clause(clause)
+    there = depends_on_stop(d, first) if conditional(first) else about_places(first)
+    if places is not None and len(places.items) > 1 and there:
+        round_of_visits(d)
 
 
 def said_at_each(d: Discourse, places: Items | None, steps: Steps) -> Items | None:

@@ -134,7 +134,8 @@ def just_agreed(d: Discourse, no: bool = False) -> Condition | None:
 
 def just_checked(d: Discourse, thing: Thing) -> Condition | None:
     """The check before, if it was for this: "see if there is a cup. If there is a cup, ..."."""
-    from grammar.meanings.reports import Report, checked
+    from grammar.meanings.checked import checked
+    from grammar.meanings.reports import Report
 
     report: Report | None = d.report
     about = report.thing if report is not None else None
@@ -148,7 +149,8 @@ def just_checked(d: Discourse, thing: Thing) -> Condition | None:
 
 def seen_there(d: Discourse) -> Condition | None:
     """What was checked in a place that was gone to only for that, as a search in that place."""
-    from grammar.meanings.reports import Report, checked
+    from grammar.meanings.checked import checked
+    from grammar.meanings.reports import Report
 
     report: Report | None = d.report
     about = report.thing if report is not None else None

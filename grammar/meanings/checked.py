@@ -1,0 +1,67 @@
+"""Whether something is so, as what is to be told, and for "if so" and "if not" behind it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from grammar.chart import Node, what_it_means
+from grammar.discourse import Discourse
+from grammar.meanings import news, polls
+from grammar.meanings.registry import meaning
+from grammar.meanings.reports import Report, not_back_yet
+from grammar.meanings.surveys import asked_before, in_loop, of_one_question
+from grammar.plan import Holds, If, Recall, Remember, Truth, Value
+
+
+@meaning("whether_told")
+def whether_told(d: Discourse, node: Node) -> news.Told:
+    """ "whether there are five chairs in the lobby", "whether the kitchen is empty": of any
+    condition, found out there and told elsewhere."""
+    part = node.parts["condition"]
+    condition = d.get(node, "condition")
+    before, d.pending = d.pending, []
+    d.checked = d.variable("so")
+    no, yes = Remember(d.checked, Truth(False)), Remember(d.checked, Truth(True))
+    clause = d.words(part.start, part.end)
+    told_yes, told_no = d.say("so_it_is", clause=clause), d.say("not_so", clause=clause)
+    told = If(Holds(Recall(d.checked)), (told_yes,), (told_no,))
+    d.report = None
+    return news.Told([told], [*before, no, If(condition, (yes,))])
+
+
+@meaning("poll_whether")
+def poll_whether(d: Discourse, node: Node) -> news.Told:
+    """ "whether all agree", "if anybody said no": also how many have said so."""
+    surveys = of_one_question(asked_before(d))
+    counted = what_it_means(node.parts["condition"]) == "answers_many"
+    if not counted or (len(surveys) == 1 and not in_loop(d, surveys[0].call)):
+        return whether_told(d, node)
+    condition = d.get(node, "condition")
+    counts = polls.how_many_words(d, surveys, d.said)
+    so, not_so = d.say("yes_so", counts=counts), d.say("no_so", counts=counts)
+    return news.Told([If(condition, (so,), (not_so,))], [])
+
+
+def checked(d: Discourse) -> Value | None:
+    """What was checked last, for "if so" and "if not"; that nobody was named to tell it to is then
+    no reason to tell the speaker."""
+    if d.checked is not None and d.news is not None:
+        news.take_back(d, d.news)
+        return Recall(d.checked)
+    found: Report | None = d.report
+    if found is None or found.otherwise is None or found.value is None:
+        return None
+    if not d.report_open:
+        return found.value if isinstance(found.value, Recall) else None
+    name = found.value.name if isinstance(found.value, Recall) else None
+    at = next((at for at, step in enumerate(d.done) if step is d.report_step), None)
+    if at is None:
+        return None
+    if name is None:
+        name = d.variable(found.name)
+        d.done[at] = Remember(name, found.value)
+    else:
+        d.done.pop(at)
+        not_back_yet(d)
+    d.report = replace(found, value=Recall(name))
+    return Recall(name)
