@@ -17,6 +17,7 @@ _TAKEN: Final = frozenset(
         "random",
         "percent",
         "minutes_since",
+        "weekday_called",
         "re",
         "math",
     }

@@ -65,7 +65,7 @@ class Types:
 
     def of(self, value: p.Value) -> str:
         match value:
-            case p.Text() | p.Sentence():
+            case p.Text() | p.Sentence() | p.Weekday():
                 return "str"
             case p.Number():
                 return "int" if float(value.value).is_integer() else "float"

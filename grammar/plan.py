@@ -101,6 +101,13 @@ class Elapsed(Node, frozen=True, tag="elapsed"):
     since: Value
 
 
+class Weekday(Node, frozen=True, tag="weekday"):
+    """What day it is, by seven names from Monday on: what a language calls them. The clock itself
+    names the days in English."""
+
+    names: tuple[str, ...]
+
+
 Value = (
     Text
     | Number
@@ -114,6 +121,7 @@ Value = (
     | Figure
     | Choice
     | Elapsed
+    | Weekday
 )
 
 

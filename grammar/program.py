@@ -97,6 +97,11 @@ HELPERS: Final = {
         "    then, now = [60 * int(time[:2]) + int(time[3:]) for time in times]",
         "    return (now - then) % (24 * 60)",
     ),
+    "weekday_called": (
+        "def weekday_called(names):",
+        '    days = ["Monday", "Tuesday", "Wednesday", "Thursday", "Friday", "Saturday", "Sunday"]',
+        "    return names[days.index(robot.clock().weekday)]",
+    ),
 }
 """Small functions that stand at the top of a program that needs them, by their names."""
 
@@ -300,6 +305,10 @@ class _Writer:
             case p.Elapsed():
                 self.helpers.add("minutes_since")
                 return Call("minutes_since", (self.as_text(value.since),))
+            case p.Weekday():
+                self.helpers.add("weekday_called")
+                names = p.Items(tuple(p.Text(name) for name in value.names))
+                return Call("weekday_called", (self.value(names),))
             case p.Choice():
                 self.uses_random = True
                 return Call("random.choice", (self.value(value.among),))

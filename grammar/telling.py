@@ -410,6 +410,8 @@ class Teller:
                 return fill(say[value.how], {"value": self.value(value.of)})
             case p.Elapsed():
                 return fill(say["elapsed"], {"value": self.value(value.since)})
+            case p.Weekday():
+                return self.words.methods["clock"].fields["weekday"]
             case p.Choice():
                 among = value.among
                 items = self.series(among.items, "or") if isinstance(among, p.Items) else None

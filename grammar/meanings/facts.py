@@ -23,6 +23,7 @@ from grammar.plan import (
     Step,
     Text,
     Value,
+    Weekday,
 )
 
 WEEK: Final = ("Monday", "Tuesday", "Wednesday", "Thursday", "Friday", "Saturday", "Sunday")
@@ -38,15 +39,24 @@ def about_robot(d: Discourse, node: Node) -> Report:
         return Report(
             "only", answer, about_here=False
         )  # "the time", after somebody was asked for one
-    value = Ask(str(fixed["method"]), {}, fixed.get("field"))
+    value: Value = Ask(str(fixed["method"]), {}, fixed.get("field"))
+    if fixed.get("field") == "weekday" and names_of_days(d) != WEEK:
+        value = Weekday(names_of_days(d))
     return Report(str(fixed["phrase"]), value, about_here=False)
+
+
+def names_of_days(d: Discourse) -> tuple[str, ...]:
+    """The days of the week in the language spoken."""
+    called = d.language.speech.get("names", {})
+    return tuple(called.get(day, day) for day in WEEK)
 
 
 @meaning("tomorrow")
 def tomorrow(d: Discourse, node: Node) -> Steps:
     """ "what day is tomorrow": the one after what the clock says."""
     chain: tuple[Step, ...] = ()
-    for today, next_day in reversed(list(zip(WEEK, (*WEEK[1:], WEEK[0]), strict=True))):
+    names = names_of_days(d)
+    for today, next_day in reversed(list(zip(WEEK, (*names[1:], names[0]), strict=True))):
         is_today = Compare(Ask("clock", field="weekday"), "==", Text(today))
         chain = (If(is_today, (d.say("tomorrow_is", value=Text(next_day)),), chain),)
     return list(chain)

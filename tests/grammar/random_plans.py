@@ -70,6 +70,9 @@ def values(depth: int = 2) -> st.SearchStrategy[p.Value]:
         st.one_of(names.map(p.Recall), lists).map(p.Length),
         st.builds(p.Share, inner, inner),
         inner.map(p.Elapsed),
+        st.lists(st.text(min_size=1), min_size=7, max_size=7).map(
+            lambda names: p.Weekday(tuple(names))
+        ),
         lists.map(p.Choice),
     )
 

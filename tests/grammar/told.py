@@ -26,10 +26,11 @@ def untold(
 ) -> list[str]:
     """The robot calls of a program, and the texts in them, that its explanation leaves out;
     `called` as for `explain`."""
-    tree = ast.parse(program)
+    own = [each for each in ast.parse(program).body if not isinstance(each, ast.FunctionDef)]
     calls = [
         node
-        for node in ast.walk(tree)
+        for step in own  # helpers are told by what they give
+        for node in ast.walk(step)
         if isinstance(node, ast.Call)
         and isinstance(node.func, ast.Attribute)
         and isinstance(node.func.value, ast.Name)

@@ -36,6 +36,7 @@ from grammar.plan import (
     Text,
     Truth,
     Try,
+    Weekday,
     While,
 )
 from robot_api.methods import METHODS
@@ -182,6 +183,8 @@ def _value(value: Any) -> str:
             return f"{how}_of({_value(of)})"
         case Elapsed(since):
             return f"minutes_since({_value(since)})"
+        case Weekday(names):
+            return f"weekday_called({', '.join(names)})"
         case Choice(among):
             return f"choice({_value(among)})"
     raise AssertionError(value)
