@@ -15,6 +15,7 @@ from typing import Any
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing, Where
 from grammar.meanings.persons import is_me
+from grammar.meanings.places import own_place
 from grammar.meanings.searches import search_of, searches
 from grammar.meanings.surveys import Survey
 from grammar.plan import Ask, Call, Condition, Holds, If, Items, Recall, Step, Text, Value
@@ -93,7 +94,9 @@ def taken_back(d: Discourse, delivery: Delivery, met: Meeting) -> Taken | None:
     d.set_scene(delivery.before)
     if search is not None:
         steps = steps[1:]
-        there = met.thing.place or (None if met.sought else own_place(d, missing))
+        there = met.thing.place
+        if there is None and missing.person and not met.sought:
+            there = own_place(d, missing)  # where they are missed
         condition = _looking_there(search.found, there)
     else:
         assert isinstance(first, Call)
@@ -108,19 +111,6 @@ def taken_back(d: Discourse, delivery: Delivery, met: Meeting) -> Taken | None:
         d.thing, d.thing_last = replace(delivery.thing, pronoun=True), True
         d.person = met.thing
     return Taken(condition, steps, delivery)
-
-
-def own_place(d: Discourse, person: Thing) -> Value | None:
-    """The place that is called after somebody: where they are missed, if they are not there."""
-    mark = d.language.speech["possessive"]
-    own = [
-        each.name
-        for each in d.lexicon.places
-        if person.person
-        and person.text
-        and each.name.lower().startswith(person.text.lower() + mark)
-    ]
-    return Text(own[0]) if len(own) == 1 else None
 
 
 def _looking_there(condition: Condition, place: Value | None) -> Condition:

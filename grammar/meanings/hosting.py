@@ -13,6 +13,7 @@ from grammar.meanings.finding import meet, named, speak_to, where_sent
 from grammar.meanings.genders import means_thing
 from grammar.meanings.leading import lead
 from grammar.meanings.people import guide, led
+from grammar.meanings.places import own_place
 from grammar.meanings.registry import meaning
 from grammar.plan import Call, Text, Value
 
@@ -51,17 +52,6 @@ def guide_to_person(d: Discourse, node: Node) -> Steps:
         words = person if isinstance(person, str) else d.language.phrase("somebody")
         raise NotUnderstood(d.language.phrase("where_is_person", person=words))
     return [*meet(d, thing), lead(d, thing, other.place)]
-
-
-def own_place(d: Discourse, person: Thing) -> Value | None:
-    """The one place that is called after somebody."""
-    mark = d.language.speech["possessive"]
-    own = [
-        each.name
-        for each in d.lexicon.places
-        if person.text and each.name.lower().startswith(person.text.lower() + mark)
-    ]
-    return Text(own[0]) if len(own) == 1 else None
 
 
 @meaning("guide_by_way")

@@ -401,6 +401,12 @@ def is_of(d: Discourse, place: str, owner: str) -> bool:
     return any(re.search(form.format(owner=re.escape(owner)), place, re.I) for form in forms)
 
 
+def own_place(d: Discourse, person: Thing) -> Text | None:
+    """The one place that is called after somebody."""
+    own = [each.name for each in d.lexicon.places if is_of(d, each.name, person.text)]
+    return Text(own[0]) if person.text and len(own) == 1 else None
+
+
 def listed(d: Discourse, node: Node) -> list[Thing]:
     """The noun phrases of a list: `first`, then `rest`."""
     found: list[Thing] = []

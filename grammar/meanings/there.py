@@ -10,10 +10,10 @@ from grammar.discourse import ANYONE, START, Discourse, Meeting, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.answers import yes
 from grammar.meanings.conditions import negated
-from grammar.meanings.deliveries import delivered_last, own_place
+from grammar.meanings.deliveries import delivered_last
 from grammar.meanings.finding import noun_of, whether_found
 from grammar.meanings.news import in_round
-from grammar.meanings.places import sought
+from grammar.meanings.places import own_place, sought
 from grammar.meanings.polls import counted as counted_answers
 from grammar.meanings.registry import meaning
 from grammar.meanings.searches import just_awaited, just_looked_for
