@@ -79,7 +79,8 @@ class Slots:
         clause = self.language.speech.get("clause", {})
         no_verbs = ("pronouns", "determiners", "prepositions", "and", "subordinating", "reflexive")
         fillers = {filler[0] for filler in self.language.fillers if len(filler) == 1}
-        self._no_verbs = fillers.union(*(clause.get(each, ()) for each in no_verbs))
+        ends = self.language.speech.get("text_ends", ())
+        self._no_verbs = fillers.union(ends, *(clause.get(each, ()) for each in no_verbs))
 
     def all(self) -> dict[str, Slot]:
         slots: dict[str, Slot] = {

@@ -180,8 +180,10 @@ def turned(d: Discourse, start: int, end: int, person: Thing | None) -> dict[int
     er spät ist" -> "Sie", "sind". After a comma a pronoun may mean anything."""
     data = d.language.speech.get("addressing_last")
     changed: dict[int, str] = {}
-    if person is None or person.me or not data:
+    if person is None or not data or (person.me and "speaker" not in data):
         return changed
+    if person.me:  # "remind me that I have an appointment": "I" is who will hear it
+        data = {**data, **data["speaker"]}
     stands = {d.tokens[at].norm for at in range(start, end)} & set(data["stands"])
     if d.thing is not None and stands:  # "put the box there and tell Bob that it stands there"
         return changed
@@ -191,7 +193,7 @@ def turned(d: Discourse, start: int, end: int, person: Thing | None) -> dict[int
         if word not in data["you"]:
             continue
         owned = word in data["possessives"] and at + 1 < last and d.tokens[at + 1].capital
-        other = d.one_before(person, at)
+        other = None if person.me else d.one_before(person, at)
         if other is not None:  # "ask Bob whether he has time and tell Clara that he has time"
             if word in data["subjects"] and other not in changed.values():
                 changed[at] = other
