@@ -9,7 +9,7 @@ from grammar.discourse import Discourse, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.descriptions import described
 from grammar.meanings.genders import means_receiver, means_thing
-from grammar.meanings.persons import person_pronoun, unknown_person
+from grammar.meanings.persons import person_kind, person_pronoun, unknown_person
 from grammar.meanings.places import (
     listed,
     only_taken_apart,
@@ -183,6 +183,19 @@ def thing_opening(d: Discourse, node: Node) -> Thing:
     found = d.thing = Thing(Text(f"{d.called(place.value)} {d.get(node, 'opener')}"))
     d.thing_last = True
     return found
+
+
+@meaning("one_of_them")
+def one_of_them(d: Discourse, node: Node) -> Thing:
+    """ "keiner", "einer": none or one of what was spoken of last, or of all people; but of "the
+    folder" there are no several."""
+    articles = d.language.speech.get("articles", ())
+    said = d.thing.text.split()[-1].lower() if d.thing is not None and d.thing.text else ""
+    named = [at for at in range(1, node.start) if d.words(at, at + 1).lower() == said]
+    the_one = bool(named) and d.tokens[named[-1] - 1].norm in articles
+    if d.thing is not None and d.thing_last and not the_one:
+        return replace(d.thing, pronoun=True)
+    return person_kind(d, node)
 
 
 @meaning("thing_from")
