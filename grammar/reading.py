@@ -248,10 +248,10 @@ class _Reader:
             case ast.Call(func=ast.Name(id="minutes_since"), args=[since], keywords=[]):
                 return p.Elapsed(self.value(since))
             case ast.Call(
-                func=ast.Name(id="weekday_called"), args=[ast.List(elts=names)], keywords=[]
-            ) if all(isinstance(name, ast.Constant) for name in names):
-                days = (name.value for name in names if isinstance(name, ast.Constant))
-                return p.Weekday(tuple(str(day) for day in days))
+                func=ast.Name(id="weekday_called"), args=[ast.List(elts=days)], keywords=[]
+            ) if all(isinstance(name, ast.Constant) for name in days):
+                named = (name.value for name in days if isinstance(name, ast.Constant))
+                return p.Weekday(tuple(str(day) for day in named))
             case ast.Call(
                 func=ast.Attribute(value=ast.Name(id="random"), attr="choice"), args=[among]
             ):
