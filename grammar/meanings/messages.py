@@ -76,13 +76,23 @@ def show_that(d: Discourse, node: Node) -> Steps:
 
 def told_to(d: Discourse, part: Leaf | Node, person: Thing | None) -> str:
     """A reported clause as a sentence to its receiver."""
-    ordered = direct_clause(d, part.start, part.end, turned(d, part.start, part.end, person))
+    changed = {**indirect(d, part), **turned(d, part.start, part.end, person)}
+    ordered = direct_clause(d, part.start, part.end, changed)
     if ordered == d.words(part.start, part.end):
         ordered = addressed(d, part.start, part.end, person)
     reports = d.tokens[part.start - 1].norm in d.language.speech.get("reporting", ())
     if reports and d.tokens[part.start].norm in d.language.speech.get("robot_pronouns", ()):
         ordered = _said_by_robot(d, ordered)
     return sentence_form(ordered)
+
+
+def indirect(d: Discourse, part: Leaf | Node) -> dict[int, str]:
+    """The verbs of a reported clause as they are in a direct one: "die Sitzung sei verschoben"."""
+    data: dict[str, str] = d.language.speech.get("indirect", {})
+    norms = d.norms(part.start, part.end)
+    if not data or "ich" in norms:
+        return {}
+    return {part.start + at: data[norm] for at, norm in enumerate(norms) if norm in data}
 
 
 def _said_by_robot(d: Discourse, clause: str) -> str:

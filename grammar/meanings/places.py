@@ -31,6 +31,9 @@ def place_of_kind(d: Discourse, node: Node) -> Value:
     places = d.lexicon.place_kinds[kind]
     if isinstance(d.place, Text) and any(each.name == d.place.value for each in places):
         return d.place  # "go to the bathroom and count the people in the room"
+    own = own_place(d, d.person) if d.person is not None and d.person.known else None
+    if own is not None and any(each.name == own.value for each in places):
+        return own  # "if Clara is not in the office": in hers
     if len(places) > 1:
         raise d.which(node.start, node.end, tuple(place.name for place in places))
     d.place = Text(places[0].name)

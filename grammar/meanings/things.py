@@ -335,6 +335,7 @@ def statement(d: Discourse, node: Node) -> Steps:
         fetched_there(d, thing, thing.place)
     else:
         d.thing, d.thing_last = thing, True
+    d.get(node, "for_whom")  # "the folder is for Clara": she is spoken of now, too
     said = sentence_form(d.words(node.start, node.end))
     d.report, d.report_step = Report("only", Text(said), about_here=False), None
     return []
