@@ -212,6 +212,9 @@ class Teller:
                 yield self.loop("repeat", step.steps, times=self.times(step.times))
             case p.ForEach():
                 yield self.loop("for each", step.steps, items=self.each_of(step))
+            case p.While(steps=(p.Call(method="wait"),)):  # nothing is done but waiting
+                until = self.condition(step.condition, holds=False)
+                yield Told(fill(say["wait until"], {"condition": until}))
             case p.While():
                 yield self.loop("while", step.steps, condition=self.condition(step.condition))
             case p.RepeatUntil():
