@@ -245,6 +245,7 @@ def _spelling(data: Mapping[str, Any]) -> Spelling:
         numbers=_number_words(data.get("numbers", {}), letters),
         symbols=spelling.get("symbols", {}),
         letters=letters,
+        hours=frozenset(spelling.get("hours", ())),
         accents_optional=spelling.get("accents") == "optional",
     )
 

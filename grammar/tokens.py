@@ -54,6 +54,8 @@ class Spelling:
     """"&" -> "and", "%" -> "percent"."""
     letters: Mapping[str, str] = field(default_factory=dict)
     """"ö" -> "oe": letters that are written in two ways."""
+    hours: frozenset[str] = frozenset()
+    """"uhr": after it "10.30" is a time of day."""
     accents_optional: bool = False
     """Whether "repete" is read as "répète": words match without their accents."""
 
@@ -112,6 +114,8 @@ def _tokens(text: str, spelling: Spelling) -> list[Token]:
         if kind == "space":
             continue
         if kind == "word":
+            if tokens and plain(raw) in spelling.hours:
+                tokens[-1] = _as_time(text, tokens[-1])
             _add_word(tokens, raw, start, spelling)
         elif kind == "number":
             tokens.append(_number(raw, start, end))
@@ -168,6 +172,14 @@ def _word(word: str, start: int, end: int, spelling: Spelling, capital: bool = F
     if value is None:
         return Token(word, start, end, capital=capital)
     return Token(f"{value:g}", start, end, value=value)
+
+
+def _as_time(text: str, token: Token) -> Token:
+    """ "10.30" and "8.05", where what follows says that it is a time."""
+    written = re.fullmatch(r"(\d{1,2})\.(\d{2})", text[token.start : token.end])
+    if written is None:
+        return token
+    return Token(f"{written[1]}:{written[2]}", token.start, token.end, "time")
 
 
 def _number(raw: str, start: int, end: int) -> Token:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
-from grammar.chart import Node, what_it_means
+from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import (
     ANYONE,
     Claim,
@@ -47,13 +47,20 @@ def claim_of(d: Discourse, node: Node, condition: Condition, met: Meeting | None
         return found_claim(d, condition, met) if met is not None and not d.in_loop else None
     if what_it_means(part) == "answers_many":  # "if anyone says yes, tell Alice": how many did
         return polled(d, "many", None).words[0]
-    if node.production.fixed.get("turned") or node.production.fixed.get("unless"):
+    if _is_of_them(part) or node.production.fixed.get("turned") or node.production.fixed.get("unless"):
         return found_claim(d, condition, met)
     end = part.end
     while d.tokens[end - 1].kind == "mark":
         end -= 1
     clause = as_fact(d, direct_clause(d, part.start, end))
     return Call("say", {"text": Text(sentence_form(clause))})
+
+
+def _is_of_them(part: Leaf | Node) -> bool:
+    """Whether what a condition is about has no name in it: "keiner ist mehr da"."""
+    if isinstance(part, Leaf):
+        return False
+    return part.production.means == "one_of_them" or any(map(_is_of_them, part.parts.values()))
 
 
 def as_fact(d: Discourse, clause: str) -> str:

@@ -12,7 +12,7 @@ from grammar.meanings.driving import go_to
 from grammar.meanings.finding import meet, named, speak_to, where_sent
 from grammar.meanings.genders import means_thing
 from grammar.meanings.leading import lead
-from grammar.meanings.people import guide, led
+from grammar.meanings.people import guide, leave_out_fetching, led
 from grammar.meanings.places import own_place
 from grammar.meanings.registry import meaning
 from grammar.plan import Call, Text, Value
@@ -51,6 +51,8 @@ def guide_to_person(d: Discourse, node: Node) -> Steps:
         person = named(d, other)
         words = person if isinstance(person, str) else d.language.phrase("somebody")
         raise NotUnderstood(d.language.phrase("where_is_person", person=words))
+    if thing.value == d.with_person:
+        leave_out_fetching(d)
     return [*meet(d, thing), lead(d, thing, other.place)]
 
 

@@ -53,6 +53,8 @@ def ask(d: Discourse, node: Node) -> Steps:
         person = d.build(question.parts["asked_one"])  # "find out what Bob wants"
     if person is None and isinstance(question, Node) and "each" in question.production.fixed:
         person = Thing(Text(ANYONE), person=True, plural=True, here=True)  # "ask who wants tea"
+    if person is None and asks_anybody(d, question):
+        person = Thing(Text(ANYONE), person=True, plural=True, here=True)
     if person is not None and person.coming:
         going = go(d, person.place) if person.place is not None else []
         waiting = Call("wait_for", {"thing": person.value})
@@ -62,6 +64,15 @@ def ask(d: Discourse, node: Node) -> Steps:
     if node.production.fixed.get("to_me"):
         d.put = d.surveys[-1]
     return steps
+
+
+def asks_anybody(d: Discourse, question: Leaf | Node | None) -> bool:
+    """Whether nobody was named and whoever is there is meant: "frag in der Küche, ob jemand Tee
+    will"."""
+    asked = question.parts.get("asked") if isinstance(question, Node) else None
+    anybody = set(d.language.speech.get("somebody_else", ()))
+    said = set() if asked is None else set(d.norms(asked.start, asked.end))
+    return bool(anybody & said) and d.with_person is None
 
 
 def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:

@@ -8,7 +8,7 @@ from typing import Final
 import msgspec
 
 from grammar.chart import Leaf, Node, what_it_means
-from grammar.discourse import Discourse, Steps, Thing
+from grammar.discourse import ANYONE, Discourse, Steps, Thing
 from grammar.inference import takes_time
 from grammar.meanings.branches import ABOUT_ANSWERS, if_
 from grammar.meanings.carrying import take_back_delivery
@@ -70,6 +70,11 @@ def when(d: Discourse, node: Node) -> Steps:
     waited = Call("wait_for", {"thing": person.value}) if person is not None else None
     if d.done[-1:] == [waited] and wait_until(condition) == [waited]:
         d.done.pop()  # "wait for the doctor, and when she comes, ..."
+    last = d.done[-1] if d.done else None
+    if not before and person is not None and just_came(last) and wait_until(condition) == [ANY]:
+        d.person = person  # "wait for a visitor. When somebody comes, ..."
+        met: Steps = d.build(node.parts["then"])
+        return met
     if not before and waited_for_them(d, node, condition):
         done: Steps = d.build(node.parts["then"])
         return done
@@ -79,6 +84,14 @@ def when(d: Discourse, node: Node) -> Steps:
     if node.production.fixed.get("always") or _is_duty(d, node, condition):
         return each_time(before, condition, body)
     return [*awaited(before, condition), *body]
+
+
+ANY: Final = Call("wait_for", {"thing": Text(ANYONE)})
+
+
+def just_came(step: Step | None) -> bool:
+    """Whether a step ends when somebody has come."""
+    return isinstance(step, Call) and step.method == "wait_for" and "timeout" not in step.arguments
 
 
 def _is_duty(d: Discourse, node: Node, condition: Condition) -> bool:
