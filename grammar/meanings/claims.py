@@ -47,7 +47,11 @@ def claim_of(d: Discourse, node: Node, condition: Condition, met: Meeting | None
         return found_claim(d, condition, met) if met is not None and not d.in_loop else None
     if what_it_means(part) == "answers_many":  # "if anyone says yes, tell Alice": how many did
         return polled(d, "many", None).words[0]
-    if _is_of_them(part) or node.production.fixed.get("turned") or node.production.fixed.get("unless"):
+    if (
+        _is_of_them(part)
+        or node.production.fixed.get("turned")
+        or node.production.fixed.get("unless")
+    ):
         return found_claim(d, condition, met)
     end = part.end
     while d.tokens[end - 1].kind == "mark":
