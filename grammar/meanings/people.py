@@ -12,6 +12,7 @@ from grammar.meanings.carrying import deliver
 from grammar.meanings.conditions import condition_of
 from grammar.meanings.finding import look_for, meet, named, speak_to, where_sent
 from grammar.meanings.genders import means_thing
+from grammar.meanings.hosts import place_of_named
 from grammar.meanings.leading import lead
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import kind_places
@@ -43,6 +44,9 @@ def guide(d: Discourse, node: Node) -> Steps:
         leave_out_fetching(d)
     steps = meet(d, thing)
     spot: Where = d.get(node, "spot") or Where(there)
+    named = place_of_named(d, d.surveys[-1]) if d.surveys and d.surveys[-1].options else None
+    if "place" in node.parts and named is not None and spot.place in (None, d.at):
+        spot = Where(named)  # "ask whether they want to see Bob or Clara and take them there"
     if spot.place is None:
         raise NotUnderstood(d.language.phrase("guide_needs_place"))
     if "place" in node.parts and spot.place == d.at and d.done:

@@ -6,7 +6,6 @@ of those who have an office, and the answer is a part of the name of the place.
 
 from __future__ import annotations
 
-from collections import defaultdict
 from dataclasses import replace
 from typing import Final
 
@@ -17,6 +16,7 @@ from grammar.discourse import Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.alternatives import itself
 from grammar.meanings.finding import meet, speak_to
+from grammar.meanings.hosts import place_of_named
 from grammar.meanings.leading import lead
 from grammar.meanings.people import led
 from grammar.meanings.questions import ask
@@ -25,10 +25,9 @@ from grammar.meanings.registry import meaning
 from grammar.meanings.reports import found_out
 from grammar.meanings.sights import names_here
 from grammar.meanings.speaking import sentence_form
-from grammar.meanings.surveys import Survey, replacing
 from grammar.meanings.waiting import moment
 from grammar.naming import place_called
-from grammar.plan import Call, Items, Recall, Repeat, Sentence, Text, Value
+from grammar.plan import Call, Repeat, Text, Value
 from grammar.tidy import nodes
 
 LED_AWAY: Final = frozenset({"guide", "guide_where_wanted", "guide_nowhere", "send_person"})
@@ -143,46 +142,13 @@ def place_of_answer(d: Discourse, node: Node) -> Value:
         survey = survey_named(d, part.start, part.end)
     else:
         survey = next((each for each in reversed(d.surveys) if SOMEBODY in each.nouns), None)
-    owners, ending = owners_of(d, d.get(node, "kind"))
-    if survey is None or survey.call.save_as is None or not owners:
+    place = None if survey is None else place_of_named(d, survey, d.get(node, "kind"))
+    if place is None:
         words = d.words(node.start, node.end)
         raise NotUnderstood(
             d.language.phrase("not_understood", part=words), gap=(node.start, node.end)
         )
-    offer(d, survey, owners)
     if part is not None:
         d.resolved.update(range(part.start, part.end))
-    d.place = Sentence((Recall(survey.call.save_as), Text(ending)))
-    return d.place
-
-
-def owners_of(d: Discourse, kind: str | None) -> tuple[tuple[str, ...], str]:
-    """Those after whom places of a kind are called, and what their names have behind theirs:
-    "'s office"."""
-    places = d.lexicon.place_kinds.get(kind, ()) if kind else d.lexicon.places
-    endings: dict[str, list[str]] = defaultdict(list)
-    for place in places:
-        for person in d.lexicon.people:
-            if place.name.lower().startswith(person.name.lower() + d.language.speech["possessive"]):
-                endings[place.name[len(person.name) :]].append(person.name)
-    if not endings:
-        return (), ""
-    ending = max(endings, key=lambda each: len(endings[each]))
-    return tuple(endings[ending]), ending
-
-
-def offer(d: Discourse, survey: Survey, names: tuple[str, ...]) -> None:
-    """Let a question that was asked openly be answered with one of some names."""
-    if survey.options:
-        return
-    options = Items(tuple(map(Text, names)))
-    call = msgspec.structs.replace(
-        survey.call, arguments={**survey.call.arguments, "options": options}
-    )
-    if not any(each is survey.call for each in nodes(tuple(d.done))):
-        raise NotUnderstood(d.language.phrase("too_complicated"))
-    d.done[:] = [
-        call if each is survey.call else replacing(each, survey.call, [call]) for each in d.done
-    ]
-    at = d.surveys.index(survey)
-    d.surveys[at] = replace(survey, call=call, options=names)
+    d.place = place
+    return place

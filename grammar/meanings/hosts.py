@@ -1,0 +1,59 @@
+"""Whom an answer names, and where they are to be found: "frag ihn, ob er zu Bob oder zu Clara will,
+und bring ihn hin" leads to the room that is called after whoever is named."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import replace
+
+import msgspec
+
+from grammar.discourse import Discourse
+from grammar.doubts import NotUnderstood
+from grammar.meanings.places import is_of
+from grammar.meanings.surveys import Survey, replacing
+from grammar.plan import Items, Recall, Sentence, Text, Value
+from grammar.tidy import nodes
+
+
+def place_of_named(d: Discourse, survey: Survey, kind: str | None = None) -> Value | None:
+    """The place called after whoever an answer names; None if it names nobody who has one."""
+    owners, before, after = owners_of(d, kind)
+    if survey.call.save_as is None or not owners or not set(survey.options or ()) <= set(owners):
+        return None
+    offer(d, survey, owners)
+    around = (Text(before), Recall(survey.call.save_as), Text(after))
+    return Sentence(tuple(part for part in around if part != Text("")))
+
+
+def owners_of(d: Discourse, kind: str | None) -> tuple[tuple[str, ...], str, str]:
+    """Those after whom places of a kind are called, and what stands before and behind their names
+    in those of the places: "'s office"."""
+    places = d.lexicon.place_kinds.get(kind, ()) if kind else d.lexicon.places
+    called: dict[tuple[str, str], list[str]] = defaultdict(list)
+    for place in places:
+        for person in d.lexicon.people:
+            before, name, after = place.name.partition(person.name)
+            if name and is_of(d, place.name, person.name):
+                called[before, after].append(person.name)
+    if not called:
+        return (), "", ""
+    most = max(called, key=lambda each: len(called[each]))
+    return tuple(called[most]), *most
+
+
+def offer(d: Discourse, survey: Survey, names: tuple[str, ...]) -> None:
+    """Let a question that was asked openly be answered with one of some names."""
+    if survey.options:
+        return
+    options = Items(tuple(map(Text, names)))
+    call = msgspec.structs.replace(
+        survey.call, arguments={**survey.call.arguments, "options": options}
+    )
+    if not any(each is survey.call for each in nodes(tuple(d.done))):
+        raise NotUnderstood(d.language.phrase("too_complicated"))
+    d.done[:] = [
+        call if each is survey.call else replacing(each, survey.call, [call]) for each in d.done
+    ]
+    at = d.surveys.index(survey)
+    d.surveys[at] = replace(survey, call=call, options=names)
