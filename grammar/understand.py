@@ -38,6 +38,7 @@ from grammar.refusals import (
 from grammar.requests import Request
 from grammar.slips import SHORTEST_CORRECTED, fillers_by_first, mended, misspelt, perfects
 from grammar.slots import Slots, command_words
+from grammar.speech import speech
 from grammar.tidy import Unbound, charging_last, is_one_of_each, returning, scoped, without_unused
 from grammar.tokens import COMMA, Token, tokenise
 from grammar.understanding import Clarification, Context, Understanding, rejected
@@ -420,7 +421,8 @@ class Reader:
             nearest_phrases(unclear, self.text, self.lexicon, self.language) if mine else []
         )
         if suggestions:
-            examples = self._listed([f"“{each}”" for each in suggestions])
+            quoted = speech(self.language.code).values["quoted"]
+            examples = self._listed([quoted.format(text=each) for each in suggestions])
             message = f"{message} {self.language.phrase('try_this', examples=examples)}"
         return Understanding(
             self.text,

@@ -210,7 +210,8 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
     numbers = all(each.isdigit() for each in options)
     if "options" in question.parts and not numbers and d.place != Recall(name):
         d.thing, d.thing_last = Thing(Recall(name)), False  # "what they want: tea or coffee"
-    if rest is None or not {"verb", "aux"} & question.parts.keys():
+    offer = bool(question.production.fixed.get("offer"))  # "offer him a coffee"
+    if rest is None or not (offer or {"verb", "aux"} & question.parts.keys()):
         return
     last = next((at for at in reversed(range(rest.start, rest.end)) if d.tokens[at].value), None)
     if options and last is not None and all(each.isdigit() for each in options):

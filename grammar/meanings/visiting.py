@@ -141,7 +141,9 @@ def place_of_answer(d: Discourse, node: Node) -> Value:
     if part is not None:
         survey = survey_named(d, part.start, part.end)
     else:
-        survey = next((each for each in reversed(d.surveys) if SOMEBODY in each.nouns), None)
+        survey = next(
+            (each for each in reversed(d.surveys) if SOMEBODY in each.nouns or each.options), None
+        )
     place = None if survey is None else place_of_named(d, survey, d.get(node, "kind"))
     if place is None:
         words = d.words(node.start, node.end)
