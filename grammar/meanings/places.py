@@ -32,8 +32,9 @@ def place_of_kind(d: Discourse, node: Node) -> Value:
     if isinstance(d.place, Text) and any(each.name == d.place.value for each in places):
         return d.place  # "go to the bathroom and count the people in the room"
     own = own_place(d, d.person) if d.person is not None and d.person.known else None
-    if own is not None and any(each.name == own.value for each in places):
-        return own  # "if Clara is not in the office": in hers
+    named = [each for each in d.lexicon.people if each.name.lower() in d.text.lower()]
+    if own is not None and len(named) == 1 and any(each.name == own.value for each in places):
+        return own  # "if Clara is not in the office": in hers, where she alone was spoken of
     if len(places) > 1:
         raise d.which(node.start, node.end, tuple(place.name for place in places))
     d.place = Text(places[0].name)
