@@ -79,7 +79,9 @@ def _joined(
 ) -> str:
     text = _verb_second(rules, d, clauses[0])
     for joint, clause in zip(joints, clauses[1:], strict=True):
-        own = clause and (clause[0].capital or _begins_noun(rules, clause[0]))
+        at = int(bool(clause) and clause[0].norm in rules.get("adverbs", ()))
+        begins = clause[at : at + 1]  # "und heute nicht komme" has no subject of its own
+        own = begins and (begins[0].capital or _begins_noun(rules, begins[0]))
         told = _verb_second(rules, d, clause) if own else _verb_first(rules, clause)
         text += joint + told
     return text
