@@ -118,6 +118,11 @@ def some(noun: str, language: Language) -> str:
     return language.phrase("a", noun=noun)
 
 
+def person_called(called: str, language: Language) -> str:
+    """Somebody as they are spoken of: "Alice", but "le docteur Martin"."""
+    return the(called, language) if called[:1].islower() and _words(language) else called
+
+
 def place_called(name: str, lexicon: Lexicon, language: Language) -> str:
     """A place as it stands in a sentence: "the kitchen", "la cuisine"."""
     called = naming(lexicon, language).called(name)

@@ -10,7 +10,7 @@ from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.meanings.genders import gender_of_thing
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import sought
-from grammar.naming import the
+from grammar.naming import person_called, the
 from grammar.plan import (
     Ask,
     Call,
@@ -271,5 +271,5 @@ def named(d: Discourse, thing: Thing) -> Value | str:
     if not isinstance(thing.value, Text):
         return thing.value
     if thing.known and thing.person:
-        return d.called(thing.value.value)
+        return person_called(d.called(thing.value.value), d.language)
     return the(d.called(thing.value.value), d.language)

@@ -14,7 +14,7 @@ from grammar.meanings.places import place_called_after, sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report, told_report
 from grammar.meanings.surveys import in_loop
-from grammar.naming import place_called, some, the
+from grammar.naming import person_called, place_called, some, the
 from grammar.plan import Ask, Call, Holds, If, Recall, Remember, Text, Value
 from grammar.wordforms import plural, singular
 
@@ -270,7 +270,8 @@ def named_some(d: Discourse, thing: Thing) -> str:
     if thing.person and thing.text == ANYONE:
         return d.language.phrase("somebody")
     called = d.called(thing.text)
-    return called if thing.known and thing.person else some(called, d.language)
+    somebody = thing.known and thing.person
+    return person_called(called, d.language) if somebody else some(called, d.language)
 
 
 @meaning("where_found")
@@ -298,7 +299,7 @@ def located(d: Discourse, thing: Thing) -> Steps:
     if d.done and d.done[-1] == found(d, thing):
         d.done.pop()  # "find the cup and tell me where it is"
     called = d.called(thing.text)
-    known = called if thing.known and thing.person else the(called, d.language)
+    known = person_called(called, d.language) if thing.known and thing.person else the(called, d.language)
     arguments: dict[str, Value] = {"thing": sought(d, thing)}
     if thing.place is not None:
         arguments["place"] = thing.place
