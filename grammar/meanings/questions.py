@@ -87,7 +87,9 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
     scale = node.parts.get("scale")
     if scale is not None:  # "ask from one to ten how bad it is"
         options = numbers_offered(d, scale.start, scale.end)
-        text = f"{text[:-1]}, {d.words(scale.start, scale.end)}{text[-1:]}"
+        end = re.search(r"\s*[?.]?$", text)
+        mark = text[end.start() :] if end else ""
+        text = f"{text.removesuffix(mark)}, {d.words(scale.start, scale.end)}{mark}"
     arguments: dict[str, Value] = {"question": Text(text)}
     name = remember_answer(d, options, "answer")
     if options:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
+from grammar.meanings.answered import about_answer
 from grammar.meanings.carrying import deliver
 from grammar.meanings.gone_round import round_of
 from grammar.meanings.news import in_round
@@ -91,6 +92,9 @@ def trait_asked(d: Discourse, node: Node) -> Trait:
 def trait_holds(d: Discourse, node: Node) -> Condition:
     """ "if the kitchen is empty", "if it has no stapler": found out there."""
     place: Value | None = d.get(node, "trait_place")
+    asked_for = about_answer(d, node) if place is None else None
+    if asked_for is not None:  # "ask him whether he has a pain. If he has a pain, ..."
+        return asked_for
     if place is None and d.at is None and d.place is None:  # "if she has a minute"
         words = d.words(node.start, node.end)
         gap = (node.start, node.end)
