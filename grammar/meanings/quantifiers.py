@@ -145,7 +145,9 @@ def speaks_of_several(d: Discourse, node: Node, part: Node) -> bool:
     if together and part.means not in ALWAYS and "but" not in part.parts and not by_name:
         return False
     if part.means == "person_kind":
-        definite = d.tokens[part.start].norm in d.language.speech.get("definite", ())
+        definite = d.tokens[part.start].norm in d.language.speech.get("definite", ()) or (
+            d.tokens[part.start - 1].norm in d.language.speech.get("definite_before", ())
+        )
         several_of = node.means == "bring" and definite and kind_in_plural(d, part)
         return bool(part.production.fixed.get("plural")) or several_of
     if part.means == "person_pronoun" and d.thing_last:
