@@ -7,7 +7,7 @@ have said at once, and it is understood as such, with all that hangs together in
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
@@ -348,13 +348,25 @@ class Sentence:
             words = [token for token in old.tokens[skip : old.last_word] if token.kind != "mark"]
             spots = self._spots(words)
             if spots and words:
-                put = new.words(min(stripped_new, skip), new.last_word)
+                lead = min(stripped_new, skip)
+                put = new.words(lead, new.last_word)
                 text = self.text
                 for start, end in reversed(spots):
+                    end += self._said_too(end, new.tokens[lead : new.last_word])
                     first, last = self.tokens[start].start, self.tokens[end - 1].end
                     text = text[:first] + put + text[last:]
                 return text
         return None
+
+    def _said_too(self, at: int, new: Sequence[Token]) -> int:
+        """How many of the words that stand here end what is put before them: "ten minutes instead
+        of five" in "wait five minutes"."""
+        for length in range(len(new) - 1, 0, -1):
+            here = self.tokens[at : at + length]
+            pairs = zip(here, new[-length:], strict=False)
+            if len(here) == length and all(same_word(a.norm, b.norm) for a, b in pairs):
+                return length
+        return 0
 
     def _spots(self, words: list[Token]) -> list[tuple[int, int]]:
         """Where these words stand in the sentence, in any of their forms."""

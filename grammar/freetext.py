@@ -302,6 +302,10 @@ class Judge:
         for at in range(start + 1, end):
             if self.tokens[at].norm in words.that & words.subordinating:
                 return doubt(start, "cannot_say")  # "Emma auf Französisch, dass ..."
+        for at in range(start + 2, end):  # "good night, but not in ward b"
+            so = self.tokens[at - 1].norm in self.joins and self.tokens[at].norm in words.manners
+            if so and self.tokens[at - 2].norm == COMMA:
+                return doubt(at - 1, "said_or_done")
         greeting = self.greeting(start)
         behind = start + greeting
         if first in words.not_greeting:  # "say in the lobby": where, and not what
@@ -310,10 +314,6 @@ class Judge:
             return None  # "welcome to our hospital"
         if greeting and behind < end and self.tokens[behind].norm in words.not_greeting:
             return doubt(behind, "said_or_done")
-        for at in range(start + 2, end):  # "good night, but not in ward b"
-            so = self.tokens[at - 1].norm in self.joins and self.tokens[at].norm in words.manners
-            if so and self.tokens[at - 2].norm == COMMA:
-                return doubt(at - 1, "said_or_done")
         if self.wished(start):
             return None  # "have a nice weekend"
         greeted = {
