@@ -299,7 +299,11 @@ def located(d: Discourse, thing: Thing) -> Steps:
     if d.done and d.done[-1] == found(d, thing):
         d.done.pop()  # "find the cup and tell me where it is"
     called = d.called(thing.text)
-    known = person_called(called, d.language) if thing.known and thing.person else the(called, d.language)
+    known = (
+        person_called(called, d.language)
+        if thing.known and thing.person
+        else the(called, d.language)
+    )
     arguments: dict[str, Value] = {"thing": sought(d, thing)}
     if thing.place is not None:
         arguments["place"] = thing.place
