@@ -222,6 +222,8 @@ class Discourse:
     """Whether what a command is about was looked for by the steps around it."""
     stop: Value | None = None
     """The place of the loop around, if it is one over places."""
+    mislaid: Value | None = None
+    """What somebody was said to wait or to look for: where "it" is then tells of that."""
     at_people: bool = False
     """Whether the robot is where it is to meet people, so that things need not be there, too."""
     loops: dict[str, Value] = field(default_factory=dict)

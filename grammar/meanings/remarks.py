@@ -13,7 +13,7 @@ from typing import Final, TypeVar
 
 import msgspec
 
-from grammar.chart import Node
+from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import Discourse, Steps, Thing, Where, as_value
 from grammar.doubts import NotUnderstood
 from grammar.freetext import words_for
@@ -96,9 +96,11 @@ def remark_name(d: Discourse, node: Node) -> Steps:
 
 @meaning("remark_thing")
 def remark_thing(d: Discourse, node: Node) -> Steps:
-    """ "somebody lost a scarf": what is spoken of then."""
+    """ "somebody lost a scarf": what, and who, is spoken of then."""
+    d.get(node, "person_ref")
     thing: Thing = d.get(node, "thing")
     d.thing, d.thing_last = thing, True
+    d.mislaid = thing.value
     return aside(d, node)
 
 
@@ -115,7 +117,10 @@ def remark_where(d: Discourse, node: Node) -> Steps:
     thing: Thing | None = d.get(node, "thing")
     if isinstance(person, list):  # "Alice or Bob is in the lobby": nobody knows which
         return aside(d, node)
+    if mislaid(d, who_is) is not None:
+        person = None
     it = node.production.fixed.get("it") or (person is None and may_be_it(d, node))
+    it = it or mislaid(d, who_is) is not None
     who = person or (d.person if thing is None and not it else None)
     if thing is None and who is not None:
         d.person, d.thing_last = replace(who, place=place, furniture=spot.furniture), False
@@ -129,6 +134,14 @@ def remark_where(d: Discourse, node: Node) -> Steps:
             told_where(d, d.thing)
             known_to_be(d, what.value, place)
     return aside(d, node)
+
+
+def mislaid(d: Discourse, part: Leaf | Node | None) -> Thing | None:
+    """What "il" and "elle" speak of where somebody was said to wait or to look for something: "le
+    docteur attend son dossier, il est à l'accueil"."""
+    pronoun = part is not None and what_it_means(part) == "person_pronoun"
+    known = d.thing_last and d.thing is not None and d.thing.value == d.mislaid
+    return d.thing if pronoun and known else None
 
 
 def may_be_it(d: Discourse, node: Node) -> bool:

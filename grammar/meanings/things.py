@@ -22,7 +22,7 @@ from grammar.meanings.nouns import thing_it
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import home_of, kind_places, piece_called, place_there, sought
 from grammar.meanings.registry import meaning
-from grammar.meanings.remarks import fetched_there, known_to_be
+from grammar.meanings.remarks import fetched_there, known_to_be, mislaid
 from grammar.meanings.reports import Report, found_out
 from grammar.meanings.sights import best_there, which_there
 from grammar.meanings.sources import told_where
@@ -310,7 +310,8 @@ def statement(d: Discourse, node: Node) -> Steps:
     if where_first is not None and where_first.start == node.start and goes_on(d, node.start):
         # "check whether the door | of room 3 is open" is one clause, however its words may part
         raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
-    spoken_of: Thing | list[Thing] | None = d.get(node, "thing") or d.get(node, "person_ref")
+    spoken_of: Thing | list[Thing] | None = mislaid(d, node.parts.get("person_ref"))
+    spoken_of = spoken_of or d.get(node, "thing") or d.get(node, "person_ref")
     thing = spoken_of[0] if isinstance(spoken_of, list) else spoken_of  # "it" is one of them
     spot: Where | None = d.get(node, "from")
     if thing is None:  # "he is in the kitchen"
