@@ -36,7 +36,8 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
     looked = search is not None and search.is_for(d, thing)  # "find the cup and bring it to me"
     sought_somebody = d.at == d.looked_in and (d.with_person is not None or not d.thing_last)
     for_somebody = d.at_people or sought_somebody  # "if Bob is in the lobby, bring him a cup"
-    nearby = d.at is not None and not for_somebody and thing.place is None
+    lacking = d.missing is not None and d.missing.value == thing.value  # "if there is none, ..."
+    nearby = d.at is not None and not (for_somebody or lacking) and thing.place is None
     nearby = nearby and not isinstance(thing.value, Recall)  # what somebody asked for is anywhere
     is_here = thing.here or nearby or (d.at is not None and thing.place == d.at)
     steps: Steps = [] if looked or is_here else look_for(d, thing)
