@@ -282,16 +282,22 @@ def waiting(d: Discourse, node: Node) -> Steps:
 def tell_when(d: Discourse, node: Node) -> Steps:
     """ "as soon as Bob is here, tell me": wait for it, then say that it is so; "tell Bob when she
     is coming", after she was asked that: what she said."""
-    person: Thing = d.get(node, "person_ref")
     asked = asked_when(d, node)
     if asked is not None:
-        back = go_back(d, []) if is_me(person) else []
-        return [*back, *asked.words] if is_me(person) else speak_to(d, person, asked.words)
+        asker: Thing = d.get(node, "person_ref")
+        back = go_back(d, []) if is_me(asker) else []
+        return [*back, *asked.words] if is_me(asker) else speak_to(d, asker, asked.words)
+    part = node.parts.get("person_ref")
+    if part is None or part.start < node.parts["condition"].start:
+        d.get(node, "person_ref")  # who is named first is spoken of as "she" then
     before_it, condition = condition_of(d, node)
     claim = claim_of(d, node, condition, d.met)
     meet_there(d, d.met)
     waiting = awaited(before_it, condition)
+    if waiting and d.done[-1:] == waiting[-1:]:
+        waiting = waiting[:-1]  # "wait for her, and when she comes, tell Bob"
     away = d.at is not None or moved(waiting)
+    person: Thing = d.get(node, "person_ref")
     told = speak_to(d, person, known_words(d) if claim is None else [claim])
     if is_me(person) and away:
         told = [Call("goto", {"place": d.start()}), *told]
