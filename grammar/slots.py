@@ -195,7 +195,7 @@ class Slots:
         """One word that is no article and no pronoun: a verb."""
         if at < len(self.tokens) and self.tokens[at].kind == "word":
             words = self._judge.words
-            if self.tokens[at].norm in words.objects | words.adverbs:
+            if self.tokens[at].norm in words.objects | words.adverbs or self._named("person", at):
                 return []
             return [(at + 1, FREE_WORD, self.tokens[at].norm)]
         return []

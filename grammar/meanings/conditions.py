@@ -8,6 +8,7 @@ from typing import Final
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Meeting, Steps, as_value
 from grammar.doubts import NotUnderstood
+from grammar.meanings.deliveries import inside
 from grammar.meanings.finding import noun_of
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
@@ -81,10 +82,21 @@ def negated(condition: Condition) -> Condition:
 def condition_of(d: Discourse, node: Node, name: str = "condition") -> tuple[Steps, Condition]:
     """The condition of a clause, and the steps that it needs before it can be checked; whom it is
     about is then `d.met`."""
+    named_before(d, node, name)
     outer, d.pending, d.met = d.pending, [], None
     condition: Condition = d.get(node, name)
     before, d.pending = d.pending, outer
     return before, condition
+
+
+def named_before(d: Discourse, node: Node, name: str) -> None:
+    """ "give it to Clara when she comes", "... if she is in her office": she is named in what is
+    said first and done later."""
+    then = node.parts.get("then")
+    if d.person is None and then is not None and then.start < node.parts[name].start:
+        names = (each for each in inside(then) if each.production.means == "person_name")
+        if who := next(names, None):
+            d.build(who)
 
 
 @meaning("battery_is")

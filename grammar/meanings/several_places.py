@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from grammar.chart import Node
 from grammar.discourse import (
+    ANYONE,
     Discourse,
     Steps,
     Thing,
@@ -120,4 +121,6 @@ def over_place_where(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
         return searching
     here: Step = Remember(place.name, Ask("location"))
     there = Holds(Ask("find", found(d, thing).arguments))
+    if body[:1] == [Call("guide", {"person": Text(ANYONE), "place": place})]:
+        body = [Call("goto", {"place": d.start()}), *body]  # whoever is led waits where it began
     return [If(there, (here, *guarded(d, body)), (not_found(d, thing),))]

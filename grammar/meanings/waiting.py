@@ -63,7 +63,6 @@ def when(d: Discourse, node: Node) -> Steps:
         return if_(d, node)  # "when he says yes", of somebody who was asked: he has answered
     if not_there(d, node) and not node.production.fixed.get("always"):
         return if_(d, node)
-    named_before(d, node)
     person = d.person
     before, condition = condition_of(d, node)
     meet_there(d, d.met)
@@ -260,15 +259,6 @@ def looking_up(body: Steps) -> Steps:
             waited = Holds(Ask("wait_for", {**step.arguments, "timeout": timeout}))
             return [*body[:at], If(waited, tuple(body[at + 1 :]))]
     return body
-
-
-def named_before(d: Discourse, node: Node) -> None:
-    """ "give it to Clara when she comes": she is named in what is said first and done later."""
-    then = node.parts["then"]
-    if d.person is None and then.start < node.parts["condition"].start:
-        names = (each for each in inside(then) if each.production.means == "person_name")
-        if name := next(names, None):
-            d.build(name)
 
 
 def waiting(d: Discourse, node: Node) -> Steps:
