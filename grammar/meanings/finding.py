@@ -237,7 +237,7 @@ def if_missing(d: Discourse, who: Value) -> Steps:
 def where_sent(d: Discourse, person: Thing) -> Thing:
     """Somebody spoken of right after going somewhere is there: "go to the bar and follow Alex"."""
     last = d.done[-1] if d.done else None
-    going = isinstance(last, Call) and last.method == "goto" and last.arguments["place"] == d.at
+    going = isinstance(last, Call) and last.method == "goto" and last.arguments.get("place") == d.at
     if not going or person.place is not None or person.here or person.group is not None:
         return person
     if not isinstance(d.at, Text) or not (person.known or particular(person)):

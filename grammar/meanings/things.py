@@ -236,7 +236,7 @@ def handing_over(steps: Steps) -> tuple[Step, ...]:
 def handed_there(d: Discourse, thing: Thing, person: Thing) -> Thing:
     """ "go to the lounge and give the bowl to Alex": he is there; the bowl has to be looked for."""
     last = d.done[-1] if d.done else None
-    going = isinstance(last, Call) and last.method == "goto" and last.arguments["place"] == d.at
+    going = isinstance(last, Call) and last.method == "goto" and last.arguments.get("place") == d.at
     if not going or not isinstance(d.at, Text) or is_me(person) or thing.place or person.place:
         return person
     place = d.at
