@@ -11,10 +11,12 @@ import grammar.meanings.agreement
 import grammar.meanings.amounts
 import grammar.meanings.answered
 import grammar.meanings.answers
+import grammar.meanings.asking_until
 import grammar.meanings.best_places
 import grammar.meanings.body
 import grammar.meanings.branches
 import grammar.meanings.checked
+import grammar.meanings.chosen
 import grammar.meanings.conditions
 import grammar.meanings.control
 import grammar.meanings.conversation
@@ -48,7 +50,6 @@ import grammar.meanings.sights
 import grammar.meanings.sources
 import grammar.meanings.speaking
 import grammar.meanings.stops
-import grammar.meanings.surveys
 import grammar.meanings.telling_if
 import grammar.meanings.there
 import grammar.meanings.things

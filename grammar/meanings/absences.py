@@ -41,7 +41,7 @@ def addressed_before(d: Discourse, met: Meeting | None) -> Addressed | None:
             if not _is_meant(found[0], who) or at != len(d.done) - 1:
                 return None
             d.done.pop()
-            return Addressed(step.condition, list(step.then))
+            return Addressed(_there(step.condition, who), list(step.then))
         if not isinstance(step, Call) or step.method not in ("find", "goto"):
             continue
         spoken = any(_speaks(each) for each in d.done[at + 1 :])
@@ -54,15 +54,25 @@ def addressed_before(d: Discourse, met: Meeting | None) -> Addressed | None:
         steps = d.done[first + 1 if searching else first :]
         del d.done[first:]
         looked = Ask("find", step.arguments) if searching else _seen(steps, who)
-        return Addressed(Holds(looked), steps)
+        return Addressed(_there(Holds(looked), who), steps)
     return None
+
+
+def _there(found: Condition, who: Thing) -> Condition:
+    """A search, in the one place where it is said that somebody may not be: "tell Clara ... If she
+    is not in her office, tell David"."""
+    match found:
+        case Holds(Ask("find", arguments)) if who.place is not None:
+            return Holds(Ask("find", {**arguments, "place": who.place}))
+        case _:
+            return found
 
 
 def _is_meant(search: Ask, who: Thing) -> bool:
     """Whether a search is for somebody; whoever is nowhere to be seen is also "nobody"."""
     place = search.arguments.get("place")
     return (search.arguments["thing"] == who.value or who.text == ANYONE) and (
-        who.place is None or who.place == place
+        who.place is None or place is None or who.place == place
     )
 
 
@@ -93,6 +103,9 @@ def undelivered(d: Discourse, person: Thing | None) -> Steps | None:
     d.bound[id(part)] = person
     try:
         steps: Steps = d.build(node)
+        d.claim = (
+            None  # what is told from now on is what was asked, and not that they are not there
+        )
     finally:
         del d.bound[id(part)]
         if outer is not None:

@@ -9,7 +9,7 @@ from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Meeting, Thing, as_value
 from grammar.doubts import NotUnderstood
 from grammar.meanings.agreement import same_answers
-from grammar.meanings.answers import Said, Wanted
+from grammar.meanings.answers import Said, Wanted, yes
 from grammar.meanings.answers import wanted as wanted_answer
 from grammar.meanings.conditions import negated
 from grammar.meanings.deliveries import delivered_last
@@ -21,6 +21,7 @@ from grammar.meanings.surveys import (
     Survey,
     asked_before,
     asked_so_far,
+    asked_without_end,
     in_loop,
     of_one_question,
     replacing,
@@ -277,23 +278,26 @@ def answer_counts(d: Discourse, node: Node) -> Condition:
 def answers_many(d: Discourse, node: Node) -> Condition:
     """ "if both say yes", "if more than half of them agree", "if nobody wants any"."""
     surveys = of_one_question(asked_before(d))
-    answer = d.said = wanted_answer(d, surveys[-1], d.get(node, "said"))
+    said: Said | None = d.get(node, "said")
+    answer = d.said = yes(d) if said is None else wanted_answer(d, surveys[-1], said)
     how = node.production.fixed.get("how")
     not_all = bool(node.production.fixed.get("no"))
+    if how == "some" and asked_without_end(d, surveys[-1]):
+        return answer.given(surveys[-1])
     by_one = len(surveys) == 1 or how in ("all", "none", "some")
     if not in_loop(d, surveys[-1].call) and by_one:
         given = of_those_asked(d, surveys, answer, str(how))
         return Not(given) if not_all else given
-    said = counted_answers(d, surveys, answer)
+    many = counted_answers(d, surveys, answer)
     if how == "all":
-        return Compare(said, "!=" if not_all else "==", people_asked(d, surveys))
+        return Compare(many, "!=" if not_all else "==", people_asked(d, surveys))
     if how == "most":
-        share = Share(said, counted_answers(d, surveys, None))
+        share = Share(many, counted_answers(d, surveys, None))
         return Compare(share, ">", Number(50))
     if how == "none":
-        return Compare(said, "==", Number(0))
+        return Compare(many, "==", Number(0))
     least = int(d.get(node, "count", 1))
-    return Compare(said, d.get(node, "operator", ">="), Number(least))
+    return Compare(many, d.get(node, "operator", ">="), Number(least))
 
 
 def of_those_asked(d: Discourse, surveys: list[Survey], answer: Wanted, how: str) -> Condition:

@@ -146,5 +146,5 @@ def remember_answer(d: Discourse, options: tuple[str, ...], name: str) -> str:
         variable = answer_variable(d, options) or d.variable(name)
     d.answer = variable
     d.answer_options = options
-    d.report = d.news = d.checked = d.polled_for = None
+    d.report = d.news = d.checked = d.polled_for = d.said = None
     return variable

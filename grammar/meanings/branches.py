@@ -285,12 +285,27 @@ def told_in_any_case(d: Discourse, step: If) -> tuple[If, Steps]:
     """What is told of all who were asked, whether or not one more of them was: "if she says no, ask
     Bob and then come back and tell me what they said"."""
     then = list(step.then)
-    at = next((at for at, each in enumerate(then) if each == BACK), 0)
+    asking = [at for at, each in enumerate(then) if _asks(each)]
     polls = [Recall(name) for name in d.notes.values()]
-    asked = any(isinstance(each, Call) and each.method == "ask" for each in nodes(then[:at]))
-    if not asked or not any(mentions(then[at:], each) for each in polls):
+    at = next(
+        (at for at in range(asking[-1] + 1, len(then)) if _leads_to_telling(then[at], polls))
+        if asking
+        else iter(()),
+        0,
+    )
+    if not at or not any(mentions(then[at:], each) for each in polls):
         return step, []
     return If(step.condition, tuple(then[:at])), then[at:]
+
+
+def _asks(step: Step) -> bool:
+    return any(isinstance(each, Call) and each.method == "ask" for each in nodes(step))
+
+
+def _leads_to_telling(step: Step, polls: list[Recall]) -> bool:
+    """Whether a step goes to somebody, or tells of a poll."""
+    going = isinstance(step, Call) and step.method in ("goto", "find")
+    return going or any(mentions((step,), each) for each in polls)
 
 
 def as_before(d: Discourse, condition: Condition) -> None:
@@ -331,7 +346,20 @@ def absent(
         after = d.scene()
     d.set_scene(elsewhere)
     leave_off(d, after)
-    return [If(kept.condition, tuple(then), tuple(otherwise))]
+    otherwise, told = told_by_either(otherwise, Recall(known) if asked and known else None)
+    return [If(kept.condition, tuple(then), tuple(otherwise)), *told]
+
+
+def told_by_either(steps: Steps, answer: Recall | None) -> tuple[Steps, Steps]:
+    """Steps with somebody who is asked instead of another, and what is told of the answer, which is
+    told of either: "if he is not there, ask Alice and tell me the answer"."""
+    if answer is None:
+        return steps, []
+    telling = (at for at, each in enumerate(steps) if each == BACK or mentions((each,), answer))
+    at = next(telling, len(steps))
+    told = steps[at:]
+    checked = any(isinstance(each, If) and mentions(each.condition, answer) for each in told)
+    return (steps[:at], told) if mentions(told, answer) and not checked else (steps, [])
 
 
 def _go_on(d: Discourse, before: Steps, part: Leaf | Node) -> None:

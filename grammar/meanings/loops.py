@@ -10,6 +10,7 @@ from typing import Final
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing, as_value
 from grammar.doubts import NotUnderstood
+from grammar.meanings.asking_until import until_answered
 from grammar.meanings.claims import meet_there
 from grammar.meanings.conditions import FULL_HOUR, condition_of
 from grammar.meanings.deliveries import first_clause
@@ -18,7 +19,6 @@ from grammar.meanings.going_on import about_places, brought_behind, in_round
 from grammar.meanings.gone_round import of_those, same_round
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
-from grammar.meanings.surveys import until_answered
 from grammar.meanings.waiting import at_least, awaited, looking_up, there_first, wait_until
 from grammar.plan import (
     Ask,

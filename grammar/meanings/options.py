@@ -94,7 +94,7 @@ def split_options(d: Discourse, start: int, end: int) -> tuple[str, ...]:
             options.append(d.called(place))
             continue
         if number == 0 and len(stripped) > 1:
-            row = in_a_row(d, groups[0], longest)
+            row = by_articles(d, groups) or in_a_row(d, groups[0], longest)
             if row:
                 options += row
                 continue
@@ -117,6 +117,18 @@ def _time_of_day(d: Discourse, group: tuple[int, int]) -> str:
     if end - start != 2 or d.tokens[start + 1].norm not in clock:
         return ""
     return f" {d.words(start + 1, end)}"
+
+
+def by_articles(d: Discourse, groups: list[tuple[int, int]]) -> list[str]:
+    """The first choices of "an interview a lecture or a delivery", where no commas part them."""
+    articles = _words_of(d, "articles")
+    start, end = groups[0]
+    begins = [at for at in range(start, end) if d.tokens[at].norm in articles]
+    parted = all(d.tokens[at - 1].norm not in d.language.closed for at in begins[1:])
+    if len(begins) < 2 or not parted or d.tokens[groups[-1][0]].norm not in articles:
+        return []
+    ends = [*begins[1:], end]
+    return [d.words(at + 1, last) for at, last in zip(begins, ends, strict=True) if at + 1 < last]
 
 
 def in_a_row(d: Discourse, group: tuple[int, int], longest: int) -> list[str]:

@@ -418,4 +418,11 @@ def _of_several(d: Discourse, node: Node, person: Thing | None) -> bool:
     several = set(d.language.speech.get("things_too", ()))
     they = part is not node and bool(several & set(d.norms(part.start, part.end)))
     of_one = d.gender(part.start, part.end) is not None or (person is not None and not they)
-    return not of_one and several_asked(d)
+    return not of_one and (several_asked(d) or (they and _in_turn(d)))
+
+
+def _in_turn(d: Discourse) -> bool:
+    """Whether what is said is for each of several who were asked, in turn: "ask them whether they
+    have a car; if so ask how big it is, and tell me what they said"."""
+    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    return survey is not None and isinstance(survey.who, Recall) and d.with_person == survey.who

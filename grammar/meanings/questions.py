@@ -124,6 +124,8 @@ def several_of_a_kind(d: Discourse, node: Node, person: Thing | None) -> Thing |
     part = node.parts.get("person_ref")
     if person is None or not isinstance(part, Node) or person.group or person.count:
         return person
+    if part.means == "person_coming":  # one after the other
+        return person
     kind = part.parts.get("kind_of_person")
     if not isinstance(kind, Leaf) or person.value != Text(str(kind.value[0])):
         return person

@@ -16,7 +16,7 @@ from grammar.doubts import NotUnderstood
 from grammar.meanings.news import Told
 from grammar.meanings.polls import polled
 from grammar.meanings.registry import meaning
-from grammar.meanings.surveys import Survey, in_loop
+from grammar.meanings.surveys import Survey, asked_before, in_loop
 from grammar.plan import Call, Forever, Recall, Sentence, Text, Value
 from grammar.tidy import nodes
 from grammar.wordforms import singular
@@ -148,8 +148,15 @@ def _spoken_of(d: Discourse, start: int, end: int) -> Iterator[tuple[int, int, V
     at = start
     while at < end:
         survey, last = None, at + 1
+        most = next((each for each in _of_most(d) if _stand_here(d, each, at, end)), None)
+        if most is not None:
+            from grammar.meanings.polls import chosen_most
+
+            yield at, at + len(most), chosen_most(d, asked_before(d))
+            at += len(most)
+            continue
         for phrase in always:
-            if tuple(d.norms(at, at + len(phrase))) == phrase and at + len(phrase) <= end:
+            if _stand_here(d, phrase, at, end):
                 survey, last = d.surveys[-1], at + len(phrase)
         more = d.tokens[at + 2].norm if at + 2 < end else ""
         points = d.tokens[at].norm in pointing and at + 1 < end and more not in further
@@ -162,3 +169,12 @@ def _spoken_of(d: Discourse, start: int, end: int) -> Iterator[tuple[int, int, V
             continue
         yield at, last, value
         at = last
+
+
+def _of_most(d: Discourse) -> list[tuple[str, ...]]:
+    """The phrases for what most of those who were asked have chosen."""
+    return [d.language.tokens_of(each) for each in d.language.speech.get("most_answer", ())]
+
+
+def _stand_here(d: Discourse, words: tuple[str, ...], at: int, end: int) -> bool:
+    return tuple(d.norms(at, at + len(words))) == words and at + len(words) <= end

@@ -173,6 +173,8 @@ def found_out(d: Discourse, found: Report, person: Thing | None, *, back: bool) 
         steps.append(Call("goto", {"place": start}))
         d.came_back()
         return [*steps, *told(d, found, None)]
+    if back and asked_by_me and not found.about_here and isinstance(found.value, Recall):
+        return [*news.back_to_speaker(d), *told(d, found, None)]  # "the time" that somebody named
     seen_here = found.about_here and found.value is not None
     if back and asked_by_me and seen_here and news.in_round(d):
         steps += told(d, found, None)

@@ -12,6 +12,7 @@ from grammar.discourse import (
     Thing,
 )
 from grammar.meanings.best_places import Best, Such, first_such, survey
+from grammar.meanings.chosen import by_choice, chosen_of
 from grammar.meanings.finding import found, look_for, not_found
 from grammar.meanings.one_round import One, guarded, round_of_steps
 from grammar.meanings.searches import named_places, search_in, searched
@@ -72,7 +73,11 @@ def until_found(d: Discourse, place: Recall, places: Value, body: Steps) -> Step
 
 
 def over_either_place(d: Discourse, node: Node, places: list[Value], one: One) -> Steps:
-    """ "look for it in the lobby or the kitchen": in the one, then in the other."""
+    """ "look for it in the lobby or the kitchen": in the one, then in the other; of those between
+    which somebody was asked to choose, only the one they chose."""
+    chosen = chosen_of(d, [each.value for each in places if isinstance(each, Text)])
+    if chosen is not None and len(chosen) == len(places) > 1:
+        return by_choice(d, chosen, places, one)
     looked: Value | None = None
     for place in places:
         d.at = None

@@ -10,6 +10,7 @@ from msgspec import structs
 from grammar.chart import Node
 from grammar.discourse import START, Discourse, Steps, Thing
 from grammar.doubts import Ambiguous, NotUnderstood
+from grammar.meanings.chosen import by_choice, chosen_of
 from grammar.meanings.finding import found, named, not_found
 from grammar.meanings.one_round import One, round_of_steps
 from grammar.meanings.sources import where_told
@@ -199,7 +200,15 @@ def over_thing_list(d: Discourse, node: Node, things: list[Thing], one: One) -> 
 
 
 def over_either_thing(d: Discourse, node: Node, things: list[Thing], one: One) -> Steps:
-    """ "the red cup, or if there is none the blue one": the first that is found."""
+    """ "the red cup, or if there is none the blue one": the first that is found; "tea or coffee",
+    between which somebody was asked to choose: what they chose."""
+    chosen = chosen_of(d, [each.text for each in things])
+    if chosen is not None:
+        source = things[-1].place  # "a tea or a coffee from the kitchen": either is from there
+        things = [replace(each, place=each.place or source) for each in things]
+        steps = by_choice(d, chosen, things, one)
+        d.thing, d.thing_last = Thing(Recall(str(d.answer))), True
+        return steps
     return first_found(d, things, one)
 
 

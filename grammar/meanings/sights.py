@@ -11,17 +11,21 @@ from grammar.meanings import news
 from grammar.meanings.descriptions import described
 from grammar.meanings.finding import found, in_state, is_here, not_found
 from grammar.meanings.places import place_called_after, sought
+from grammar.meanings.polls import polled
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report, told_report
-from grammar.meanings.surveys import in_loop
+from grammar.meanings.surveys import asked_yet, in_loop
 from grammar.naming import person_called, place_called, some, the
 from grammar.plan import Ask, Call, Holds, If, Recall, Remember, Text, Value
 from grammar.wordforms import plural, singular
 
 
 @meaning("names_here")
-def names_here(d: Discourse, node: Node) -> Report:
-    """ "who is in the lobby?", "the name of the person in the kitchen"."""
+def names_here(d: Discourse, node: Node) -> Report | Steps:
+    """ "who is in the lobby?", "the name of the person in the kitchen"; "their names", behind a
+    condition on what they were asked, of those who said so."""
+    if d.depth > 1 and d.said is not None and asked_yet(d) and names_whom(d, node):
+        return polled(d, "who", None).words
     person: Thing | None = d.get(node, "person_ref")
     if person is not None and person.coming:  # whoever will come: not who is here now
         raise NotUnderstood(d.language.phrase("one_person"))
@@ -41,6 +45,12 @@ def names_here(d: Discourse, node: Node) -> Report:
     elif person.here or d.with_person == person.value:  # wherever that is by now
         person = replace(person, place=None)
     return Report("people_seen", Ask("people"), person.place, name="names")
+
+
+def names_whom(d: Discourse, node: Node) -> bool:
+    """Whether a pronoun says whose names are asked for."""
+    part = node.parts.get("person_ref")
+    return isinstance(part, Node) and part.means == "person_pronoun"
 
 
 @meaning("who_came")

@@ -13,24 +13,17 @@ from typing import Any
 
 import msgspec
 
-from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.doubts import NotUnderstood
-from grammar.meanings.registry import meaning
 from grammar.plan import (
     Ask,
     Call,
     Compare,
     Condition,
-    End,
     ForEach,
+    Forever,
     If,
-    Increase,
-    Items,
-    Number,
     Recall,
-    Remember,
-    RepeatUntil,
     Step,
     Text,
     Value,
@@ -176,7 +169,7 @@ def several_asked(d: Discourse) -> bool:
     return any(
         isinstance(each, If)
         and any(mentions(each.condition, answer) for answer in answers)
-        and _is_in(each, last.call)
+        and is_in(each, last.call)
         for each in nodes(tuple(d.done))
     )
 
@@ -207,6 +200,12 @@ def in_loop(d: Discourse, call: Call) -> bool:
     return any(each is call for loop in loops for each in nodes(loop))
 
 
+def asked_without_end(d: Discourse, survey: Survey) -> bool:
+    """Whether a question is put to one after the other for ever: "if one says no" is then about
+    whoever was asked just now."""
+    return any(isinstance(each, Forever) and is_in(each, survey.call) for each in d.done)
+
+
 # --- what is done with the answer of each
 
 
@@ -228,111 +227,6 @@ def uses_answer(d: Discourse, steps: Steps) -> bool:
     return d.answer is not None and mentions(steps, Recall(d.answer))
 
 
-# --- until so many have answered
-
-
-@meaning("answers_reached")
-def answers_reached(d: Discourse, node: Node) -> Condition:
-    """ "until three of them say yes": the loop around counts the answers."""
-    if not d.surveys:
-        raise NotUnderstood(d.language.phrase("no_question"))
-    if not d.in_loop and asked_so_far(d):  # "if one of them says no": all have answered by now
-        return reached(d, node)
-    return counting_to(d, node)
-
-
-def counting_to(d: Discourse, node: Node) -> Condition:
-    """Whether so many have answered by now, as the loop around is to count."""
-    answer = d.get(node, "answer")
-    name = d.variable("answers" if answer is None else f"said_{answer}")
-    d.counting = (d.surveys[-1], None if answer is None else str(answer), name)
-    return Compare(Recall(name), ">=", Number(int(d.get(node, "count"))))
-
-
-def reached(d: Discourse, node: Node) -> Condition:
-    """Whether so many of those who were asked have given an answer."""
-    from grammar.meanings.answered import of_those_asked
-    from grammar.meanings.answers import Wanted
-    from grammar.meanings.polls import counted
-
-    surveys = asked_before(d)
-    said = d.get(node, "answer")
-
-    wanted = None if said is None else Wanted((str(said),))
-    number = int(d.get(node, "count"))
-    if wanted is not None and number == 1 and not in_loop(d, surveys[-1].call):
-        return of_those_asked(d, surveys, wanted, "some")
-    return Compare(counted(d, surveys, wanted), ">=", Number(number))
-
-
-def until_answered(d: Discourse, condition: Condition, body: Steps) -> Steps:
-    """A loop that goes on until a condition holds; if that is how many have answered, each round is
-    with the next person, and those who are known by name are asked once."""
-    if d.counting is None:
-        return [RepeatUntil(condition, tuple(body))]
-    survey, answer, name = d.counting
-    d.counting = None
-    count: Step = Increase(name)
-    if answer is not None:
-        count = If(survey.said(answer), (count,))
-    zero = Remember(name, Number(0))
-    loop = next(
-        (each for each in body if isinstance(each, ForEach) and _is_in(each, survey.call)), None
-    )
-    if loop is not None and isinstance(loop.items, Items):
-        return [zero, *noting(body, survey.call, [count, If(condition, (End(),))])]
-    if loop is not None and loop.steps == (survey.call,):  # of those who come, one after the other
-        body = [other for each in body for other in ((survey.call,) if each is loop else (each,))]
-    steps = list(noting(body, survey.call, [count]))
-    waits = any(isinstance(step, Call) and step.method == "wait_for" for step in steps)
-    nameless = survey.who is None or loop is not None
-    if any(step is survey.call for step in steps) and nameless and not waits:
-        who = d.person.value if d.person is not None else Text("person")
-        at = next(at for at, step in enumerate(steps) if step is survey.call)
-        arguments = {key: each for key, each in survey.call.arguments.items() if key != "person"}
-        asking = msgspec.structs.replace(survey.call, arguments=arguments)
-        steps[at : at + 1] = [Call("wait_for", {"thing": who}), asking]
-    return [zero, RepeatUntil(condition, tuple(steps))]
-
-
-@meaning("stop_asking")
-def stop_asking(d: Discourse, node: Node) -> Steps:
-    """ "as soon as one says yes, stop asking": leaves the loops that ask."""
-    asked_before(d)
-    part = node.parts["condition"]
-    while isinstance(part, Node) and part.means != "answers_reached":
-        (part,) = part.parts.values()
-    assert isinstance(part, Node)
-    condition = counting_to(d, part)
-    survey, answer, name = d.counting
-    d.counting = None
-    if not in_loop(d, survey.call):
-        raise NotUnderstood(d.language.phrase("no_question"))
-    count: Step = Increase(name)
-    if answer is not None:
-        count = If(survey.said(answer), (count,))
-    leave = If(condition, (End(),))
-    d.done[:] = [
-        Remember(name, Number(0)),
-        *noting(_left_when(d.done, survey.call, leave), survey.call, [count, leave]),
-    ]
-    return []
-
-
-def _left_when(step: Any, call: Call, leave: Step) -> Any:
-    """Steps whose loops around the one that a call is in are left, too."""
-    if isinstance(step, tuple | list):
-        return tuple(_left_when(each, call, leave) for each in step)
-    inner = {
-        name: _left_when(body, call, leave) for name in BODIES if (body := getattr(step, name, ()))
-    }
-    loops = isinstance(step, LOOPS) and any(
-        isinstance(each, LOOPS) and _is_in(each, call) for each in nodes(step.steps)
-    )
-    if loops:
-        inner["steps"] = (*inner["steps"], leave)
-    return msgspec.structs.replace(step, **inner) if inner else step
-
-
-def _is_in(step: Step, inner: Step) -> bool:
+def is_in(step: Step, inner: Step) -> bool:
+    """Whether a step is another one or has it in it."""
     return any(each is inner for each in nodes(step))

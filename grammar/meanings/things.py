@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from grammar.chart import Node
+from grammar.chart import Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.carrying import deliver, pick_up, take_back_delivery
+from grammar.meanings.chosen import handed_already
 from grammar.meanings.deliveries import Delivery, meant_for
 from grammar.meanings.descriptions import described
 from grammar.meanings.finding import (
@@ -182,9 +183,39 @@ def given_last(d: Discourse) -> bool:
     )
 
 
+def means_who_is_met(d: Discourse, node: Node) -> bool:
+    """Whether "them", who are brought to somebody, are who stands before the robot: "ask people
+    until one agrees, then bring them to Clara"."""
+    part, met = node.parts.get("thing"), d.person
+    if not isinstance(part, Node) or part.means != "thing_it" or not d.is_plural(part):
+        return False
+    to = node.parts.get("person_ref")
+    if met is None or not met.here or d.with_person != met.value:
+        return False
+    if to is None or what_it_means(to) == "person_me":
+        return False
+    by_name = met.known and isinstance(met.value, Text)
+    things = d.thing is not None and singular(d.thing.text, d.language) != d.thing.text
+    return not (by_name or things or d.thing_last)
+
+
+def with_them(d: Discourse, node: Node) -> Steps:
+    from grammar.meanings.hosting import guide_to_person
+
+    them = node.parts["thing"]
+    d.bound[id(them)] = d.person
+    try:
+        parts = {"person_ref": them, "other": node.parts["person_ref"]}
+        return guide_to_person(d, replace(node, parts=parts))
+    finally:
+        del d.bound[id(them)]
+
+
 @meaning("bring")
 def bring(d: Discourse, node: Node) -> Steps:
     """Fetch a thing and hand it to a person, or put it down at a spot."""
+    if means_who_is_met(d, node):
+        return with_them(d, node)
     thing: Thing = d.get(node, "thing") or thing_it(d, node)  # "and deliver to Bob"
     source: Where | None = d.get(node, "from")
     if source is not None:
@@ -214,7 +245,7 @@ def bring(d: Discourse, node: Node) -> Steps:
         person = handed_there(d, thing, person)
     if person is not None and thing.pronoun and d.done:
         given = Call("give", {"thing": thing.value, "person": person.value})
-        if d.done[-1] == given:
+        if d.done[-1] == given or handed_already(d, thing, person):
             return []  # "Alice needs the cup, bring it to her"
     spot: Where | None = d.get(node, "where")
     if person is None and spot is None and node.production.fixed.get("open"):

@@ -131,7 +131,8 @@ def find_name(d: Discourse, node: Node) -> Steps:
     """ "find out their name": a visitor is asked; of others it is told who is seen."""
     if d.visitor is not None:
         return ask(d, node)
-    return found_out(d, names_here(d, node), None, back=True)
+    found = names_here(d, node)
+    return found if isinstance(found, list) else found_out(d, found, None, back=True)
 
 
 @meaning("place_of_answer")

@@ -10,6 +10,7 @@ import msgspec
 from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Steps, Thing
 from grammar.inference import takes_time
+from grammar.meanings.asking_until import as_soon_as_answered, stops_asking
 from grammar.meanings.branches import ABOUT_ANSWERS, if_
 from grammar.meanings.carrying import take_back_delivery
 from grammar.meanings.claims import claim_of, meet_there
@@ -21,7 +22,7 @@ from grammar.meanings.persons import is_me
 from grammar.meanings.polls import told_as_asked
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import known_words
-from grammar.meanings.surveys import moved
+from grammar.meanings.surveys import asked_without_end, moved
 from grammar.plan import (
     Ask,
     Call,
@@ -58,8 +59,12 @@ def when(d: Discourse, node: Node) -> Steps:
     if asked_when(d, node) is not None and tells_only(node.parts["then"]):
         told: Steps = d.build(node.parts["then"])
         return told
+    if stops_asking(d, node) and not node.production.fixed.get("always"):
+        return as_soon_as_answered(d, node)
     about_answer = what_it_means(node.parts["condition"]) in ABOUT_ANSWERS
-    if about_answer and d.answer is not None and not node.production.fixed.get("always"):
+    always = bool(node.production.fixed.get("always"))
+    in_turn = bool(d.surveys) and asked_without_end(d, d.surveys[-1])
+    if about_answer and d.answer is not None and (in_turn or not always):
         return if_(d, node)  # "when he says yes", of somebody who was asked: he has answered
     if not_there(d, node) and not node.production.fixed.get("always"):
         return if_(d, node)
