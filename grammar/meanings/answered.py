@@ -19,11 +19,10 @@ from grammar.meanings.registry import meaning
 from grammar.meanings.searches import just_looked_for
 from grammar.meanings.surveys import (
     Survey,
-    asked_before,
     asked_so_far,
     asked_without_end,
     in_loop,
-    of_one_question,
+    polled_before,
     replacing,
 )
 from grammar.meanings.there import just_agreed, seen_there
@@ -277,7 +276,7 @@ def answer_counts(d: Discourse, node: Node) -> Condition:
 @meaning("answers_many")
 def answers_many(d: Discourse, node: Node) -> Condition:
     """ "if both say yes", "if more than half of them agree", "if nobody wants any"."""
-    surveys = of_one_question(asked_before(d))
+    surveys = polled_before(d)
     said: Said | None = d.get(node, "said")
     answer = d.said = yes(d) if said is None else wanted_answer(d, surveys[-1], said)
     how = node.production.fixed.get("how")

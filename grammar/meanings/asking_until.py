@@ -20,6 +20,7 @@ from grammar.meanings.surveys import (
     is_in,
     note,
     noting,
+    polled_before,
 )
 from grammar.plan import (
     Call,
@@ -65,7 +66,7 @@ def reached(d: Discourse, node: Node) -> Condition:
     from grammar.meanings.answers import Wanted
     from grammar.meanings.polls import counted
 
-    surveys = asked_before(d)
+    surveys = polled_before(d)
     said = d.get(node, "answer")
 
     wanted = None if said is None else Wanted((str(said),))

@@ -13,7 +13,7 @@ from typing import Any, Final
 
 import msgspec
 
-from grammar.chart import Node
+from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.answers import Said, Wanted, is_about, wanted, yes
@@ -62,6 +62,8 @@ FIGURES: Final = {
     "lowest": "lowest_was",
 }
 """What one number is made of many, and the phrases that tell it."""
+ASKED_WHERE: Final = {"which": "where", "many": "many"}
+"""What is told of the places of a round, as what is told of those who were asked there."""
 
 
 @meaning("poll")
@@ -426,3 +428,13 @@ def _in_turn(d: Discourse) -> bool:
     have a car; if so ask how big it is, and tell me what they said"."""
     survey: Survey | None = d.surveys[-1] if d.surveys else None
     return survey is not None and isinstance(survey.who, Recall) and d.with_person == survey.who
+
+
+def asked_there(d: Discourse, trait: Leaf | Node) -> bool:
+    """Whether people were asked in a round what is told of the places: "ask in each office if they
+    need toner and tell me which office needs some"."""
+    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    asked = isinstance(trait, Node) and trait.means == "trait_asked" and asked_yet(d)
+    if survey is None or survey.where is None or not asked:
+        return False
+    return is_about(d, survey, d.norms(trait.start, trait.end))

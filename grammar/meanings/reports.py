@@ -34,7 +34,7 @@ from grammar.plan import (
     Text,
     Value,
 )
-from grammar.tidy import nodes
+from grammar.tidy import mentions, nodes
 
 
 @dataclass(frozen=True)
@@ -78,6 +78,8 @@ def report(d: Discourse, node: Node) -> Steps:
         found = d.get(node, "info")
     if isinstance(found, list):
         steps = found_for(d, person, found)
+        if is_me(person) and d.answer is not None and not mentions(steps, news.BACK):
+            steps = [*news.back_to_speaker(d), *steps]
         d.told = steps[-1] if steps else None
         return steps
     fixed = node.production.fixed

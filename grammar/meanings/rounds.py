@@ -20,7 +20,7 @@ from grammar.meanings.gone_round import (
 from grammar.meanings.news import News, Told, go_back, last_found, take_back
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import kind_places, sought
-from grammar.meanings.polls import polled
+from grammar.meanings.polls import ASKED_WHERE, asked_there, polled
 from grammar.meanings.registry import meaning
 from grammar.meanings.sights import told_where
 from grammar.meanings.surveys import asked_yet, note, replacing
@@ -242,7 +242,10 @@ def places_told(d: Discourse, node: Node) -> Told:
     ):
         # "ask them whether they want coffee and tell me how many of them want coffee"
         return polled(d, "many" if node.production.fixed.get("tell") == "many" else "who", None)
-    of_people = node.production.fixed.get("tell") == "all" or last_round(d) is None
+    tell = str(node.production.fixed.get("tell", "which"))
+    if tell in ASKED_WHERE and asked_there(d, trait_part):
+        return polled(d, ASKED_WHERE[tell], Said(trait_part.start, trait_part.end))
+    of_people = tell == "all" or last_round(d) is None
     if not named and of_people and asked_yet(d):
         # "ask them whether they have a key and tell me which ones have none"
         return polled(d, "who", Said(trait_part.start, trait_part.end))

@@ -11,7 +11,7 @@ from grammar.meanings import news
 from grammar.meanings.descriptions import described
 from grammar.meanings.finding import found, in_state, is_here, not_found
 from grammar.meanings.places import place_called_after, sought
-from grammar.meanings.polls import polled
+from grammar.meanings.polls import polled, told_as_asked
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report, told_report
 from grammar.meanings.surveys import asked_yet, in_loop
@@ -84,7 +84,10 @@ def survey_named_so(d: Discourse, noun: str) -> str | None:
 
 
 @meaning("seen_here")
-def seen_here(d: Discourse, node: Node) -> Report:
+def seen_here(d: Discourse, node: Node) -> Report | Steps:
+    """ "what you see"; "everything", after people were asked, is all that they said."""
+    if node.end - node.start == 1 and asked_yet(d) and d.report is None:
+        return polled(d, "answers", None).words
     place = described(d, "", node)
     if place.furniture:
         return things_on(d, place)
@@ -201,8 +204,13 @@ def _best(d: Discourse, node: Node) -> Thing:
 
 
 @meaning("counted_info")
-def counted_info(d: Discourse, node: Node) -> Report:
-    """ "how many cups are in the kitchen?"."""
+def counted_info(d: Discourse, node: Node) -> Report | Steps:
+    """ "how many cups are in the kitchen?"; "how many cups", after somebody was asked just that, is
+    what they said."""
+    if asked_yet(d) and d.report is None and node.parts.keys() == {"thing"}:
+        said = told_as_asked(d, node.start, node.end)
+        if said is not None:
+            return said.words
     thing: Thing = d.get(node, "thing")
     more = described(d, thing.text, node)
     first: Where | None = d.get(node, "spot_first")
@@ -286,7 +294,11 @@ def named_some(d: Discourse, thing: Thing) -> str:
 
 @meaning("where_found")
 def where_found(d: Discourse, node: Node) -> Steps:
-    """ "where is the stapler?": look for it, come back and say where it is."""
+    """ "where is the stapler?": look for it, come back and say where it is, unless somebody was
+    asked just that, who has said it."""
+    said = told_as_asked(d, node.start, node.end) if asked_yet(d) and d.report is None else None
+    if said is not None:
+        return said.words
     thing: Thing = d.get(node, "thing") or d.get(node, "person_ref")
     if thing.text == ANYONE and (thing.pronoun or thing.here):  # "where is that?", of a place
         raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))

@@ -190,6 +190,21 @@ def of_one_question(surveys: list[Survey]) -> list[Survey]:
     ]
 
 
+def polled_before(d: Discourse) -> list[Survey]:
+    """Those of several who were asked the same; who was asked only because of what they had said is
+    none of them: "if all say no, ask Clara; if somebody says yes, ..."."""
+    surveys = asked_before(d)
+    surely = [
+        each
+        for step in d.done
+        if not isinstance(step, If) or any(isinstance(ask, Ask) for ask in nodes(step.condition))
+        for each in surveys
+        if is_in(step, each.call)
+    ]
+    several = any(in_loop(d, each.call) for each in surely)
+    return of_one_question(surely if several else surveys)
+
+
 def _alike(one: Survey, other: Survey) -> bool:
     return one.call.arguments["question"] == other.call.arguments["question"]
 
