@@ -165,6 +165,9 @@ def without_little_words(d: Discourse, start: int, end: int) -> tuple[int, int]:
         if d.tokens[start].norm in kept:
             break
         start += 1
+    if d.language.speech.get("capital_nouns"):  # "den Schlüssel leihen": the verb is no part of it
+        nouns = [at for at in range(start, end) if d.tokens[at].capital]
+        end = nouns[-1] + 1 if nouns else end
     return start, end
 
 

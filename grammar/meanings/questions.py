@@ -241,6 +241,11 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
 def question(d: Discourse, node: Node) -> str:
     """A direct question made of a reported one by its form: "Do you {verb} {rest}?"."""
     form: str = node.production.fixed["form"]
+    alone = node.parts.get("rest") if "aux" in node.parts else None
+    if alone is not None and set(d.norms(alone.start, alone.end)) <= d.language.closed:
+        words = d.words(node.start, node.end)  # "wie sie" is the beginning of one
+        gap = (node.start, node.end)
+        raise NotUnderstood(d.language.phrase("not_understood", part=words), gap=gap)
     past = node.production.fixed.get("past")
     turned_each = d.asking_each and "each" in node.production.fixed
     if turned_each:

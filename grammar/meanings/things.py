@@ -122,6 +122,9 @@ def fetch_from(d: Discourse, node: Node) -> Steps:
 def put(d: Discourse, node: Node) -> Steps:
     """ "put the cup on the table", "... in the kitchen", "... down"."""
     thing: Thing = d.get(node, "thing") or thing_it(d, node)
+    if thing.person and thing.known:  # "otherwise put it there", where only Bob was spoken of
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("cannot_do", what=words), gap=(node.start, node.end))
     there = d.place  # "bring one there from the store"
     source: Where | None = d.get(node, "from")
     if source is not None:
