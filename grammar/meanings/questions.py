@@ -241,8 +241,9 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
 def question(d: Discourse, node: Node) -> str:
     """A direct question made of a reported one by its form: "Do you {verb} {rest}?"."""
     form: str = node.production.fixed["form"]
-    alone = node.parts.get("rest") if "aux" in node.parts else None
-    if alone is not None and set(d.norms(alone.start, alone.end)) <= d.language.closed:
+    pronouns = d.language.speech.get("clause", {}).get("pronouns", ())
+    alone = node.parts["rest"] if node.parts.keys() == {"aux", "rest"} else None
+    if alone is not None and set(d.norms(alone.start, alone.end)) <= set(pronouns):
         words = d.words(node.start, node.end)  # "wie sie" is the beginning of one
         gap = (node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words), gap=gap)
