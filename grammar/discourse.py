@@ -155,6 +155,8 @@ class Discourse:
     """What is not where it should be: "if there is none, bring one" is for that place."""
     message: Node | None = None
     """The command that told somebody something, or asked, last."""
+    request: Any = None
+    """What somebody was asked to do last (`grammar.meanings.requested.Request`)."""
     undelivered: Any = None
     """That of somebody who is not there, and what was known then (`grammar.meanings.absences`)."""
     instead_of: str | None = None

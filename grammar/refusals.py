@@ -48,6 +48,8 @@ def no_thing(plan: Plan, lexicon: Lexicon, language: Language) -> tuple[str, str
         if step.method in SEEN:
             listed = {"out_of_sight": language.speech.get("out_of_sight", ())}
         words = language.tokens_of(thing.value)
+        if len(words) == 1 and words[0] in language.words_called("qualities"):
+            return "no_quality", thing.value  # "which lab is quieter"
         titles = language.speech.get("personal_titles", ()) if step.method in IN_HAND else ()
         if len(words) > 1 and words[0] in titles:  # "take Mrs Jones to radiology": a stranger
             return "unknown_person", thing.value.title()

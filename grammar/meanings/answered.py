@@ -16,6 +16,7 @@ from grammar.meanings.deliveries import delivered_last
 from grammar.meanings.news import in_round
 from grammar.meanings.polls import counted as counted_answers
 from grammar.meanings.registry import meaning
+from grammar.meanings.requested import put_as_question
 from grammar.meanings.searches import just_looked_for
 from grammar.meanings.surveys import (
     Survey,
@@ -85,6 +86,7 @@ def about_answer(d: Discourse, node: Node) -> Condition | None:
 def answered(d: Discourse, node: Node) -> Condition:
     """ "if they say yes", "if the answer is radiology"."""
     fixed = node.production.fixed
+    put_as_question(d)
     if d.answer is None:
         raise NotUnderstood(d.language.phrase("no_question"))
     plain = "answer" in fixed and "text" not in node.parts
@@ -195,6 +197,7 @@ def says_the_same(d: Discourse, words: str) -> bool:
 def said_so(d: Discourse, no: bool, there_is_none: bool = False) -> Condition:
     """ "if so", "if he is not": what was looked for in the step before was found, or the last
     answer was yes."""
+    put_as_question(d)
     agreed = just_agreed(d, no) or just_branched(d, no)
     if agreed is not None:
         return agreed

@@ -10,7 +10,17 @@ import msgspec
 
 from grammar.discourse import ANYONE, Discourse, Steps, Thing
 from grammar.meanings.absences import answer_variable
-from grammar.meanings.finding import go, if_found, if_met, meet, visits_only, where_sent
+from grammar.meanings.finding import (
+    found,
+    go,
+    if_found,
+    if_met,
+    is_here,
+    meet,
+    particular,
+    visits_only,
+    where_sent,
+)
 from grammar.meanings.persons import is_me
 from grammar.meanings.surveys import Survey
 from grammar.plan import (
@@ -60,8 +70,12 @@ def audience(d: Discourse, person: Thing | None) -> Audience:
     if is_me(person):
         return Audience(person, [])
     way = []
-    if person.known or person.first or person.place is not None:
+    sought = particular(person) and not is_here(d, person)
+    if person.known or person.first or person.place is not None or sought:
         way = meet(d, person)
+        if sought and not way and d.with_person != person.value:  # "ask the nurse"
+            d.with_person = person.value
+            way = [found(d, person)]
     d.person = person if not person.first else d.person
     return Audience(person, way)
 
@@ -132,6 +146,7 @@ def asked(
 ) -> Call:
     """Remember a question, so that its answers can be reported."""
     round_at = d.place if d.in_loop and isinstance(d.place, Recall) else None
+    d.request = None
     d.surveys.append(Survey(call, options, who, round_at, nouns))
     return call
 

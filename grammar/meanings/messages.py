@@ -153,6 +153,7 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
             another = (
                 another
                 or before is not None
+                or not_of(d, person, at + number)
                 or (not person.me and _of_others(d, person, word, data))
             )
             if you and not impersonal and not another:
@@ -163,6 +164,12 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
             words = capital(words)
         pieces.append(space + (original if changed == tokens else CHANGED + words))
     return _joined("".join(pieces), data)
+
+
+def not_of(d: Discourse, person: Thing, at: int) -> bool:
+    """Whether a pronoun is none for somebody of this name: "tell Alice that he is early"."""
+    gender = d.gender(at, at + 1)
+    return gender is not None and person.known and not d.may_have(person, gender)
 
 
 def _joined(text: str, data: Mapping[str, Any]) -> str:
@@ -204,6 +211,8 @@ def turned(d: Discourse, start: int, end: int, person: Thing | None) -> dict[int
             continue
         owned = word in data["possessives"] and at + 1 < last and d.tokens[at + 1].capital
         other = None if person.me else d.one_before(person, at)
+        if other is None and not person.me and not_of(d, person, at):
+            continue
         if other is not None:  # "ask Bob whether he has time and tell Clara that he has time"
             if word in data["subjects"] and other not in changed.values():
                 changed[at] = other

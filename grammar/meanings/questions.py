@@ -24,6 +24,7 @@ from grammar.meanings.persons import is_me, known_by_name
 from grammar.meanings.references import answers_in, nouns_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import tell_speaker
+from grammar.meanings.requested import Request
 from grammar.naming import the
 from grammar.plan import (
     Ask,
@@ -409,7 +410,11 @@ def ask_to(d: Discourse, node: Node) -> Steps:
     first = node.parts.get("text") or node
     words = answers_in(d, text, first.start, first.end)
     request = d.sentence(str(node.production.fixed.get("phrase", "please_do")), what=words)
-    return speak_to(d, person, [Call("say", {"text": request})])
+    saying = Call("say", {"text": request})
+    steps = speak_to(d, person, [saying])
+    if "phrase" not in node.production.fixed and isinstance(words, Text):
+        d.request = Request(saying, words.value, person)
+    return steps
 
 
 def manner_after(d: Discourse, at: int) -> str:
