@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from grammar.discourse import Discourse, Steps, Thing
+from grammar.discourse import Discourse, Thing
 from grammar.meanings.asking import asked, remember_answer
 from grammar.meanings.surveys import replacing
 from grammar.plan import Ask, Call, Holds, If, Items, Step, Text, Value
@@ -43,8 +43,8 @@ def _ends_with(step: Step, saying: Call) -> bool:
     """Whether a step is that request, or makes it of whoever was found."""
     if step is saying:
         return True
-    found = isinstance(step, If) and isinstance(step.condition, Holds)
-    if not found or not isinstance(step.condition.value, Ask):
-        return False
-    steps: Steps = list(step.then)
-    return bool(steps) and step.condition.value.method == "find" and steps[-1] is saying
+    match step:
+        case If(condition=Holds(value=Ask(method="find")), then=[*_, last]):
+            return last is saying
+        case _:
+            return False
