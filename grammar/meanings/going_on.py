@@ -15,7 +15,7 @@ from grammar.meanings.conditions import condition_of
 from grammar.meanings.deliveries import first_clause, inside
 from grammar.meanings.finding import speak_to
 from grammar.meanings.gone_round import goes_to
-from grammar.meanings.lookouts import ABOUT_IT
+from grammar.meanings.lookouts import ABOUT_IT, looks_out
 from grammar.meanings.news import BACK, News, go_back
 from grammar.meanings.news import in_round as in_a_round
 from grammar.meanings.persons import is_me
@@ -71,6 +71,8 @@ def in_round(d: Discourse, clause: Node) -> Steps:
     if d.round.lookout is not None and about_all(d, first):
         d.round.lookout.until_found(d)
     found_there_too(d, first)
+    if alone(clause, first) and looks_out(d, first):
+        return []
     loop = d.done[-1] if d.done else None
     if not isinstance(loop, ForEach) or not goes_on(d, loop, first):
         return in_company(d, first, d.build(clause))
@@ -100,6 +102,11 @@ def in_round(d: Discourse, clause: Node) -> Steps:
         told: Steps = d.build(behind)
         return told
     return brought_behind(d, loop)
+
+
+def alone(clause: Node, first: Node) -> bool:
+    """Whether a clause is nothing but this one."""
+    return (clause.start, clause.end) == (first.start, first.end)
 
 
 def found_there_too(d: Discourse, first: Node) -> None:

@@ -28,7 +28,7 @@ from grammar.meanings.gone_round import (
     same_round,
     visits_alone,
 )
-from grammar.meanings.news import News, Told, go_back, in_round, last_found
+from grammar.meanings.news import BACK, News, Told, go_back, in_round, last_found
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
@@ -133,14 +133,37 @@ def round_check(d: Discourse, node: Node) -> Steps:
     else:
         d.thing, d.thing_last = thing, True
     tell = str(node.production.fixed.get("tell", "which"))
-    d.round.lookout = Lookout(place, places, trait, thing, d.depth, definite(d, node, thing), tell)
+    one = definite(d, node.parts["place_trait"], thing)
+    d.round.lookout = Lookout(place, places, trait, thing, d.depth, one, tell)
     return [round_of(d, places, [], place)]
 
 
-def definite(d: Discourse, node: Node, thing: Thing | None) -> bool:
-    part = node.parts["place_trait"]
+def definite(d: Discourse, part: Leaf | Node, thing: Thing | None) -> bool:
+    """Whether it is one thing that is looked for, or somebody."""
     named = d.tokens[part.start].norm in d.language.speech.get("definite", ())
     return thing is not None and (named or (thing.known and thing.person))
+
+
+def looks_out(d: Discourse, clause: Node) -> bool:
+    """ "make a tour of the labs. Look for a laptop": whether a clause says what a round is for that
+    does nothing else."""
+    visits = visits_alone(d)
+    part = clause.parts.get("thing") or clause.parts.get("person_ref")
+    if visits is None or clause.means != "find" or part is None or "from" in clause.parts:
+        return False
+    thing: Thing | list[Thing] = d.build(part)
+    if isinstance(thing, list) or thing.place is not None or thing.several or thing.here:
+        return False
+    if thing.person:
+        d.person, d.thing_last = thing, False
+    else:
+        d.thing, d.thing_last = thing, True
+    seen = Trait(Holds(Ask("sees", {"thing": sought(d, thing)})), [], thing)
+    one = definite(d, part, thing)
+    d.round.lookout = Lookout(
+        visits.variable, visits.items, seen, thing, d.depth, one, "which"
+    )
+    return True
 
 
 @meaning("lookout_told")
@@ -153,6 +176,7 @@ def lookout_told(d: Discourse, node: Node) -> Told:
     here = d.at if in_round(d) else d.round.here
     if here is not None:  # "if one has none, tell me which one"
         return Told([d.say("such_places", places=as_value(here))], [])
+    found_before_coming_back(d)
     looked = looked_on_visits(d, node)
     if looked is not None:
         return looked.told(d, tell)
@@ -163,13 +187,24 @@ def lookout_told(d: Discourse, node: Node) -> Told:
     return Told([d.say("it_is_there", place=Recall(d.round.such))], [])
 
 
+def found_before_coming_back(d: Discourse) -> None:
+    """ "look for it in all the labs. Come back. Tell me where it is": found out on the way, so that
+    the way back is said once more with what is told."""
+    looked = d.done[-2] if len(d.done) > 1 and d.done[-1] == BACK else None
+    if searched(looked) is not None or isinstance(looked, ForEach):
+        d.done.pop()
+        d.at = None
+
+
 def looked_on_visits(d: Discourse, node: Node) -> Lookout | None:
     """ "go through all rooms and tell me if you see a dog": what is to be looked for on a round in
     which nothing else is done."""
     visits = visits_alone(d)
     if visits is None:
         return None
-    thing: Thing | None = d.get(node, "thing") or (d.thing if d.thing_last else d.person)
+    somebody = d.gender(node.start, node.end) is not None
+    last = d.person if somebody or d.thing is None else d.thing
+    thing: Thing | None = d.get(node, "thing") or last
     if thing is None:
         raise NotUnderstood(d.language.phrase("which_places"))
     seen = Trait(Holds(Ask("sees", {"thing": sought(d, thing)})), [], thing)

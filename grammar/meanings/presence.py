@@ -39,6 +39,8 @@ def presence_told(d: Discourse, node: Node) -> Told:
     if "people" not in node.parts:
         return last_found(d) if d.news is not None else met_on_round(d, None)
     people: Thing | list[Thing] = people_of(d, node)
+    if "kind" not in node.parts:
+        return those_met(d, people if isinstance(people, list) else [people])
     kind, mark = str(d.get(node, "kind")), d.language.speech["possessive"]
     known = {place.name.lower(): place.name for place in d.lexicon.place_kinds[kind]}
     found = d.variable("found")
@@ -54,6 +56,28 @@ def presence_told(d: Discourse, node: Node) -> Told:
     none = d.say("nobody_of_them")
     some = d.say("these_are_there", names=Recall(found))
     return Told([if_any(found, none, some)], first)
+
+
+def those_met(d: Discourse, people: list[Thing]) -> Told:
+    """ "whether Alice or Bob is there": which of them, on the round before or where the robot is."""
+    at = last_round(d)
+    at = round_of_visits(d) if at is None else at
+    loop = None if at is None else d.done[at]
+    if loop is None and d.at is None:
+        raise NotUnderstood(d.language.phrase("which_places"))
+    found = d.variable("found")
+    notes: Steps = [
+        If(Holds(Ask("sees", {"thing": each.value})), (Collect(found, each.value),))
+        for each in people
+    ]
+    first: Steps = [Remember(found, Items(()))]
+    if at is not None and isinstance(loop, ForEach):
+        d.done[at] = replace(loop, steps=(*loop.steps, *notes))
+        d.done.insert(0, first.pop())
+    else:
+        first += notes
+    some = d.say("these_are_there", names=Recall(found))
+    return Told([if_any(found, d.say("nobody_of_them"), some)], first)
 
 
 def people_of(d: Discourse, node: Node) -> list[Thing]:
