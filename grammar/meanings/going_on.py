@@ -239,7 +239,7 @@ def brought_behind(d: Discourse, loop: ForEach) -> Steps:
 def conditional(first: Node) -> bool:
     """Whether a clause is done only if something is so, each time anew."""
     always = first.production.means == "when" and first.production.fixed.get("always")
-    return bool(always) or first.production.means in ("if", "tell_condition")
+    return bool(always) or first.production.means in ("if", "tell_condition", "on_sight")
 
 
 def depends_on_stop(d: Discourse, first: Node) -> bool:

@@ -30,7 +30,7 @@ from grammar.meanings.gone_round import (
 )
 from grammar.meanings.news import BACK, News, Told, go_back, in_round, last_found
 from grammar.meanings.persons import is_me
-from grammar.meanings.places import sought
+from grammar.meanings.places import kind_places, sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.rounds import found_places
 from grammar.meanings.searches import named_places, search_in, searched, searches
@@ -116,7 +116,7 @@ class Lookout:
 def round_check(d: Discourse, node: Node) -> Steps:
     """ "check every office for a stapler", "see whether each of the labs has a microscope"."""
     them = node.production.fixed.get("of_them")
-    places: Value = of_them(d) if them else of_those(d, d.get(node, "kinds"))
+    places: Value = of_them(d) if them else of_those(d, kind_places(d, d.get(node, "kinds")))
     if same_round(d, places):
         return []
     place = d.variable("place")

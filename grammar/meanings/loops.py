@@ -14,9 +14,10 @@ from grammar.meanings.asking_until import until_answered
 from grammar.meanings.claims import meet_there
 from grammar.meanings.conditions import FULL_HOUR, condition_of
 from grammar.meanings.deliveries import first_clause
-from grammar.meanings.finding import go, look_for, noun_of
+from grammar.meanings.finding import go, look_for, not_found, noun_of
 from grammar.meanings.going_on import about_places, brought_behind, in_round
 from grammar.meanings.gone_round import of_those, same_round
+from grammar.meanings.news import BACK
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.waiting import at_least, awaited, looking_up, there_first, wait_until
@@ -32,11 +33,13 @@ from grammar.plan import (
     Holds,
     If,
     Items,
+    Not,
     Number,
     Recall,
     Remember,
     Repeat,
     Text,
+    Truth,
     Value,
     While,
 )
@@ -440,11 +443,21 @@ def check_each_place(d: Discourse, node: Node) -> Steps:
     body = d.build(node.parts["steps"])
     d.in_loop = outer
     d.at = d.with_person = None
-    if sought_for.known or Call("grab", {"thing": sought_for.value}) in body:
+    only_one = sought_for.known or Call("grab", {"thing": sought_for.value}) in body
+    until = bool(node.production.fixed.get("until"))
+    found = Recall(d.variable("found"))
+    if until:
+        body = [Remember(found.name, Truth(True)), *body]
+    if only_one or until:
         body = [*body, End()]  # there is no other one to be looked for
     seen = If(Holds(Ask("sees", {"thing": sought_for.value})), tuple(body))
     going = Call("goto", {"place": Recall(variable)})
-    return [ForEach(variable, kind_places(d, d.get(node, "kinds")), (going, seen))]
+    loop = ForEach(variable, kind_places(d, d.get(node, "kinds")), (going, seen))
+    if not until:
+        return [loop]
+    back = [step for step in body if step == BACK]
+    missing = If(Not(Holds(found)), (*back, not_found(d, sought_for)))
+    return [Remember(found.name, Truth(False)), loop, missing]
 
 
 @meaning("for_each_person")

@@ -129,6 +129,9 @@ def _nobody(found: Recall) -> Condition:
 @meaning("when_found")
 def when_found(d: Discourse, node: Node) -> Steps:
     """ "when you find one, ...": after a search it is done with whoever was found."""
+    if d.round.stop is not None:  # at each place where it is so
+        there: Steps = d.build(node.parts["then"])
+        return there
     last = d.done[-1] if d.done else None
     search = search_of(last)
     if search is None and _found_by(last) is None:

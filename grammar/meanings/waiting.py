@@ -30,6 +30,7 @@ from grammar.plan import (
     Condition,
     Forever,
     Holds,
+    End,
     If,
     Number,
     Recall,
@@ -44,6 +45,20 @@ from grammar.tidy import LOOPS, gives, nodes
 
 LOOK_EVERY: Final = 10
 """Seconds between two looks at a condition that is waited for."""
+
+
+@meaning("on_sight")
+def on_sight(d: Discourse, node: Node) -> Steps:
+    """ "as soon as you see Bob, ...": on a round of places, at the one where he is."""
+    if d.round.stop is not None:
+        there: Steps = d.build(node.parts["then"])
+        return there
+    if not in_round(d):
+        return when(d, node)
+    *before, seen = if_(d, node)
+    if isinstance(seen, If) and d.met is not None and d.met.thing.known:
+        seen = msgspec.structs.replace(seen, then=(*seen.then, End()))
+    return [*before, seen]
 
 
 @meaning("when")
