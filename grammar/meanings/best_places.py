@@ -9,6 +9,7 @@ from grammar.discourse import Discourse, Steps, Thing
 from grammar.meanings.gone_round import round_of
 from grammar.meanings.places import kind_places, only_taken_apart, sought
 from grammar.meanings.registry import meaning
+from grammar.meanings.rounds import best_counted
 from grammar.meanings.traits import Trait
 from grammar.plan import (
     Ask,
@@ -29,7 +30,8 @@ from grammar.plan import (
 class Best:
     """Which place is meant: of these places, the one with the most such things, or the fewest."""
 
-    places: Value
+    places: Value | None
+    """None for those of the round before."""
     thing: Thing
     most: bool
 
@@ -41,7 +43,9 @@ def place_best(d: Discourse, node: Node) -> Best:
     before = d.person, d.thing, d.thing_last
     thing: Thing = d.get(node, "thing")
     d.person, d.thing, d.thing_last = before
-    return Best(kind_places(d, d.get(node, "kind")), thing, not node.production.fixed.get("fewest"))
+    of_round = node.production.fixed.get("one")
+    places = None if of_round else kind_places(d, d.get(node, "kind"))
+    return Best(places, thing, not node.production.fixed.get("fewest"))
 
 
 @dataclass(frozen=True)
@@ -77,6 +81,8 @@ def first_such(d: Discourse, such: Such) -> tuple[Steps, Recall, Condition]:
 
 def survey(d: Discourse, best: Best) -> tuple[Steps, Recall]:
     """The round that finds the place, and its name. Where there are none at all, any is as good."""
+    if best.places is None:
+        return [], best_counted(d, best.most)
     place, count = d.variable("place"), d.variable("count")
     kept, most = d.variable("best"), d.variable("most" if best.most else "fewest")
     better = Compare(Recall(count), ">" if best.most else "<", Recall(most))

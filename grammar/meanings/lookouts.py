@@ -14,7 +14,7 @@ from typing import Final
 
 from msgspec.structs import replace
 
-from grammar.chart import Node
+from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, as_value
 from grammar.doubts import NotUnderstood
 from grammar.meanings.conditions import negated
@@ -160,9 +160,7 @@ def looks_out(d: Discourse, clause: Node) -> bool:
         d.thing, d.thing_last = thing, True
     seen = Trait(Holds(Ask("sees", {"thing": sought(d, thing)})), [], thing)
     one = definite(d, part, thing)
-    d.round.lookout = Lookout(
-        visits.variable, visits.items, seen, thing, d.depth, one, "which"
-    )
+    d.round.lookout = Lookout(visits.variable, visits.items, seen, thing, d.depth, one, "which")
     return True
 
 

@@ -59,7 +59,7 @@ def presence_told(d: Discourse, node: Node) -> Told:
 
 
 def those_met(d: Discourse, people: list[Thing]) -> Told:
-    """ "whether Alice or Bob is there": which of them, on the round before or where the robot is."""
+    """ "whether Alice or Bob is there": which of them, on the round or where the robot is."""
     at = last_round(d)
     at = round_of_visits(d) if at is None else at
     loop = None if at is None else d.done[at]

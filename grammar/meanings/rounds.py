@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace as replace_thing
+
 from msgspec.structs import replace
 
 from grammar.chart import Leaf, Node
@@ -31,7 +33,6 @@ from grammar.plan import (
     Call,
     Collect,
     Compare,
-    Condition,
     Either,
     ForEach,
     Holds,
@@ -190,21 +191,41 @@ def _kept(
         return [Remember(counts, Items(()))], [Collect(counts, line)], [said]
     best, most = d.variable("best"), d.variable(kind)
     better = Compare(number, ">" if kind == "most" else "<", Recall(most))
-    first: Condition = better
-    if kind != "most":
-        first = Either((Compare(Recall(best), "==", Text("")), better))
+    first = Either((Compare(Recall(best), "==", Text("")), better))
     kept = If(first, (Remember(most, number), Remember(best, here)))
     none = d.say("nowhere", things=things)
     phrase = "most_are_at" if kind == "most" else "fewest_are_at"
     some = d.say(phrase, things=things, place=Recall(best), number=Recall(most))
-    told = If(Compare(Recall(best), "==", Text("")), (none,), (some,))
+    none_there = Compare(Recall(best), "==", Text(""))
+    if kind == "most":
+        none_there = Compare(Recall(most), "==", Number(0))
+    told = If(none_there, (none,), (some,))
+    d.place = Recall(best)
     return [Remember(most, Number(0)), Remember(best, Text(""))], [kept], [told]
+
+
+def best_counted(d: Discourse, most: bool) -> Recall:
+    """ "count the people in each lab and go to the one with the most": of the last round."""
+    if d.counted is None:
+        d.counted = _counting(d, None)
+    elif d.news is not None:
+        take_back(d, d.news)
+    counting, place, things = d.counted
+    first, notes, _ = _kept(d, "most" if most else "fewest", counting.name, place, things)
+    note(d, counting, notes, first)
+    d.report = None
+    assert isinstance(d.place, Recall)
+    return d.place
 
 
 @meaning("round_count")
 def round_count(d: Discourse, node: Node) -> Steps:
     """ "which ward has the most visitors?", "count the people in the lobby and the kitchen"."""
-    return brought_back(d, node, counted_around(d, node))
+    found, best = counted_around(d, node), d.place
+    steps = brought_back(d, node, found)
+    if str(node.production.fixed["kind"]) in ("most", "fewest"):  # "go there"
+        d.place = best
+    return steps
 
 
 @meaning("around_told")
@@ -220,6 +241,9 @@ def around(d: Discourse, kind: str, thing: Thing, places: Value) -> Told:
     counting = Remember(count, Ask("count", {"thing": sought(d, thing)}))
     d.counted = (counting, Recall(place), things_called(d, thing))
     d.done += [*first, round_of(d, places, [counting, *notes], place)]
+    if thing.person and kind in ("most", "fewest"):  # "which lab has most people? Tell them ..."
+        d.person = replace_thing(thing, place=d.place, plural=True, here=False)
+        d.with_person, d.thing_last = None, False
     return Told(told, [])
 
 
