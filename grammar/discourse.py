@@ -49,6 +49,8 @@ SCENE: Final = (
     "away",
     "looked_in",
     "with_person",
+    "led",
+    "left",
     "holding",
     "delivered",
     "at_pick_up",
@@ -97,6 +99,8 @@ class Discourse:
     looked_in: Value | None = None
     """That place, if a condition was checked there and for nothing else: others are not there."""
     with_person: Value | None = None
+    led: Thing | None = None
+    """Whom the robot has led to where it is."""
     holding: Value | None = None
     origin: str | None = None
     """Where it was before the command before this was carried out."""
@@ -138,6 +142,8 @@ class Discourse:
     """The last question (`Survey`) that the speaker put themselves, and waits to have answered."""
     pending: Steps = field(default_factory=list)
     """Steps that a condition needs before it can be checked."""
+    came: Thing | None = None
+    """Whichever of several has come who were waited for."""
     left: dict[Value, Value] = field(default_factory=dict)
     """Where people were led to."""
     visitor: Thing | None = None
@@ -499,7 +505,7 @@ class Discourse:
         self.away = False
         self.looked_in = None
         self.at_furniture = None
-        self.with_person = None
+        self.with_person = self.led = None
 
     def came_back(self) -> None:
         """The robot has gone back to the speaker by itself: "there" is still where it was."""

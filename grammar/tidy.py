@@ -202,7 +202,9 @@ def _returning(steps: tuple[Step, ...], here: Value) -> tuple[Step, ...]:
     for step in steps:
         inner = {name: _returning(body, here) for name in BODIES if (body := _body(step, name))}
         step = msgspec.structs.replace(step, **inner) if inner else step
-        if isinstance(step, LOOPS) and _leaves(step.steps):
+        if isinstance(step, ForEach) and step.items == Ask("people"):
+            step = msgspec.structs.replace(step, steps=_coming_back(step.steps, here))
+        elif isinstance(step, LOOPS) and _leaves(step.steps):
             back = Call("goto", {"place": here})
             only = step.steps[0]
             if isinstance(only, If) and len(step.steps) == 1 and not only.otherwise:
@@ -214,6 +216,19 @@ def _returning(steps: tuple[Step, ...], here: Value) -> tuple[Step, ...]:
             here = step.arguments["place"]
         result.append(step)
     return tuple(result)
+
+
+def _coming_back(steps: tuple[Step, ...], here: Value) -> tuple[Step, ...]:
+    """A round with one of those who are at a place, with a way back to the next of them where it
+    leads away: "ask everybody in the lobby ..., and take those who say yes to the lecture hall"."""
+    first, last = (steps[0], steps[-1]) if steps else (None, None)
+    if isinstance(first, Call) and first.method == "goto":
+        return steps
+    if isinstance(last, If):
+        inner = {name: _coming_back(body, here) for name in BODIES if (body := _body(last, name))}
+        return (*steps[:-1], msgspec.structs.replace(last, **inner))
+    leads_away = isinstance(last, Call) and last.method in ("guide", "follow")
+    return (*steps, Call("goto", {"place": here})) if leads_away else steps
 
 
 def _leaves(steps: tuple[Step, ...]) -> bool:

@@ -8,6 +8,7 @@ from typing import Final
 
 from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import Discourse, Steps
+from grammar.meanings.arrivals import may_be_another
 from grammar.meanings.branches import ABOUT_ANSWERS
 from grammar.meanings.conditions import negated
 from grammar.meanings.deliveries import inside
@@ -34,7 +35,7 @@ def side_by_side(d: Discourse, clause: Node) -> tuple[Node, Node | None]:
     clause = itself(clause)
     last = next((name for name in BRANCHES if name in clause.parts), "")
     body = clause.parts.get(last)
-    if clause.production.means not in CONDITIONAL or not isinstance(body, Node):
+    if not is_conditional(d, clause) or not isinstance(body, Node):
         return clause, None
     about = _about(clause)
     chain = [body]
@@ -116,9 +117,19 @@ def _about(clause: Node) -> bool:
     return what_it_means(clause.parts["condition"]) in ABOUT_ANSWERS
 
 
+def is_conditional(d: Discourse, clause: Node) -> bool:
+    """Whether a clause does something only if something is so: "if Bob comes", too, once somebody
+    has come."""
+    condition = clause.parts.get("condition")
+    if condition is None:
+        return False
+    means = clause.production.means
+    return means in CONDITIONAL or (means == "when" and may_be_another(d, condition))
+
+
 def _stands_beside(d: Discourse, before: Leaf | Node, clause: Node, about: bool) -> bool:
     clause = itself(clause)
-    if clause.production.means not in CONDITIONAL or "condition" not in clause.parts:
+    if not is_conditional(d, clause):
         return False
     if not about and what_it_means(clause.parts["condition"]) == "so":
         return not _asks(before)  # "if she is not there, come back, if she is, ask her ..."

@@ -113,6 +113,9 @@ def answered(d: Discourse, node: Node) -> Condition:
             wanted = str(d.get(node, "text"))
     if says_the_same(d, wanted):
         return same_answers(d, node)
+    silent = option_left_out(d, node) if plain and not literal else None
+    if silent is not None:
+        return Compare(Recall(d.answer), "==", Text(silent))
     for option in d.answer_options:
         if option.lower() == wanted.lower():
             return Compare(Recall(d.answer), "==", Text(option))
@@ -127,6 +130,16 @@ def answered(d: Discourse, node: Node) -> Condition:
     if yes_no:
         ask_openly(d)
     return Compare(Text(wanted), "in", Recall(d.answer))
+
+
+def option_left_out(d: Discourse, node: Node) -> str | None:
+    """The option that a word is which says nothing elsewhere: "if they say now"."""
+    end = node.end
+    while end < len(d.tokens) and (d.tokens[end].norm,) in d.language.fillers:
+        end += 1
+    said = d.norms(node.start, end)
+    options = (each for each in d.answer_options if (each.lower(),) in d.language.fillers)
+    return next((each for each in options if each.lower() in said), None)
 
 
 def ask_openly(d: Discourse) -> None:

@@ -76,6 +76,7 @@ def first_such(d: Discourse, such: Such) -> tuple[Steps, Recall, Condition]:
     noting = If(such.trait.condition, (Remember(found, Recall(such.variable)), End()))
     going = round_of(d, such.places, [*such.trait.first, noting], such.variable)
     d.at = d.with_person = None
+    d.looked_in = Recall(found)
     return [Remember(found, Text("")), going], Recall(found), Compare(Recall(found), "==", Text(""))
 
 

@@ -52,7 +52,7 @@ from grammar.meanings.searches import (
     searching_at,
     thing_sought,
 )
-from grammar.meanings.turns import in_their_turn
+from grammar.meanings.turns import in_their_turn, of_whoever_says_so
 from grammar.plan import (
     Ask,
     Call,
@@ -84,7 +84,8 @@ LOOKING: Final = frozenset({"look_in", "look_on", "find", "go_find"})
 def if_(d: Discourse, node: Node) -> Steps:
     node = with_else(node)
     delivery = delivered_last(d)
-    before_it, condition = condition_of(d, node)
+    of_one = of_whoever_says_so(d, node)
+    before_it, condition = condition_of(d, node) if of_one is None else ([], of_one)
     condition = in_their_turn(d, node, condition)
     met = d.met
     if node.production.fixed.get("either") and only_told(node.parts["then"]):

@@ -17,7 +17,7 @@ from grammar.meanings.lookouts import told_at_last, why, why_only
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import summed_at_end
 from grammar.meanings.searches import Search, search_of
-from grammar.meanings.stops import gone_to, looked_at_each, said_at_each
+from grammar.meanings.stops import gone_to, looked_at_each, said_at_each, said_on_tour
 from grammar.meanings.surveys import moved
 from grammar.meanings.things import goes_on
 from grammar.meanings.visiting import with_each_asked
@@ -49,6 +49,7 @@ def steps(d: Discourse, node: Node) -> Steps:
             each = done_first(for_all(d, each))
             before = len(d.done)
             d.begins.append(before)
+            scene = d.scene()
             first = each.parts["first"]
             assert isinstance(first, Node)
             relative = d.tokens[first.start].norm in d.language.speech.get("relative", ())
@@ -79,6 +80,7 @@ def steps(d: Discourse, node: Node) -> Steps:
                 each = rest
                 continue
             d.done.extend(in_branch(d, first) or with_each_asked(d, first) or in_round(d, first))
+            said_on_tour(d, before, scene)
             new = d.done[before:]
             places = gone_to(d, first, new) or said_at_each(d, places, new)
             clauses.append((joint, len(d.done) - before))

@@ -18,7 +18,23 @@ from grammar.meanings.reports import counted_alone, tell_speaker
 from grammar.meanings.searches import searched
 from grammar.meanings.waiting import wait_until
 from grammar.meanings.whereabouts import looked_further
-from grammar.plan import Ask, Both, Call, Either, Holds, Items, Number, Repeat, Text, Value
+from grammar.plan import (
+    Ask,
+    Both,
+    Call,
+    Condition,
+    Either,
+    Holds,
+    If,
+    Items,
+    Number,
+    Recall,
+    Remember,
+    Repeat,
+    Step,
+    Text,
+    Value,
+)
 from grammar.tidy import nodes
 
 
@@ -35,7 +51,8 @@ def go_to(d: Discourse, node: Node) -> Steps:
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
     if "place" in node.parts and place == d.at and d.done:
         place = place_before(d)  # "take them there, then go back there": to where you were
-    if goes_on_with_somebody(d, node) and d.person is not None:
+    with_them = goes_on_with_somebody(d, node) or (bare_way(node) and just_led(d))
+    if with_them and d.person is not None:
         return [lead(d, d.person, place)]
     d.went(place)
     d.at_furniture = spot.furniture
@@ -50,6 +67,20 @@ def goes_on_with_somebody(d: Discourse, node: Node) -> bool:
     on = any(tuple(words[: len(way)]) == way for way in ways)
     guest = d.person.value if d.person is not None else None
     return on and guest is not None and d.with_person == guest and d.left.get(guest) == d.at
+
+
+def bare_way(node: Node) -> bool:
+    """Whether a command is nothing but a place: "to the lounge"."""
+    return bool(node.production.fixed.get("way"))
+
+
+def just_led(d: Discourse) -> bool:
+    """Whether the step before, in its branch too, leads somebody somewhere: "take her to room 1 if
+    it is Alice, and to room 2 if it is Bob"."""
+    last: Step | None = next((steps[-1] for steps in (d.done, *d.around[-1:]) if steps), None)
+    while isinstance(last, If) and last.then:
+        last = last.then[-1]
+    return isinstance(last, Call) and last.method == "guide"
 
 
 def place_before(d: Discourse) -> Value:
@@ -295,7 +326,9 @@ def wait_for(d: Discourse, node: Node) -> Steps:
     steps = go(d, thing.place) if thing.place is not None else []
     if isinstance(thing.group, Items):  # "Alice or Bob"
         seen = tuple(Holds(Ask("sees", {"thing": name})) for name in thing.group.items)
-        return [*steps, *wait_until(Either(seen) if is_either(node) else Both(seen))]
+        if is_either(node):
+            return [*steps, *wait_until(Either(seen)), *whoever_came(d, thing.group, seen)]
+        return [*steps, *wait_until(Both(seen))]
     arguments: dict[str, Value] = {"thing": sought(d, thing)}
     if timeout is not None:
         arguments["timeout"] = as_value(timeout)
@@ -308,6 +341,19 @@ def wait_for(d: Discourse, node: Node) -> Steps:
             d.person = d.last_counted = replace(thing, count=None, place=None, here=True)
         return [*steps, Repeat(Number(thing.count), (Call("wait_for", arguments),))]
     return [*steps, Call("wait_for", arguments)]
+
+
+def whoever_came(d: Discourse, group: Items, seen: tuple[Condition, ...]) -> Steps:
+    """Which of several has come, as far as that is asked for: "wait for Alice or Bob and take them
+    to the library"."""
+    who = Recall(d.variable("who"))
+    d.person = d.came = Thing(who, known=True, person=True, here=True)
+    d.with_person, d.group = who, None
+    *others, last = group.items
+    noted = [
+        If(here, (Remember(who.name, name),)) for here, name in zip(seen, others, strict=False)
+    ]
+    return [Remember(who.name, last), *reversed(noted)]
 
 
 def is_either(node: Node) -> bool:

@@ -9,9 +9,11 @@ from msgspec.structs import replace
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps
 from grammar.meanings.best_places import Such, first_such
-from grammar.meanings.news import News, go_back
+from grammar.meanings.lookouts import Lookout
+from grammar.meanings.news import BACK, News, go_back
 from grammar.meanings.registry import meaning
-from grammar.plan import Compare, If, Recall, Step, Text
+from grammar.meanings.traits import Trait
+from grammar.plan import Collect, Compare, ForEach, If, Recall, Step, Text
 
 
 @meaning("find_such")
@@ -29,6 +31,42 @@ def find_such(d: Discourse, node: Node) -> Steps:
     d.news = News(words, True)
     d.told = words[-1]
     return [*going, *go_back(d, going), *words]
+
+
+def first_of_round(d: Discourse) -> bool:
+    """Let a round that was to find out which places are so find the first of them: "check which
+    room is free, then take the visitor there"; whether there was such a round."""
+    lookout: Lookout | None = d.round.lookout
+    at = lookout.at(d) if lookout is not None else None
+    if lookout is not None and at is not None:
+        such: Such | None = Such(lookout.places, lookout.place, lookout.trait)
+        end = at + 1
+    else:
+        at, such = told_round(d)
+        end = len(d.done)
+    if at is None or such is None:
+        return False
+    going, place, none = first_such(d, such)
+    d.done[at:end] = [*going, If(none, (d.say("no_such_places"),))]
+    d.round.lookout = d.news = d.told = None
+    d.round.such = place.name
+    d.at = d.place = place
+    return True
+
+
+def told_round(d: Discourse) -> tuple[int | None, Such | None]:
+    """The round whose news are the last steps, and what it looks for: "see which room is free"."""
+    if d.news is None or d.done[-1:] != [d.told]:
+        return None, None
+    for at, step in enumerate(d.done):
+        match step:
+            case ForEach(variable=place, items=places, steps=(_, *first, If() as noted)):
+                if noted.then and isinstance(noted.then[-1], Collect):
+                    trait = Trait(noted.condition, list(first))
+                    return at, Such(places, place, trait)
+            case _:
+                pass
+    return None, None
 
 
 def sought_place(d: Discourse, node: Node) -> Such:
@@ -53,7 +91,7 @@ def if_such(d: Discourse, done: Steps) -> Steps:
         rest = done[at + 1 :]
         if rest and is_such(d, step):
             assert isinstance(step, If)
-            back = go_back(d, done[:at])
+            back = [] if BACK in step.then else go_back(d, done[:at])
             return [*done[:at], replace(step, then=(*back, *step.then), otherwise=tuple(rest))]
     return done
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Thing
+from grammar.meanings.persons import is_me
 from grammar.naming import some, the
+from grammar.wordforms import singular
 
 
 def means_thing(d: Discourse, part: Leaf | Node) -> bool:
@@ -15,9 +17,18 @@ def means_thing(d: Discourse, part: Leaf | Node) -> bool:
         return False
     gender = d.language.speech.get("object_genders", {}).get(word)
     if gender is None or d.person is None:
-        return d.thing_last
+        return d.thing_last and not only_people(d, part)
     thing = gender_of_thing(d, d.thing) in (None, gender)
     return d.thing_last if thing == d.may_have(d.person, gender) else thing
+
+
+def only_people(d: Discourse, part: Leaf | Node) -> bool:
+    """Whether a pronoun in the plural stands for somebody, and not for the one thing that was
+    spoken of last: "bring the visitor a coffee, then take them to the lounge"."""
+    if d.thing is None or d.person is None or not isinstance(part, Node) or not d.is_plural(part):
+        return False
+    one = not (d.thing.plural or d.thing.several) and d.thing.group is None
+    return one and singular(d.thing.text, d.language) == d.thing.text and not is_me(d.person)
 
 
 def means_receiver(d: Discourse, part: Leaf | Node) -> bool:

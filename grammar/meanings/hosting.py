@@ -40,20 +40,33 @@ def introduce(d: Discourse, node: Node) -> Steps:
 def guide_to_person(d: Discourse, node: Node) -> Steps:
     """ "take her to the man in the study": to where he is. Asks for a place that is not said."""
     things = means_thing(d, node.parts["person_ref"])
+    before = d.person
     thing = None if things else led(d, node)
+    to = node.parts["other"]
+    if thing is not None and isinstance(to, Node) and to.means == "person_pronoun":
+        someone_else = before is not None and before.value != thing.value
+        d.person = before if someone_else else d.one_called(to.start, to.end)  # "her" is no visitor
     other: Thing = d.get(node, "other")
     if things and d.thing is not None:
         return deliver(d, replace(d.thing, pronoun=True), other, None)
-    if other.place is None and thing is not None and other.known:
-        own = own_place(d, other)  # "bring the visitor to Alice": to her office
-        other = other if own is None else replace(other, place=own)
-    if other.place is None or thing is None:
-        person = named(d, other)
-        words = person if isinstance(person, str) else d.language.phrase("somebody")
+    return led_to(d, thing, other)
+
+
+def led_to(d: Discourse, person: Thing | None, other: Thing) -> Steps:
+    """Lead somebody to where somebody else is: where they are said to be, else to their own place,
+    as "bring the visitor to Alice" is to her office."""
+    place = other.place
+    if place is None and other.known:
+        place = own_place(d, other)
+    if place is None or person is None or other.value == person.value:
+        host = named(d, other)
+        words = host if isinstance(host, str) else d.language.phrase("somebody")
         raise NotUnderstood(d.language.phrase("where_is_person", person=words))
-    if thing.value == d.with_person:
+    if person.value == d.with_person:
         leave_out_fetching(d)
-    return [*meet(d, thing), lead(d, thing, other.place)]
+    steps = [*meet(d, person), lead(d, person, place)]
+    d.person_on_arrival = d.person  # "take the visitor to Clara and tell her ...": it is her place
+    return steps
 
 
 @meaning("guide_by_way")

@@ -15,7 +15,7 @@ from grammar.meanings.places import only_taken_apart
 from grammar.meanings.questions import ask_one
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import tell_speaker
-from grammar.meanings.surveys import Survey, each_asked
+from grammar.meanings.surveys import Survey, each_asked, in_loop
 from grammar.plan import Call, Recall, Repeat, Text, Value
 from grammar.tidy import mentions, nodes
 
@@ -122,6 +122,8 @@ def person_said(d: Discourse, node: Node) -> Thing:
     asked = each_asked(d)
     if asked is not None:
         return asked
+    if survey.who is None and d.person is not None and in_loop(d, survey.call):
+        return replace(d.person, here=True, place=None, count=None)  # whoever comes, in their turn
     if not isinstance(survey.who, Text):
         raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
     return Thing(survey.who, known=True, person=True)

@@ -10,10 +10,12 @@ from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where, as_value
 from grammar.doubts import Ambiguous, NotUnderstood
 from grammar.meanings.carrying import deliver
 from grammar.meanings.conditions import condition_of
+from grammar.meanings.deliveries import inside
 from grammar.meanings.finding import look_for, meet, named, speak_to, where_sent
 from grammar.meanings.genders import means_thing
 from grammar.meanings.hosts import place_of_named
 from grammar.meanings.leading import lead
+from grammar.meanings.news import BACK
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
@@ -31,22 +33,27 @@ WAYS_OUT: Final = frozenset({"entrance", "exit"})
 @meaning("guide")
 def guide(d: Discourse, node: Node) -> Steps:
     """Lead a person to a place; go and find them first if they are somebody by name."""
+    if node.production.fixed.get("along") and is_me(d.get(node, "person_ref")):
+        return follow(d, node)
     pronoun = node.parts.get("person_ref")
     carried = not leads_people_only(d, node)
     if pronoun is not None and carried and means_thing(d, pronoun):
         return carry_it(d, node)
     thing = led(d, node)
     there: Value | None = d.get(node, "place")  # as it was spoken of before "from his office"
+    room = node.parts.get("spot")
+    if isinstance(room, Node) and any(each.means == "place_there" for each in inside(room)):
+        there = d.build(room).place
     source: Where | None = d.get(node, "source")
     if source is not None and source.place is not None:
         thing = replace(thing, place=source.place, here=False)
     if thing.value == d.with_person:
         leave_out_fetching(d)
-    steps = meet(d, thing)
-    spot: Where = d.get(node, "spot") or Where(there)
-    named = place_of_named(d, d.surveys[-1]) if d.surveys and d.surveys[-1].options else None
-    if "place" in node.parts and named is not None and spot.place in (None, d.at):
-        spot = Where(named)  # "ask whether they want to see Bob or Clara and take them there"
+    steps = left_behind(d, node, thing) or meet(d, thing)
+    spot: Where = (there is None and d.get(node, "spot")) or Where(there)
+    named_one = place_of_named(d, d.surveys[-1]) if d.surveys and d.surveys[-1].options else None
+    if "place" in node.parts and named_one is not None and spot.place in (None, d.at):
+        spot = Where(named_one)  # "ask whether they want to see Bob or Clara and take them there"
     if spot.place is None:
         raise NotUnderstood(d.language.phrase("guide_needs_place"))
     if "place" in node.parts and spot.place == d.at and d.done:
@@ -54,6 +61,19 @@ def guide(d: Discourse, node: Node) -> Steps:
         raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
     further: list[Value] = d.get(node, "place_list") or []
     return [*steps, *(lead(d, thing, place) for place in (spot.place, *further))]
+
+
+def left_behind(d: Discourse, node: Node, person: Thing) -> Steps:
+    """The way back to somebody from where the robot went only to see whether a place is free."""
+    part = node.parts.get("person_ref")
+    only_looked = d.looked_in is not None and d.at in (None, d.looked_in)
+    spoken_of = isinstance(part, Node) and part.means in ("person_kind", "person_me")
+    met = person.value in d.left or person.value == d.with_person
+    if not (only_looked and spoken_of) or person.place is not None or met:
+        return []
+    d.start()
+    d.came_back()
+    return [BACK]
 
 
 def leave_out_fetching(d: Discourse) -> None:
@@ -88,6 +108,17 @@ def led(d: Discourse, node: Node) -> Thing:
         return Thing(Text(ANYONE), person=True, here=True)
     if person.coming or person.group is not None or person.count is not None:
         raise NotUnderstood(d.language.phrase("one_person"))
+    guest = d.led
+    absent = guest is not None and d.missing is not None and d.missing.value == person.value
+    part = node.parts.get("person_ref")
+    of_guest = isinstance(part, Node) and part.means == "person_pronoun"
+    missing = d.missing is not None and d.missing.value == person.value and person.known
+    if guest is None and missing and isinstance(part, Node) and of_guest and d.is_plural(part):
+        host = named(d, person)  # "if Bob is not in, take them to the lounge"
+        words = host if isinstance(host, str) else d.language.phrase("somebody")
+        raise NotUnderstood(d.language.phrase("where_is_person", person=words))
+    if guest is not None and absent and of_guest:
+        return guest  # "take her to Bob's office; if he is not in, take her to the lounge"
     return where_sent(d, person)
 
 
@@ -184,6 +215,7 @@ def carry_it(d: Discourse, node: Node) -> Steps:
 def brought_here(d: Discourse, person: Thing) -> Steps:
     """ "get the visitor and bring them to me": once."""
     if d.fetched is not None and d.done[-1:] == [d.fetched]:
+        d.fetched = None  # that is not all the same as to be fetched
         return []
     return [*meet(d, person), lead(d, person, d.start())]
 
@@ -224,15 +256,20 @@ def wait_with(d: Discourse, node: Node) -> Steps:
 def follow(d: Discourse, node: Node) -> Steps:
     person = led(d, node)
     spot: Where | None = d.get(node, "spot")
-    steps = meet(d, person)
+    place: Value | None = d.get(node, "place") if spot is None else spot.place
+    return [*meet(d, person), followed(d, person, place)]
+
+
+def followed(d: Discourse, person: Thing, place: Value | None) -> Call:
+    """Go after somebody, as far as a place if one is named."""
     arguments: dict[str, Value] = {"person": person.value}
     d.at = None
-    if spot is not None and spot.place is not None:
-        arguments["to"] = d.at = d.place = spot.place
+    if place is not None:
+        arguments["to"] = d.at = d.place = place
     d.with_person = person.value
     d.person = replace(person, place=None, furniture=None, here=True)
     d.thing_last = False
-    return [*steps, Call("follow", arguments)]
+    return Call("follow", arguments)
 
 
 @meaning("greet")

@@ -226,6 +226,9 @@ def whoever_at(d: Discourse, node: Node) -> Thing:
 @meaning("person_first")
 def person_first(d: Discourse, node: Node) -> Thing:
     """ "the first visitor you meet": whoever comes first; on guard, each of them."""
+    if d.came is not None:  # "wait for Alice or Bob and take whoever comes first ..."
+        d.person, d.thing_last = d.came, False
+        return d.came
     if d.on_duty == "guard" and node.production.fixed.get("whoever"):
         return person_coming(d, node)
     kind = str(d.get(node, "kind_of_person", ANYONE))
@@ -239,6 +242,8 @@ def person_group_them(d: Discourse, node: Node) -> Thing:
     """ "both of them", "each of them"."""
     if d.group is None:
         found = d.person or Thing(Text(ANYONE), person=True)
+        if found.count is not None:  # "we expect two visitors": each of the two
+            return replace(found, plural=True)
         return replace(found, here=True, plural=True, every=True)
     return Thing(Text(ANYONE), person=True, plural=True, known=True, group=d.group)
 

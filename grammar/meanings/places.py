@@ -11,7 +11,7 @@ from grammar.discourse import START, Discourse, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.lexicon import Name
 from grammar.meanings.registry import meaning
-from grammar.plan import Ask, Call, Items, Recall, Remember, Text, Value
+from grammar.plan import Ask, Call, Compare, If, Items, Recall, Remember, Text, Value
 
 LIKE_ENOUGH: Final = 55
 """Percent that two names have to be alike for one to be offered in the place of the other."""
@@ -107,6 +107,8 @@ def place_own(d: Discourse, node: Node) -> Value:
     kind = d.get(node, "kind")
     said: Thing | None = d.get(node, "owner")
     who = said or d.person or d.one_called(node.start, node.end)
+    if who is not None and not who.known and who.group is None:  # a visitor has none
+        who = d.one_called(node.start, node.end) or who
     if who is None and (host := owner_of(d)) is not None:
         who = Thing(host, known=True, person=True)
     if who is not None and isinstance(who.group, Items):  # for each of them anew
@@ -129,6 +131,11 @@ def place_own(d: Discourse, node: Node) -> Value:
 
 @meaning("place_there")
 def place_there(d: Discourse, node: Node) -> Value:
+    from grammar.meanings.found_places import first_of_round
+
+    unsaid = d.place in (None, Recall(START))
+    if unsaid and (d.round.such is not None or first_of_round(d)):
+        return Recall(str(d.round.such))  # "find an empty room, come back, and take them there"
     if d.place is None:
         raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
     if d.delivered is not None and d.place == Recall(START):
@@ -245,13 +252,38 @@ def place_either(d: Discourse, node: Node) -> list[Value]:
 
 @meaning("place_other")
 def place_other(d: Discourse, node: Node) -> Value:
-    """ "the other office": of two, the one that was not spoken of; else the question which."""
-    places = d.lexicon.place_kinds[d.get(node, "kind")]
+    """ "the other office", "the other one": of two, the one that was not spoken of, or was not
+    chosen; else the question which."""
+    other = not_chosen(d)
+    if other is not None:
+        return other
+    places = d.lexicon.place_kinds[d.get(node, "kind") or kind_of_place(d, node)]
     others = [each.name for each in places if Text(each.name) != d.place]
     if len(others) == 1:
         d.place = Text(others[0])
         return d.place
     raise d.which(node.start, node.end, tuple(others))
+
+
+def kind_of_place(d: Discourse, node: Node) -> str:
+    """The kind of the place that was spoken of last."""
+    for kind, places in d.lexicon.place_kinds.items():
+        if len(places) > 1 and any(Text(each.name) == d.place for each in places):
+            return kind
+    raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
+
+
+def not_chosen(d: Discourse) -> Value | None:
+    """The place that was not chosen, if there were two to choose from."""
+    known = {each.name for each in d.lexicon.places}
+    if d.answer is None or len(d.answer_options) != 2 or not known.issuperset(d.answer_options):
+        return None
+    one, two = map(Text, d.answer_options)
+    other = Recall(d.variable("other"))
+    chosen = Compare(Recall(d.answer), "==", two)
+    d.done += [Remember(other.name, two), If(chosen, (Remember(other.name, one),))]
+    d.place = other
+    return other
 
 
 @meaning("place_where")

@@ -270,6 +270,10 @@ def each_met(d: Discourse, person: Thing, one: One) -> Steps:
     if leaves(body, here):
         meeting.insert(0, Call("goto", {"place": d.start() if here is None else here}))
         d.at = d.with_person = None
+    waited = None if by_name or person.coming else waited_for(d, who)
+    if waited is not None:  # "wait for two visitors and take each of them to the lounge"
+        d.person, d.thing_last = replace(person, place=None, here=True, count=None), False
+        return [Repeat(waited, (Call("wait_for", {"thing": who}), *body))]
     fetched = fetched_before(body, who, here) if not by_name and not person.coming else 0
     if fetched:  # whoever is met is forgotten on the way to what they get
         meeting = [*body[:fetched], meeting[-1]]
@@ -284,6 +288,22 @@ def each_met(d: Discourse, person: Thing, one: One) -> Steps:
         assert isinstance(who, Recall)
         return [*going, ForEach(who.name, Ask("people"), steps)]
     return [*going, Repeat(Ask("count", {"thing": who}), steps)]
+
+
+def waited_for(d: Discourse, who: Value) -> Value | None:
+    """How many of them the step before has waited for, one after the other: it is taken out of the
+    steps, for each of them is met in the round that is for them."""
+    for steps in (d.done, *d.around[-1:]):
+        match steps[-1:]:
+            case [Repeat(times, (Call(method="wait_for", arguments=arguments),))]:
+                if arguments == {"thing": who}:
+                    steps.pop()
+                    return times
+            case [_]:
+                return None
+            case _:
+                pass
+    return None
 
 
 def fetched_before(body: Steps, who: Value, here: Value | None) -> int:

@@ -25,6 +25,7 @@ from grammar.meanings.references import answers_in, nouns_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import tell_speaker
 from grammar.meanings.requested import Request
+from grammar.names import names_of
 from grammar.naming import the
 from grammar.plan import (
     Ask,
@@ -102,6 +103,9 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
     elif (places := places_asked_for(d, question)) is not None:
         arguments["options"] = places
         d.place = Recall(name)
+    spoken_of = places_named(d, question.start, question.end)
+    if len(spoken_of) == 1 and d.place != Recall(name):
+        d.place = Text(spoken_of[0])  # "ask whether they want to see the lab; take them there"
     if whom.many and "each" in question.production.fixed:
         d.polled_for = "who"
     offered(d, question, options, name)
@@ -232,10 +236,28 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
             start += 1
         if not yes_no and d.place != Recall(name):
             d.thing, d.thing_last = Thing(Recall(name)), False
-        elif yes_no and 0 < end - start <= LONGEST_OFFERED:
+        elif yes_no and 0 < end - start <= LONGEST_OFFERED and not names_people(d, start, end):
             what = d.noun_words(start, end)
             d.thing = Thing(Text(what), noun=head_word(what, d.language))
             d.thing_last = False
+
+
+def places_named(d: Discourse, start: int, end: int) -> list[str]:
+    """The places that are spoken of by their names among some words."""
+    known: list[str] = []
+    for at in range(start, end):
+        branch = names_of(d.language, d.lexicon).tries.get("place")
+        for token in d.tokens[at:end]:
+            branch = branch.branches.get(token.norm) if branch else None
+            if branch and branch.values:
+                known.append(branch.values[0].name)
+    return known
+
+
+def names_people(d: Discourse, start: int, end: int) -> bool:
+    """Whether some words speak of somebody: "see the visitor now" offers nothing to bring."""
+    kinds = names_of(d.language, d.lexicon).tries.get("person_kind")
+    return kinds is not None and any(norm in kinds.branches for norm in d.norms(start, end))
 
 
 @meaning("question")

@@ -47,6 +47,8 @@ def remark(d: Discourse, node: Node) -> Steps:
                 raise NotUnderstood(d.language.phrase("not_understood", part=words))
             with contextlib.suppress(NotUnderstood):  # it may speak of what nobody knows
                 d.build(part)
+                if node.production.fixed.get("coming") and d.person is not None:
+                    d.person = expected(d.person)
     if not node.production.fixed.get("own"):
         d.report = Report("only", Text(sentence_form(_said(d, node))), about_here=False)
         d.report_step = None
@@ -60,6 +62,12 @@ def refuse_order(d: Discourse, node: Node) -> None:
     if d.language.speech.get("head_first") and first in orders:
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
+
+
+def expected(person: Thing) -> Thing:
+    """Somebody who is still to come, and so has to be waited for."""
+    someone = not person.known and person.count is None and not person.plural
+    return replace(person, first=someone, here=False)
 
 
 def aside(d: Discourse, node: Node) -> Steps:

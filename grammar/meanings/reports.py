@@ -13,6 +13,7 @@ from grammar.discourse import START, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings import news, polls
 from grammar.meanings.absences import undelivered
+from grammar.meanings.arrivals import arrival, arrival_told
 from grammar.meanings.finding import is_here, speak_to
 from grammar.meanings.follow_ups import said_in_all
 from grammar.meanings.persons import is_me
@@ -244,6 +245,8 @@ def known_words(d: Discourse) -> Steps:
         return [Call("say", {"text": said_in_all(d)})]
     if d.code is not None:
         return [d.say("code_is", value=Recall(d.code))]
+    if (come := arrival(d)) is not None:
+        return [come]
     raise NotUnderstood(d.language.phrase("say_what"))
 
 
@@ -455,6 +458,8 @@ def tell_speaker(d: Discourse) -> Steps:
         told_there = retold(d, None)
         d.went(start)
         return [Call("goto", {"place": start}), *told_there]
+    if d.answer is None and d.code is None and (come := arrival_told(d)) is not None:
+        return come
     if d.answer is None and d.code is None and d.thing is not None:
         if not (isinstance(last, Call) and last.method == "find"):
             raise NotUnderstood(d.language.phrase("say_what"))

@@ -5,7 +5,8 @@ To drive somewhere and do nothing there makes no sense: what is only said is sai
 
 from __future__ import annotations
 
-from typing import Final
+from collections.abc import Set
+from typing import Any, Final
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Steps
@@ -15,7 +16,7 @@ from grammar.meanings.deliveries import first_clause
 from grammar.meanings.going_on import about_places, conditional, depends_on_stop
 from grammar.meanings.gone_round import round_of_visits
 from grammar.meanings.registry import meaning
-from grammar.plan import Ask, Call, ForEach, Holds, If, Items, Recall, Text
+from grammar.plan import Ask, Call, End, ForEach, Holds, If, Items, Recall, Step, Text, Value
 from grammar.tidy import nodes
 
 SAID: Final = frozenset({"say", "ask", "show", "gesture", "emotion", "people"})
@@ -55,6 +56,33 @@ def said_at_each(d: Discourse, places: Items | None, steps: Steps) -> Items | No
     going = Call("goto", {"place": place})
     d.done.append(ForEach(place.name, places, (going, *steps)))
     return places
+
+
+def said_on_tour(d: Discourse, before: int, scene: dict[str, Any]) -> None:
+    """Move what is said at a place behind the step that leads somebody there: "show them the
+    library and the lounge. In the library say ..., and in the lounge ..."."""
+    going, *words = d.done[before:] or [End()]
+    if not words or not is_call(going, {"goto"}) or not all(is_call(each, SAID) for each in words):
+        return
+    if not before or not is_call(d.done[before - 1], {"guide", *SAID}):
+        return
+    stops = [at for at in range(before) if is_call(d.done[at], {"guide"})]
+    here = [at for at in stops if place_of(d.done[at]) == place_of(going)]
+    if not here:
+        return
+    at = next((each for each in stops if each > here[-1]), before)
+    del d.done[before:]
+    d.done[at:at] = words
+    d.set_scene(scene)
+
+
+def is_call(step: Step, methods: Set[str]) -> bool:
+    return isinstance(step, Call) and step.method in methods
+
+
+def place_of(step: Step) -> Value | None:
+    """Where a step goes."""
+    return step.arguments.get("place") if isinstance(step, Call) else None
 
 
 @meaning("skip_empty")

@@ -13,11 +13,11 @@ from grammar.meanings.conditions import negated
 from grammar.meanings.deliveries import delivered_last
 from grammar.meanings.finding import noun_of, whether_found
 from grammar.meanings.news import in_round
-from grammar.meanings.places import own_place, sought
+from grammar.meanings.places import own_place, owner_of, sought
 from grammar.meanings.polls import counted as counted_answers
 from grammar.meanings.registry import meaning
-from grammar.meanings.searches import just_awaited, just_looked_for
-from grammar.meanings.surveys import asked_before, asked_yet, of_one_question
+from grammar.meanings.searches import just_awaited, just_looked_for, searches
+from grammar.meanings.surveys import Survey, asked_before, asked_yet, of_one_question
 from grammar.plan import (
     Ask,
     Both,
@@ -53,6 +53,12 @@ def is_found(d: Discourse, node: Node) -> Condition:
 
 def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
     thing = noun_of(d, node)
+    thing = host_of_visit(d, thing) or thing
+    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    if not node.production.fixed.get("it"):
+        survey = None
+    if survey is not None and survey.call.save_as == d.answer:
+        return survey.said(thing.text)
     if thing.every and not thing.person:  # "if all the beds are taken": one is seen or not
         words = d.words(node.start, node.end)
         gap = (node.start, node.end)
@@ -80,6 +86,17 @@ def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
             plain = {name: part for name, part in node.parts.items() if name != "state"}
             result = Both((is_there(d, noun_of(d, replace(node, parts=plain)), search), result))
     return result
+
+
+def host_of_visit(d: Discourse, who: Thing) -> Thing | None:
+    """Whoever's place somebody was led to, where it is asked whether anybody is there: "take the
+    visitor to Bob's office. If he is not in, ..." is not about the visitor."""
+    host = owner_of(d) if d.led is not None and d.at is not None and d.place == d.at else None
+    if d.led is None or host is None or not who.person or who.known or who.place is not None:
+        return None
+    if who.value not in (d.led.value, Text(ANYONE)) or host == d.led.value:
+        return None
+    return Thing(host, known=True, person=True)
 
 
 def _is_doing(d: Discourse, node: Node, thing: Thing) -> Condition | None:
@@ -116,6 +133,9 @@ def is_there(d: Discourse, thing: Thing, search: bool = False) -> Condition:
             known = Holds(Ask("sees", {"thing": sought(d, thing)}))
     if thing.person:
         d.person, d.thing_last = thing, False
+        looked = {each.arguments.get("place") for each in searches(known)}
+        if thing.known and thing.place is None and len(looked) == 1:
+            thing = replace(thing, place=looked.pop())  # "see if Bob is in his office. If he is"
     d.met = Meeting(thing)
     return known
 

@@ -228,6 +228,12 @@ def bring(d: Discourse, node: Node) -> Steps:
         from grammar.meanings.people import brought_here
 
         return brought_here(d, thing)
+    if thing.person and person is not None and not is_me(person):
+        from grammar.meanings.hosting import led_to
+
+        part = node.parts["person_ref"]  # "fetch the visitor and take them to Clara"
+        same = person.value == thing.value
+        return led_to(d, thing, (d.one_called(part.start, part.end) if same else None) or person)
     if person is not None and (
         person.coming or person.group is not None or person.count is not None
     ):

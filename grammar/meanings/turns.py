@@ -3,10 +3,10 @@ yes, tell them ..."), or that of all ("if they say yes, tell David ...")."""
 
 from __future__ import annotations
 
-from grammar.chart import Node
+from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Thing
 from grammar.meanings.answered import people_asked
-from grammar.meanings.answers import Wanted
+from grammar.meanings.answers import Wanted, wanted
 from grammar.meanings.deliveries import inside
 from grammar.meanings.polls import counted
 from grammar.meanings.surveys import Survey, in_loop, of_one_question
@@ -29,6 +29,27 @@ def in_their_turn(d: Discourse, node: Node, condition: Condition) -> Condition:
     d.person = Thing(survey.who, known=True, person=True, here=True)
     d.with_person = survey.who
     return condition
+
+
+def of_whoever_says_so(d: Discourse, node: Node) -> Condition | None:
+    """ "if somebody says no, tell them ...": what is done with them is done with whoever it is, in
+    their turn; None if it hangs on the answers of all."""
+    condition: Leaf | Node = node.parts["condition"]
+    while isinstance(condition, Node) and condition.production.means is None:
+        (condition,) = condition.parts.values()
+    if not isinstance(condition, Node) or condition.production.fixed.get("how") != "some":
+        return None
+    if d.tokens[condition.start].norm not in d.language.words_called("any_of_them"):
+        return None  # "if one of them says no, ask both ..."
+    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    if survey is None or d.in_loop or not in_loop(d, survey.call):
+        return None
+    then = node.parts["then"]
+    them = d.language.words_called("plural_pronouns") & set(d.norms(then.start, then.end))
+    if not them or told_to_others(d, node):
+        return None
+    d.met = None
+    return wanted(d, survey, d.get(condition, "said")).given(survey)
 
 
 def told_to_others(d: Discourse, node: Node) -> bool:

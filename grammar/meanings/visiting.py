@@ -15,10 +15,11 @@ from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.alternatives import itself
-from grammar.meanings.finding import meet, speak_to
+from grammar.meanings.finding import meet, named, speak_to
 from grammar.meanings.hosts import place_of_named
 from grammar.meanings.leading import lead
-from grammar.meanings.people import led
+from grammar.meanings.people import followed, led
+from grammar.meanings.persons import is_me, person_pronoun
 from grammar.meanings.questions import ask
 from grammar.meanings.references import survey_named
 from grammar.meanings.registry import meaning
@@ -27,7 +28,7 @@ from grammar.meanings.sights import names_here
 from grammar.meanings.speaking import sentence_form
 from grammar.meanings.waiting import moment
 from grammar.naming import place_called
-from grammar.plan import Call, Repeat, Text, Value
+from grammar.plan import Call, Recall, Repeat, Text, Value
 from grammar.tidy import nodes
 
 LED_AWAY: Final = frozenset({"guide", "guide_where_wanted", "guide_nowhere", "send_person"})
@@ -41,6 +42,10 @@ SOMEBODY: Final = "person"
 def send_person(d: Discourse, node: Node) -> Steps:
     """ "send her to the reception": tell her to go there."""
     person: Thing = d.get(node, "person_ref")
+    if "to" in node.parts:
+        host: Thing = d.get(node, "to")
+        d.person = person
+        return speak_to(d, person, [d.say("please_go", place=named(d, host))])
     spot: Where = d.get(node, "spot")
     if spot.place is None:
         raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
@@ -55,7 +60,9 @@ def tour(d: Discourse, node: Node) -> Steps:
     """ "show the visitor the library, then the lounge": to one after the other."""
     person = led(d, node)
     steps = meet(d, person)
-    return [*steps, *(lead(d, person, place) for place in d.get(node, "stops"))]
+    with_me = node.production.fixed.get("along") and is_me(d.get(node, "person_ref"))
+    go_on = followed if with_me else lead
+    return [*steps, *(go_on(d, person, place) for place in d.get(node, "stops"))]
 
 
 @meaning("tour_goes_on")
@@ -155,3 +162,16 @@ def place_of_answer(d: Discourse, node: Node) -> Value:
         d.resolved.update(range(part.start, part.end))
     d.place = place
     return place
+
+
+@meaning("person_of_answer")
+def person_of_answer(d: Discourse, node: Node) -> Thing:
+    """ "that person", "whoever they want to see": at the place of theirs, if an answer tells who it
+    is; else whoever was spoken of."""
+    survey = next((each for each in reversed(d.surveys) if SOMEBODY in each.nouns), None)
+    place = None if survey is None else place_of_named(d, survey)
+    if survey is None or place is None:
+        return person_pronoun(d, node)
+    who = Recall(str(survey.call.save_as))
+    d.person, d.thing_last = Thing(who, place=place, known=True, person=True), False
+    return d.person

@@ -17,6 +17,7 @@ from grammar.discourse import ANYONE, START, Discourse, Steps, Thing
 from grammar.meanings.asking import asked, remember_answer
 from grammar.meanings.descriptions import described
 from grammar.meanings.finding import go
+from grammar.meanings.found_places import first_of_round
 from grammar.meanings.options import options_of
 from grammar.meanings.persons import by_furniture, known_by_name
 from grammar.meanings.places import kind_places, only_taken_apart
@@ -135,6 +136,9 @@ def when_found(d: Discourse, node: Node) -> Steps:
     last = d.done[-1] if d.done else None
     search = search_of(last)
     if search is None and _found_by(last) is None:
+        if first_of_round(d):  # "check which room is free. When you have found one, ..."
+            done: Steps = d.build(node.parts["then"])
+            return done
         return waited_for(d, node)
     if search is not None and d.thing_last and d.thing is not None:
         d.thing = replace(d.thing, here=True, place=None)

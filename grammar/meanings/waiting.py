@@ -10,6 +10,7 @@ import msgspec
 from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Steps, Thing
 from grammar.inference import takes_time
+from grammar.meanings.arrivals import may_be_another, names_somebody
 from grammar.meanings.asking_until import as_soon_as_answered, stops_asking
 from grammar.meanings.branches import ABOUT_ANSWERS, if_
 from grammar.meanings.carrying import take_back_delivery
@@ -18,7 +19,7 @@ from grammar.meanings.conditions import condition_of, negated
 from grammar.meanings.deliveries import hands_it_over, inside
 from grammar.meanings.finding import speak_to
 from grammar.meanings.news import Told, go_back, in_round
-from grammar.meanings.persons import is_me
+from grammar.meanings.persons import is_me, kind_in_plural
 from grammar.meanings.polls import told_as_asked
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import known_words
@@ -83,7 +84,13 @@ def when(d: Discourse, node: Node) -> Steps:
         return if_(d, node)  # "when he says yes", of somebody who was asked: he has answered
     if not_there(d, node) and not node.production.fixed.get("always"):
         return if_(d, node)
-    person = d.person
+    person, always = d.person, node.production.fixed.get("always")
+    if d.came is not None and not always and not names_somebody(node.parts["condition"]):
+        d.person = d.came
+        after: Steps = d.build(node.parts["then"])
+        return after
+    if not always and may_be_another(d, node.parts["condition"]):
+        return if_(d, node)
     before, condition = condition_of(d, node)
     meet_there(d, d.met)
     waited = Call("wait_for", {"thing": person.value}) if person is not None else None
@@ -100,7 +107,7 @@ def when(d: Discourse, node: Node) -> Steps:
     if hands_it_over(node.parts["then"]) and d.thing is not None:
         take_back_delivery(d, d.thing)  # "get the cup and hand it to Bob when he comes"
     body: Steps = d.build(node.parts["then"])
-    if node.production.fixed.get("always") or _is_duty(d, node, condition):
+    if always or _is_duty(d, node, condition) or is_habit(d, node):
         return each_time(before, condition, body)
     return [*awaited(before, condition), *body]
 
@@ -122,6 +129,16 @@ def _is_duty(d: Discourse, node: Node, condition: Condition) -> bool:
     part = node.parts["condition"]
     anybody = d.language.words_called("any_words") & set(d.norms(part.start, part.end))
     return d.on_duty == "guard" or bool(anybody)
+
+
+def is_habit(d: Discourse, node: Node) -> bool:
+    """Whether it is to be done for all who come, of whom nobody says how many: "when visitors
+    come, ask their name"."""
+    part = node.parts["condition"]
+    if d.tokens[part.start - 1].norm not in d.language.words_called("habitual"):
+        return False
+    people = (each for each in inside(part) if each.means == "person_kind")
+    return any(each.start == part.start and kind_in_plural(d, each) for each in people)
 
 
 def waited_for_them(d: Discourse, node: Node, condition: Condition) -> bool:

@@ -203,13 +203,9 @@ class PaperRobot:
         here = [who for who in self._people_here(thing) if (who, self.place) not in self.met]
         if not here and self._things_here(thing):
             return True
-        coming = self.scene.arrivals.get(self.place, [])
         if not here:
-            for who in list(coming):
-                if self._is(thing, who) and who not in self.people_at:
-                    self.people_at[who] = self.place
-                    here = [who]
-                    break
+            here = [who for who in self._coming() if self._is(thing, who)][:1]
+            self.people_at.update(dict.fromkeys(here, self.place))
         if not here:
             if timeout is not None:
                 self.minutes += timeout / 60
@@ -218,6 +214,11 @@ class PaperRobot:
         self.partner = here[0]
         self.met.add((here[0], self.place))
         return True
+
+    def _coming(self) -> list[str]:
+        """Who is still to come to where the robot is."""
+        coming = self.scene.arrivals.get(self.place, [])
+        return [who for who in coming if who not in self.people_at]
 
     # --- talking
 
@@ -335,6 +336,7 @@ class PaperRobot:
     def wait(self, seconds: float) -> None:
         self.minutes += seconds / 60
         self._event("waits", f"{seconds:g} s")
+        self.people_at.update(dict.fromkeys(self._coming()[:1], self.place))
 
     def clock(self) -> Clock:
         hours, minutes = map(int, self.scene.clock.split(":"))
