@@ -257,7 +257,10 @@ def places_named(d: Discourse, start: int, end: int) -> list[str]:
 def names_people(d: Discourse, start: int, end: int) -> bool:
     """Whether some words speak of somebody: "see the visitor now" offers nothing to bring."""
     kinds = names_of(d.language, d.lexicon).tries.get("person_kind")
-    return kinds is not None and any(norm in kinds.branches for norm in d.norms(start, end))
+    if kinds is None:
+        return False
+    begun = (kinds.branches.get(norm) for norm in d.norms(start, end))
+    return any(each is not None and each.values for each in begun)
 
 
 @meaning("question")
