@@ -224,3 +224,28 @@ def _place_at_end(d: Discourse, start: int, end: int) -> str | None:
         if node and node.values:
             return str(node.values[0].name)
     return None
+
+
+def places_named(d: Discourse, start: int, end: int) -> list[str]:
+    """The places that are spoken of by their names among some words."""
+    from grammar.names import names_of
+
+    known: list[str] = []
+    for at in range(start, end):
+        branch = names_of(d.language, d.lexicon).tries.get("place")
+        for token in d.tokens[at:end]:
+            branch = branch.branches.get(token.norm) if branch else None
+            if branch and branch.values:
+                known.append(branch.values[0].name)
+    return known
+
+
+def names_people(d: Discourse, start: int, end: int) -> bool:
+    """Whether some words speak of somebody: "see the visitor now" offers nothing to bring."""
+    from grammar.names import names_of
+
+    kinds = names_of(d.language, d.lexicon).tries.get("person_kind")
+    if kinds is None:
+        return False
+    begun = (kinds.branches.get(norm) for norm in d.norms(start, end))
+    return any(each is not None and each.values for each in begun)

@@ -15,9 +15,11 @@ from grammar.meanings.descriptions import described
 from grammar.meanings.finding import go, speak_to
 from grammar.meanings.options import (
     MOST_OPTIONS,
+    names_people,
     numbers_offered,
     options_of,
     places_asked_for,
+    places_named,
     without_little_words,
 )
 from grammar.meanings.persons import is_me, known_by_name
@@ -25,7 +27,6 @@ from grammar.meanings.references import answers_in, nouns_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import tell_speaker
 from grammar.meanings.requested import Request
-from grammar.names import names_of
 from grammar.naming import the
 from grammar.plan import (
     Ask,
@@ -240,27 +241,6 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
             what = d.noun_words(start, end)
             d.thing = Thing(Text(what), noun=head_word(what, d.language))
             d.thing_last = False
-
-
-def places_named(d: Discourse, start: int, end: int) -> list[str]:
-    """The places that are spoken of by their names among some words."""
-    known: list[str] = []
-    for at in range(start, end):
-        branch = names_of(d.language, d.lexicon).tries.get("place")
-        for token in d.tokens[at:end]:
-            branch = branch.branches.get(token.norm) if branch else None
-            if branch and branch.values:
-                known.append(branch.values[0].name)
-    return known
-
-
-def names_people(d: Discourse, start: int, end: int) -> bool:
-    """Whether some words speak of somebody: "see the visitor now" offers nothing to bring."""
-    kinds = names_of(d.language, d.lexicon).tries.get("person_kind")
-    if kinds is None:
-        return False
-    begun = (kinds.branches.get(norm) for norm in d.norms(start, end))
-    return any(each is not None and each.values for each in begun)
 
 
 @meaning("question")

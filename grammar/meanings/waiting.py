@@ -84,7 +84,7 @@ def when(d: Discourse, node: Node) -> Steps:
         return if_(d, node)  # "when he says yes", of somebody who was asked: he has answered
     if not_there(d, node) and not node.production.fixed.get("always"):
         return if_(d, node)
-    person, always = d.person, node.production.fixed.get("always")
+    person = d.person
     if d.came is not None and not always and not names_somebody(node.parts["condition"]):
         d.person = d.came
         after: Steps = d.build(node.parts["then"])
