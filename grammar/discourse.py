@@ -122,6 +122,12 @@ class Discourse:
     answer_options: tuple[str, ...] = ()
     asked_for: Text | None = None
     """The thing that somebody was asked for, and that is still with them: "ask her for the key"."""
+    held: Text | None = None
+    """The thing that somebody was asked whether they have it."""
+    says_so: bool = False
+    """Whether what is said is done with whoever says that they have it."""
+    taking: Any = None
+    """How it is taken from whoever has it, before it is said where to."""
     wondered: tuple[Step, ...] = ()
     """The steps that ask what the speaker would like to know, before it is said whom to ask."""
     wonder: str | None = None

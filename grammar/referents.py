@@ -96,6 +96,8 @@ class Branched:
     met: Meeting | None
     answer: str | None
     """The last answer that was known by then."""
+    assumed: bool = False
+    """Whether nothing was said of the other branch, and what is done there only assumed."""
 
 
 @dataclass

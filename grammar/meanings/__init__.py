@@ -23,9 +23,11 @@ import grammar.meanings.conversation
 import grammar.meanings.descriptions
 import grammar.meanings.driving
 import grammar.meanings.exceptions
+import grammar.meanings.exchanges
 import grammar.meanings.facts
 import grammar.meanings.found_places
 import grammar.meanings.further
+import grammar.meanings.holders
 import grammar.meanings.hosting
 import grammar.meanings.inquiries
 import grammar.meanings.loops

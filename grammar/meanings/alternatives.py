@@ -12,6 +12,7 @@ from grammar.meanings.arrivals import may_be_another
 from grammar.meanings.branches import ABOUT_ANSWERS
 from grammar.meanings.conditions import negated
 from grammar.meanings.deliveries import inside
+from grammar.meanings.searches import only_told_missing
 from grammar.plan import Ask, Both, Call, Compare, Condition, Holds, If, Not, Number, Recall, Text
 from grammar.tidy import nodes
 
@@ -26,6 +27,8 @@ _HOLDS: Final = {
 BRANCHES: Final = ("otherwise", "otherwise_not", "otherwise_denied", "then")
 """The parts of a condition that are steps, the last one first."""
 CONDITIONAL: Final = frozenset({"if", "tell_condition"})
+FOUND: Final = frozenset({"when_found"})
+"""Clauses that are conditions on a search before."""
 
 
 def side_by_side(d: Discourse, clause: Node) -> tuple[Node, Node | None]:
@@ -35,7 +38,8 @@ def side_by_side(d: Discourse, clause: Node) -> tuple[Node, Node | None]:
     clause = itself(clause)
     last = next((name for name in BRANCHES if name in clause.parts), "")
     body = clause.parts.get(last)
-    if not is_conditional(d, clause) or not isinstance(body, Node):
+    conditional = is_conditional(d, clause) or clause.production.means in FOUND
+    if not conditional or not isinstance(body, Node):
         return clause, None
     about = _about(clause)
     chain = [body]
@@ -114,7 +118,8 @@ def itself(clause: Node) -> Node:
 
 def _about(clause: Node) -> bool:
     """Whether a condition is about an answer."""
-    return what_it_means(clause.parts["condition"]) in ABOUT_ANSWERS
+    condition = clause.parts.get("condition")
+    return condition is not None and what_it_means(condition) in ABOUT_ANSWERS
 
 
 def is_conditional(d: Discourse, clause: Node) -> bool:
@@ -153,7 +158,9 @@ def exclusive(done: Steps) -> Steps:
     result: Steps = []
     for step in done:
         last = result[-1] if result else None
-        if isinstance(last, If) and isinstance(step, If) and excludes(last, step):
+        if isinstance(last, If) and isinstance(step, If) and _told_otherwise(last, step):
+            result[-1] = If(last.condition, last.then, step.then)
+        elif isinstance(last, If) and isinstance(step, If) and excludes(last, step):
             result[-1] = _or_else(last, step)
         elif isinstance(last, If) and isinstance(step, If) and _is_silence(last, step):
             result[-1] = If(step.condition, step.then, (last,))
@@ -200,6 +207,13 @@ def _or_else(first: If, second: If) -> If:
     if second.condition == negated(first.condition) and not second.otherwise:
         return If(first.condition, first.then, second.then)
     return If(first.condition, first.then, (second,))
+
+
+def _told_otherwise(first: If, second: If) -> bool:
+    """ "when you find it, bring it. If not, ...": that is done instead of saying that it was not
+    found."""
+    opposite = second.condition == negated(first.condition) and not second.otherwise
+    return opposite and only_told_missing(first)
 
 
 def excludes(first: If, second: If) -> bool:

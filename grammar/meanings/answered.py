@@ -26,7 +26,7 @@ from grammar.meanings.surveys import (
     polled_before,
     replacing,
 )
-from grammar.meanings.there import just_agreed, seen_there
+from grammar.meanings.there import just_agreed, just_branched, seen_there
 from grammar.plan import (
     Ask,
     Both,
@@ -252,21 +252,6 @@ def said_so(d: Discourse, no: bool, there_is_none: bool = False) -> Condition:
         if option.lower() == wanted.lower():
             return Compare(Recall(d.answer), "==", Text(option))
     return Compare(Text(wanted), "in", Recall(d.answer))
-
-
-def just_branched(d: Discourse, no: bool) -> Condition | None:
-    """ "If she isn't there, come back. If she is, ask her ...": the other case of that."""
-    before = d.branched
-    step = before.step if before is not None else None
-    if before is None or before.met is None or not isinstance(step, If) or step.otherwise:
-        return None
-    if before.answer != d.answer or not d.done or d.done[-1] is not step:
-        return None
-    if before.met.holds is not no:  # the same case again says something else
-        return None
-    d.set_scene(before.scene)
-    d.met = replace(before.met, holds=not no)
-    return negated(step.condition)
 
 
 @meaning("so")

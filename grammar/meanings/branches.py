@@ -32,13 +32,17 @@ from grammar.meanings.deliveries import (
     Taken,
     delivered_last,
     first_clause,
+    gives_it,
     hands_it_over,
     inside,
+    kept_in_hand,
     lacks,
+    missed_at_home,
     still_in_hand,
     taken_back,
 )
 from grammar.meanings.finding import not_found
+from grammar.meanings.holders import the_one_who_says_so
 from grammar.meanings.news import BACK, News
 from grammar.meanings.registry import meaning
 from grammar.meanings.searches import (
@@ -83,6 +87,9 @@ LOOKING: Final = frozenset({"look_in", "look_on", "find", "go_find"})
 @meaning("if")
 def if_(d: Discourse, node: Node) -> Steps:
     node = with_else(node)
+    handed_back = the_one_who_says_so(d, node)
+    if handed_back is not None:
+        return handed_back
     delivery = delivered_last(d)
     of_one = of_whoever_says_so(d, node)
     before_it, condition = condition_of(d, node) if of_one is None else ([], of_one)
@@ -92,6 +99,9 @@ def if_(d: Discourse, node: Node) -> Steps:
         return found_out_either_way(d, node, before_it, condition)
     if node.production.fixed.get("unless"):
         condition, met = negated(condition), turned(met)
+    met = missed_at_home(d, delivery, met)
+    if not before_it and is_other_case(d, condition):
+        return [as_said_now(d, node, condition, met)]
     kept = addressed_before(d, met) if delivery is None and not before_it else None
     if kept is not None and met is not None:
         return absent(d, node, kept, met, lambda: d.build(node.parts["then"]))
@@ -101,9 +111,13 @@ def if_(d: Discourse, node: Node) -> Steps:
             return [*before_it, *failing(d, node, taken, met)]
     if met is None and not before_it:
         as_before(d, condition)
-    handed = None
-    if delivery is not None and (hands_it_over(node.parts["then"]) or other_hands_it_over(node)):
-        handed = still_in_hand(d, delivery)
+    handed: Steps = []
+    if hands_it_over(node.parts["then"]) or other_hands_it_over(node):
+        last = None if delivery is None else still_in_hand(d, delivery)
+        handed = [] if last is None else [last]
+        if delivery is None:
+            kept_back = kept_in_hand(d) or []
+            handed = [] if gives_it(node.parts["then"]) else kept_back
     start = d.scene()
     known = d.answer
     then = branch(d, node.parts["then"], met, claim_of(d, node, condition, met))
@@ -136,9 +150,10 @@ def if_(d: Discourse, node: Node) -> Steps:
     else:
         meet_there(d, turned(met))
     leave_off(d, after)
-    if handed is not None:
-        then = then if hands_it_over(node.parts["then"]) else [handed, *then]
-        otherwise = otherwise if hands_it_over(part) else [handed, *otherwise]
+    assumed = bool(handed) and not otherwise
+    if handed:
+        then = then if hands_it_over(node.parts["then"]) else [*handed, *then]
+        otherwise = otherwise if hands_it_over(part) else [*handed, *otherwise]
         d.holding = None
         # Who is not found is in no state, either.
         looked = searched(d.done[-1]) if d.done and not before_it else None
@@ -155,8 +170,29 @@ def if_(d: Discourse, node: Node) -> Steps:
         whole, told = told_in_any_case(d, whole)
         if told:
             return [*before_it, *counted, whole, *told]
-    d.branched = Branched(whole, start, met, d.answer)
+    d.branched = Branched(whole, start, met, d.answer, assumed)
     return [*before_it, *counted, whole]
+
+
+def is_other_case(d: Discourse, condition: Condition) -> bool:
+    """Whether a condition is the case of the one before of which nothing was said yet."""
+    before = d.branched
+    last = d.done[-1] if d.done else None
+    if before is None or not before.assumed or last is not before.step:
+        return False
+    return isinstance(last, If) and condition == negated(last.condition)
+
+
+def as_said_now(d: Discourse, node: Node, condition: Condition, met: Meeting | None) -> If:
+    """ "if she is in, give it to her. If she is out, leave it on the desk": instead of what was
+    assumed to be done then."""
+    before = d.branched
+    assert before is not None
+    d.set_scene(before.scene)
+    otherwise = branch(d, node.parts["then"], met, claim_of(d, node, condition, met))
+    first = d.done.pop()
+    assert isinstance(first, If)
+    return If(first.condition, first.then, tuple(otherwise))
 
 
 def denies(d: Discourse, condition: Condition) -> bool:

@@ -8,6 +8,7 @@ from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.deliveries import Delivery
 from grammar.meanings.finding import go, look_for, meet, where_sent
+from grammar.meanings.holders import from_whoever_has_it
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import sought
 from grammar.meanings.searches import search_of
@@ -27,7 +28,8 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
     if d.holding == thing.value:
         return []
     last = d.done[-1] if d.done else None
-    if last == Call("put", {"thing": thing.value}):
+    another = thing.place is not None and not thing.pronoun
+    if last == Call("put", {"thing": thing.value}) and not another:
         d.done.pop()  # "take the cup to the kitchen and give it to Alex": never put down
         return []
     if thing.pronoun and thing.value in d.now_at:
@@ -96,6 +98,8 @@ def _is_given(step: Step, thing: Thing) -> bool:
 def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None) -> Steps:
     """Pick a thing up, go where it is to be, and put it down or hand it over."""
     scene = d.scene()
+    if from_whoever_has_it(d, thing, lambda: _delivered(d, thing, person, spot)):
+        return []
     thing = where_told(d, thing)
     steps = _delivered(d, thing, person, spot)
     d.delivery = Delivery(thing, person, spot, tuple(steps), scene)

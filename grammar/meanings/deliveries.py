@@ -19,6 +19,7 @@ from grammar.meanings.places import own_place
 from grammar.meanings.searches import search_of, searches
 from grammar.meanings.surveys import Survey
 from grammar.plan import Ask, Call, Condition, Holds, If, Items, Recall, Step, Text, Value
+from grammar.tidy import nodes
 
 
 @dataclass(frozen=True)
@@ -185,6 +186,11 @@ def hands_it_over(part: Leaf | Node | None) -> bool:
     )
 
 
+def gives_it(part: Leaf | Node) -> bool:
+    """Whether a branch hands it to somebody."""
+    return any(each.production.means == "bring" for each in inside(part))
+
+
 def _is_it(part: Leaf | Node) -> bool:
     return isinstance(part, Node) and part.production.means == "thing_it"
 
@@ -219,3 +225,41 @@ def still_in_hand(d: Discourse, delivery: Delivery) -> Step | None:
     d.holding = delivery.thing.value
     d.thing, d.thing_last = replace(delivery.thing, pronoun=True), True
     return last
+
+
+def kept_in_hand(d: Discourse) -> Steps | None:
+    """How a thing was handed over before something was asked, taken back: "take her a sandwich and
+    ask whether she wants it. If not, bring it back"."""
+    delivery: Delivery | None = d.delivery
+    if delivery is None or not delivery.steps or delivery.spot is not None:
+        return None
+    at = next((at for at, step in enumerate(d.done) if step is delivery.steps[-1]), None)
+    if at is None or not only_asks(d.done[at + 1 :]):
+        return None
+    first = at
+    if delivery.receiver is None and at and d.done[at - 1] == Call("goto", {"place": d.start()}):
+        first = at - 1  # nobody goes back with it in between
+    handing = d.done[first : at + 1]
+    del d.done[first : at + 1]
+    d.delivered = None
+    d.holding = delivery.thing.value
+    d.thing, d.thing_last = replace(delivery.thing, pronoun=True, place=None), True
+    return handing
+
+
+def only_asks(steps: Steps) -> bool:
+    """Whether some steps go to somebody to ask them something, and leave things where they are."""
+    calls = [each for each in nodes(tuple(steps)) if isinstance(each, Call)]
+    asks = any(each.method == "ask" for each in calls)
+    return asks and all(each.method in ("ask", "find", "goto", "say") for each in calls)
+
+
+def missed_at_home(d: Discourse, delivery: Delivery | None, met: Meeting | None) -> Meeting | None:
+    """ "if his office is empty": who is to get something is not there."""
+    receiver = None if delivery is None else delivery.receiver
+    if receiver is None or met is None or met.holds or met.thing.text != ANYONE:
+        return met
+    home = own_place(d, receiver)
+    if home is None or met.thing.place != home:
+        return met
+    return replace(met, thing=replace(receiver, place=home))

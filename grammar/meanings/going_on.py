@@ -12,7 +12,7 @@ from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Steps, Thing
 from grammar.meanings.claims import claim_of
 from grammar.meanings.conditions import condition_of
-from grammar.meanings.deliveries import first_clause, inside
+from grammar.meanings.deliveries import first_clause, hands_it_over, inside
 from grammar.meanings.finding import speak_to
 from grammar.meanings.gone_round import goes_to
 from grammar.meanings.lookouts import ABOUT_IT, looks_out
@@ -68,7 +68,7 @@ def in_round(d: Discourse, clause: Node) -> Steps:
     """The steps of a clause. "Go to every office. If somebody is there, ...": they belong to the
     round in the sentence before, which may consist of nothing but going there."""
     first = first_clause(clause)
-    if d.round.lookout is not None and about_all(d, first):
+    if d.round.lookout is not None and (about_all(d, first) or fetches_it(d, first)):
         d.round.lookout.until_found(d)
     found_there_too(d, first)
     if alone(clause, first) and looks_out(d, first):
@@ -172,6 +172,14 @@ def in_company(d: Discourse, first: Node, steps: Steps) -> Steps:
     if isinstance(waiting, Call) and waiting.method == "wait_for":
         who, steps = waiting.arguments["thing"], steps[1:]
     return [If(Holds(Ask("sees", {"thing": who})), tuple(steps))] if steps else steps
+
+
+def fetches_it(d: Discourse, first: Node) -> bool:
+    """ "if you find it, bring it here": whether a clause says what becomes of the one thing that is
+    looked for, so that the search ends where it is."""
+    if not d.round.lookout.definite:
+        return False
+    return hands_it_over(first.parts.get("then", first))
 
 
 def about_all(d: Discourse, first: Node) -> bool:

@@ -105,6 +105,7 @@ class Lookout:
         d.round.lookout = None
         if at is not None and places and self.thing is not None and not self.trait.denied:
             d.done[at : at + 1] = search_in(d, self.thing, places)
+            d.at, d.away = None, True
 
     def meet(self, d: Discourse) -> None:
         """The scene at a place where it is so."""

@@ -89,7 +89,7 @@ def split_options(d: Discourse, start: int, end: int) -> tuple[str, ...]:
     longest = max(last - begin for begin, last in stripped[1:]) if stripped[1:] else 1
     options: list[str] = []
     for number, (begin, last) in enumerate(stripped):
-        place = _place_at_end(d, begin, last) or _numbered(d, options, begin, last)
+        place = place_at_end(d, begin, last) or _numbered(d, options, begin, last)
         if place:
             options.append(d.called(place))
             continue
@@ -178,7 +178,7 @@ def _without_what_follows(d: Discourse, groups: list[tuple[int, int]]) -> tuple[
     if len(groups) < 2 or any(ends & set(d.norms(begin + 1, last)) for begin, last in groups[1:-1]):
         return start, end
     for at in range(start + 1, end):
-        if d.tokens[at].norm in ends and not _place_at_end(d, start, end):
+        if d.tokens[at].norm in ends and not place_at_end(d, start, end):
             return start, at
     return start, end
 
@@ -212,7 +212,7 @@ def places_asked_for(d: Discourse, question: Node) -> Value | None:
     return None
 
 
-def _place_at_end(d: Discourse, start: int, end: int) -> str | None:
+def place_at_end(d: Discourse, start: int, end: int) -> str | None:
     """The place whose name the last words are."""
     from grammar.names import names_of
 

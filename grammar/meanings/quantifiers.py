@@ -39,6 +39,7 @@ from grammar.meanings.several_places import (
 )
 from grammar.meanings.several_things import (
     HANDED,
+    begun_before,
     first_found,
     over_either_thing,
     over_thing_list,
@@ -73,10 +74,12 @@ TOGETHER: Final = frozenset(
     {
         "answer", "answers_reached", "ask", "ask_again", "ask_to", "find", "greet", "phrase",
         "report", "said_with", "same_for", "say", "say_it", "say_that", "shared_with",
-        "shares", "tell", "tell_joke", "tell_that", "wait_for",
+        "shares", "statement", "swap", "swap_owned", "tell", "tell_joke", "tell_that", "wait_for",
     }
 )  # fmt: skip
 """Commands that know themselves what to do with several people."""
+PEOPLE: Final = frozenset({"person_ref", "willing"})
+"""Rules for those who get something."""
 FETCHES: Final = HANDED | {"shared_with", "shares"}
 """Commands that take things from somewhere."""
 ALWAYS: Final = frozenset(
@@ -102,6 +105,9 @@ def distributed(d: Discourse, node: Node, make: Make) -> Steps:
     within = setting_of(node) or node
     several = [part for part in phrases(within) if speaks_of_several(d, node, part)]
     several.sort(key=lambda part: part.production.rule == "thing")  # things change hands inside
+    if hands_one_of_several(d, node):
+        begun_before(d)
+    several = one_each(d, several)
     outer = d.taken_from
     things = any(OVER[part.means] in (over_things, over_thing_list) for part in several)
     place = d.place
@@ -112,6 +118,28 @@ def distributed(d: Discourse, node: Node, make: Make) -> Steps:
     if node.means in FETCHES:
         keep_fetching(d, node, make, steps, scene, known)
     return steps
+
+
+def hands_one_of_several(d: Discourse, node: Node) -> bool:
+    """ "get the flyers and give one to everybody": straight there."""
+    part = node.parts.get("thing")
+    several = d.thing is not None and d.thing.several
+    return several and node.means == "bring" and isinstance(part, Node) and part.means == "thing_it"
+
+
+def one_each(d: Discourse, several: list[Node]) -> list[Node]:
+    """ "hand out the flyers to everybody": not all of them to each, but one."""
+    people = [part for part in several if part.production.rule in PEOPLE]
+    things = [part for part in several if OVER[part.means] is over_things]
+    if not people or len(things) != 1:
+        return several
+    scene = d.scene()
+    thing: Thing = d.build(things[0])
+    d.set_scene(scene)
+    if thing.count is not None or "every" in things[0].production.fixed:
+        return several
+    d.bound[id(things[0])] = replace(thing, every=False, plural=False, pronoun=False)
+    return people
 
 
 def setting_of(node: Node) -> Node | None:

@@ -12,12 +12,14 @@ from grammar.doubts import NotUnderstood
 from grammar.meanings.answered import says_the_same
 from grammar.meanings.asking import Audience, asked, audience, put, remember_answer
 from grammar.meanings.descriptions import described
-from grammar.meanings.finding import go, speak_to
+from grammar.meanings.finding import go, speak_to, visits_only
+from grammar.meanings.holders import asks_who_has, says_having
 from grammar.meanings.options import (
     MOST_OPTIONS,
     names_people,
     numbers_offered,
     options_of,
+    place_at_end,
     places_asked_for,
     places_named,
     without_little_words,
@@ -58,6 +60,8 @@ def ask(d: Discourse, node: Node) -> Steps:
         person = Thing(Text(ANYONE), person=True, plural=True, here=True)  # "ask who wants tea"
     if person is None and asks_anybody(d, question):
         person = Thing(Text(ANYONE), person=True, plural=True, here=True)
+    if person is None:
+        person = just_visited(d)
     if person is not None and person.coming:
         going = go(d, person.place) if person.place is not None else []
         waiting = Call("wait_for", {"thing": person.value})
@@ -76,6 +80,17 @@ def asks_anybody(d: Discourse, question: Leaf | Node | None) -> bool:
     anybody = set(d.language.speech.get("somebody_else", ()))
     said = set() if asked is None else set(d.norms(asked.start, asked.end))
     return bool(anybody & said) and d.with_person is None
+
+
+def just_visited(d: Discourse) -> Thing | None:
+    """Those who were gone to one by one for nothing else: "go to Alice and Bob and ask if ..."."""
+    last = d.done[-1] if d.done else None
+    if not isinstance(last, ForEach) or not isinstance(last.items, Items):
+        return None
+    visits_only(d, last.items)
+    if d.done and d.done[-1] is last:
+        return None
+    return Thing(Text(ANYONE), person=True, plural=True, known=True, group=last.items)
 
 
 def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
@@ -221,7 +236,8 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
     if "options" in question.parts and not numbers and d.place != Recall(name):
         d.thing, d.thing_last = Thing(Recall(name)), False  # "what they want: tea or coffee"
     offer = bool(question.production.fixed.get("offer"))  # "offer him a coffee"
-    if rest is None or not (offer or {"verb", "aux"} & question.parts.keys()):
+    having = rest is not None and says_having(d, rest.start)  # "whether they have got a pen"
+    if rest is None or not (offer or having or {"verb", "aux"} & question.parts.keys()):
         return
     last = next((at for at in reversed(range(rest.start, rest.end)) if d.tokens[at].value), None)
     if options and last is not None and all(each.isdigit() for each in options):
@@ -237,10 +253,27 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
             start += 1
         if not yes_no and d.place != Recall(name):
             d.thing, d.thing_last = Thing(Recall(name)), False
-        elif yes_no and 0 < end - start <= LONGEST_OFFERED and not names_people(d, start, end):
-            what = d.noun_words(start, end)
-            d.thing = Thing(Text(what), noun=head_word(what, d.language))
+        elif yes_no and not names_people(d, start, end):
+            d.thing = asked_about(d, start, end)
             d.thing_last = False
+            if d.thing is not None and isinstance(d.thing.value, Text):
+                asks_who_has(d, question, d.thing.value)
+
+
+def asked_about(d: Discourse, start: int, end: int) -> Thing | None:
+    """The thing that some words of a question speak of, and where it is said to be."""
+    if set(d.norms(start, end)) <= d.language.words_called("it"):
+        return d.thing
+    place, last = None, end
+    for at in range(start + 1, end):
+        if d.tokens[at].norm in d.language.words_called("after_options"):
+            name = place_at_end(d, at + 1, end)
+            place, last = (None, end) if name is None else (Text(name), at)
+            break
+    if not 0 < last - start <= LONGEST_OFFERED:
+        return d.thing
+    what = d.noun_words(start, last)
+    return Thing(Text(what), place, noun=head_word(what, d.language))
 
 
 @meaning("question")
@@ -291,7 +324,7 @@ def question(d: Discourse, node: Node) -> str:
         values["rest"] = f"{values['rest']} {particle}"
     rest = node.parts.get("rest")
     it = rest is not None and set(d.norms(rest.start, rest.end)) <= d.language.words_called("it")
-    if it and d.surveys and d.thing is not None and d.thing.text:
+    if it and d.thing is not None and d.thing.text:
         values["rest"] = the(d.called(d.thing.text), d.language)  # who is asked did not hear of it
     form = form if values["rest"].strip() else form.replace(" {rest},", ",")
     text = " ".join(form.format_map(values).split())

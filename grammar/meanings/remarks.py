@@ -20,7 +20,7 @@ from grammar.freetext import words_for
 from grammar.meanings.genders import gender_of_thing
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report
-from grammar.meanings.sources import told_where
+from grammar.meanings.sources import all_there_are, told_where
 from grammar.meanings.speaking import sentence_form
 from grammar.plan import Ask, Call, Text, Value
 from grammar.tidy import replaced
@@ -138,7 +138,8 @@ def remark_where(d: Discourse, node: Node) -> Steps:
     else:
         what = thing or d.thing
         if isinstance(what, Thing):  # of several, each is where it is
-            d.thing, d.thing_last = replace(what, place=place, furniture=spot.furniture), True
+            there = replace(what, place=place, furniture=spot.furniture)
+            d.thing, d.thing_last = all_there_are(there), True
             told_where(d, d.thing)
             known_to_be(d, what.value, place)
     return aside(d, node)

@@ -80,6 +80,13 @@ def searched(step: Step | None) -> Condition | None:
     return search.found if told else None
 
 
+def only_told_missing(step: If) -> bool:
+    """Whether nothing is done where a search was in vain but to come back and say so."""
+    methods = [each.method for each in step.otherwise if isinstance(each, Call)]
+    told = len(methods) == len(step.otherwise) and methods[-1:] == ["say"]
+    return told and set(methods) <= {"goto", "say"} and bool(searches(step.condition))
+
+
 def searches(condition: Condition) -> list[Ask]:
     """The searches that a condition consists of; none if there is anything else in it."""
     if isinstance(condition, Either):

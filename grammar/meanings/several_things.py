@@ -11,6 +11,7 @@ from grammar.chart import Node
 from grammar.discourse import START, Discourse, Steps, Thing
 from grammar.doubts import Ambiguous, NotUnderstood
 from grammar.meanings.chosen import by_choice, chosen_of
+from grammar.meanings.deliveries import inside
 from grammar.meanings.finding import found, named, not_found
 from grammar.meanings.one_round import One, round_of_steps
 from grammar.meanings.sources import where_told
@@ -43,6 +44,8 @@ HANDED: Final = frozenset({"bring", "grab", "put"})
 
 def over_things(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
     """ "two cups", "all the cups in the kitchen": one after the other, for the hand holds one."""
+    if is_there_already(d, node, d.done[-1] if d.done else None):
+        return []
     around = take_back(d) if node.means != "thing" else None
     if thing.place is None and d.taken_from is not None:
         thing = replace(thing, place=d.taken_from.place, furniture=d.taken_from.furniture)
@@ -160,17 +163,42 @@ def moves_nothing(body: Steps) -> bool:
 def take_back(d: Discourse) -> ForEach | None:
     """ "collect the cups in the ward and take them to the kitchen": straight there, and not first
     to who says so. The round of places in which they were to be fetched, if there was one."""
-    last = d.done[-1] if d.done else None
+    at = len(d.done) - 1
+    while at >= 0 and goes(d.done[at]):
+        at -= 1
+    last = d.done[at] if at >= 0 else None
     around = last if isinstance(last, ForEach) and last.steps else None
     inner = last if around is None else around.steps[-1]
     if d.delivered_in is not None and inner is d.delivered_in:
-        d.done.pop()
+        del d.done[at]
         d.delivered_in = d.delivered = None
         return around
     if d.listed_last and d.done[-len(d.listed_last) :] == d.listed_last:
         del d.done[-len(d.listed_last) :]  # "find three cups in the ward and bring them here"
         d.listed_last = []
     return None
+
+
+def begun_before(d: Discourse) -> Thing | None:
+    """Several things that were to be fetched, before it was said for whom."""
+    several = d.thing if d.thing is not None and d.thing.several else None
+    if several is not None:
+        take_back(d)
+        d.collected = d.holding = None
+    return several
+
+
+def goes(step: Step) -> bool:
+    return isinstance(step, Call) and step.method == "goto"
+
+
+def is_there_already(d: Discourse, node: Node, last: Step | None) -> bool:
+    """ "the boxes belong in the store, take them there": whether that has been done."""
+    there = any(each.means == "place_there" for each in inside(node.parts.get("where")))
+    there = there or bool(node.production.fixed.get("there"))
+    ends = getattr(last, "steps", ())
+    put = ends[-1] if ends else None
+    return there and isinstance(put, Call) and put.method == "put" and "from" not in node.parts
 
 
 def where_from(d: Discourse, node: Node, thing: Thing) -> Ambiguous:

@@ -15,7 +15,7 @@ from grammar.doubts import NotUnderstood
 from grammar.meanings.carrying import deliver
 from grammar.meanings.nouns import spoken_of
 from grammar.meanings.registry import meaning
-from grammar.meanings.several_things import take_back
+from grammar.meanings.several_things import begun_before
 from grammar.meanings.sources import where_told
 from grammar.plan import Items
 
@@ -31,9 +31,11 @@ class Share:
 @meaning("one_more")
 def one_more(d: Discourse, node: Node) -> Thing:
     """ "one", "the other one": of what was spoken of, where that is taken from."""
-    return replace(
+    one = replace(
         spoken_of(d, node), count=None, every=False, plural=False, here=False, pronoun=False
     )
+    spot: Where | None = d.get(node, "where")
+    return one if spot is None else replace(one, place=spot.place, furniture=spot.furniture)
 
 
 @meaning("several_of")
@@ -102,15 +104,6 @@ def shares_in(d: Discourse, node: Node) -> list[Share]:
         found.append(d.build(each.parts["first"]))
         each = each.parts.get("rest")
     return found
-
-
-def begun_before(d: Discourse) -> Thing | None:
-    """Several things that were to be fetched, before it was said for whom."""
-    several = d.thing if d.thing is not None and d.thing.several else None
-    if several is not None:
-        take_back(d)
-        d.collected = d.holding = None
-    return several
 
 
 def shared_out(

@@ -48,6 +48,12 @@ def told_where(d: Discourse, thing: Thing) -> None:
         d.done.extend(made_anew(d, fetching, source))
 
 
+def all_there_are(thing: Thing) -> Thing:
+    """Several things that are said to be somewhere: "them" are all of them."""
+    several = thing.plural and not thing.person and thing.count is None
+    return replace(thing, every=True) if several else thing
+
+
 def where_told(d: Discourse, thing: Thing) -> Thing:
     """A thing that is to be fetched, with the place where such a thing is said to be."""
     said_of_it = thing.place is not None or thing.furniture is not None or thing.here

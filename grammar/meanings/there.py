@@ -16,7 +16,12 @@ from grammar.meanings.news import in_round
 from grammar.meanings.places import own_place, owner_of, sought
 from grammar.meanings.polls import counted as counted_answers
 from grammar.meanings.registry import meaning
-from grammar.meanings.searches import just_awaited, just_looked_for, searches
+from grammar.meanings.searches import (
+    just_awaited,
+    just_looked_for,
+    only_told_missing,
+    searches,
+)
 from grammar.meanings.surveys import Survey, asked_before, asked_yet, of_one_question
 from grammar.plan import (
     Ask,
@@ -26,6 +31,7 @@ from grammar.plan import (
     Condition,
     Either,
     Holds,
+    If,
     Items,
     Not,
     Number,
@@ -73,6 +79,10 @@ def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
     brought = delivered_last(d)
     if said_there and brought is not None and thing.person and thing.place is None:
         thing = replace(thing, place=own_place(d, thing))
+    if thing.pronoun and node.production.fixed.get("no") and met_before(d, thing):
+        again = just_branched(d, no=True)  # "if you find it, bring it. If it is not there, ..."
+        if again is not None:
+            return again
     if isinstance(thing.group, Items):
         result = _each_of_them(d, node, thing.group.items, search)
     else:
@@ -114,6 +124,29 @@ def _is_doing(d: Discourse, node: Node, thing: Thing) -> Condition | None:
     there = is_there(d, thing, search=True)
     d.met = None
     return Both((there, seen))
+
+
+def met_before(d: Discourse, thing: Thing) -> bool:
+    """Whether the condition before was about the same."""
+    before = d.branched
+    return before is not None and before.met is not None and before.met.thing.value == thing.value
+
+
+def just_branched(d: Discourse, no: bool) -> Condition | None:
+    """ "If she isn't there, come back. If she is, ask her ...": the other case of that."""
+    before = d.branched
+    step = before.step if before is not None else None
+    if before is None or before.met is None or not isinstance(step, If):
+        return None
+    if step.otherwise and not only_told_missing(step):
+        return None
+    if before.answer != d.answer or not d.done or d.done[-1] is not step:
+        return None
+    if before.met.holds is not no:  # the same case again says something else
+        return None
+    d.set_scene(before.scene)
+    d.met = replace(before.met, holds=not no)
+    return negated(step.condition)
 
 
 def is_there(d: Discourse, thing: Thing, search: bool = False) -> Condition:

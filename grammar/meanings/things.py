@@ -19,6 +19,7 @@ from grammar.meanings.finding import (
     speak_to,
     where_sent,
 )
+from grammar.meanings.holders import take_from_holder
 from grammar.meanings.nouns import thing_it
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import home_of, kind_places, piece_called, place_there, sought
@@ -26,7 +27,7 @@ from grammar.meanings.registry import meaning
 from grammar.meanings.remarks import fetched_there, known_to_be, mislaid
 from grammar.meanings.reports import Report, found_out
 from grammar.meanings.sights import best_there, which_there
-from grammar.meanings.sources import told_where
+from grammar.meanings.sources import all_there_are, told_where
 from grammar.meanings.speaking import sentence_form
 from grammar.plan import Call, ForEach, Items, Recall, Step, Text, Value
 from grammar.tidy import nodes
@@ -97,6 +98,8 @@ def grab(d: Discourse, node: Node) -> Steps:
         return deliver(d, thing, None, None) if fetched else pick_up(d, thing)
     if isinstance(d.meant_for, Delivery):  # "if there is none, take a banana"
         return deliver(d, thing, d.meant_for.person, d.meant_for.spot)
+    if take_from_holder(d, thing):
+        return []
     d.holding = thing.value
     d.thing, d.thing_last = thing, True
     return [Call("grab", {"thing": sought(d, thing)})]
@@ -138,7 +141,8 @@ def put(d: Discourse, node: Node) -> Steps:
     just_put = isinstance(last, Call) and last.method == "put"
     if node.production.fixed.get("there") and thing.pronoun and just_put:
         return []  # "the cup belongs on the shelf, put it there"
-    if isinstance(last, Call) and last == Call("put", {"thing": thing.value}):
+    another = thing.place is not None and not thing.pronoun
+    if last == Call("put", {"thing": thing.value}) and not another:
         d.done.pop()  # "carry it to the ward and put it on the table": put down once
         d.holding = thing.value
     if node.production.fixed.get("brought") and d.delivered == thing.value and given_last(d):
@@ -364,6 +368,7 @@ def statement(d: Discourse, node: Node) -> Steps:
         thing = described(d, thing.text, node)
     if spot is not None:
         thing = replace(thing, place=spot.place, furniture=spot.furniture)
+    thing = all_there_are(thing)
     if thing.place is None and not thing.known and isinstance(d.at, Text):
         thing = replace(thing, place=d.at)  # "go to the hall, there is a woman"
     if thing.place is not None:

@@ -13,7 +13,7 @@ from typing import Any
 import msgspec
 
 from grammar.chart import Node
-from grammar.discourse import ANYONE, START, Discourse, Steps, Thing
+from grammar.discourse import ANYONE, START, Branched, Discourse, Meeting, Steps, Thing
 from grammar.meanings.asking import asked, remember_answer
 from grammar.meanings.descriptions import described
 from grammar.meanings.finding import go
@@ -147,12 +147,20 @@ def when_found(d: Discourse, node: Node) -> Steps:
     node = with_else(node)
     if search is not None and "otherwise" in node.parts:
         return if_found_so(d, node, search)
+    start = d.scene()
     then: Steps = d.build(node.parts["then"])
     takes = bool(then) and isinstance(then[0], Call) and then[0].method == "grab"
-    if search is not None and isinstance(last, If) and not takes:
-        d.done.pop()
-        return [If(search.found, tuple(then), tuple(search.missing))]
-    return then
+    if search is None or not isinstance(last, If):
+        return then
+    d.done.pop()
+    from grammar.meanings.control import in_vain
+
+    missing = in_vain(search, then) if takes else tuple(search.missing)
+    whole = If(search.found, tuple(then), missing)
+    if d.thing is not None and d.thing_last:
+        met = Meeting(replace(d.thing, here=False, pronoun=False), sought=True)
+        d.branched = Branched(whole, start, met, d.answer)
+    return [whole]
 
 
 def waited_for(d: Discourse, node: Node) -> Steps:
