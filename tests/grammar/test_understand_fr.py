@@ -206,7 +206,7 @@ def test_order_loops_and_questions(sentence: str, meaning: str) -> None:
         ("cherche l'agrafeuse et donne-la à Bob", "donner l'agrafeuse à Bob"),
         ("tourne à droite", "Je vais tourner à droite de 90 degrés."),
         ("si tu vois une infirmière, dis bonjour", "Si je vois une infirmière, je vais dire"),
-        ("si personne n'est là, fais coucou", "Si je ne vois pas de personne, je vais"),
+        ("si personne n'est là, fais coucou", "Si je ne vois personne, je vais"),
         ("avance de 2,5 mètres", "avancer tout droit de 2,5 mètres"),
         ("dis « de le » et va à la cuisine", "dire « de le »"),
     ],
