@@ -14,9 +14,11 @@ from collections.abc import Collection, Iterator
 from dataclasses import replace
 from typing import Final
 
+from grammar.freetext import words_for
 from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.names import names_of
+from grammar.refusals import signs
 from grammar.tokens import Token
 
 SHORTEST_JOINED: Final = 4
@@ -75,15 +77,18 @@ def _in_plain_form(
     which ending, the language's data say. Only what is then a word that a command can begin with is
     taken for a verb."""
     data = language.speech.get("gerunds", {"after": (), "joins": (), "ending": "-"})
-    after, joins, ending = set(data["after"]), set(data["joins"]), str(data["ending"])
+    joins, ending = set(data["joins"]), str(data["ending"])
+    after = {tuple(str(words).split()) for words in data["after"]}  # "on", "feel like"
     rooms = data.get("rooms", ())  # "go to meeting room" is about no meeting of a room
     counted = data.get("counted", ())  # "the number of waving people" are those who wave
     earlier = False
     for at, token in enumerate(tokens):
-        before = tokens[at - 1].norm if at else ""
+        last_two = tuple(each.norm for each in tokens[max(0, at - 2) : at])
+        before = last_two[-1] if last_two else ""
         named = at + 1 < len(tokens) and tokens[at + 1].norm in rooms
         number = at > 1 and tokens[at - 2].norm in counted
-        called_for = (before in after and not number) or (earlier and before in joins)
+        asked_for = last_two[-1:] in after or last_two in after
+        called_for = (asked_for and not number) or (earlier and before in joins)
         verb = None
         if token.norm.endswith(ending) and called_for and not named:
             verb = next(
@@ -128,6 +133,54 @@ def fillers_by_first(language: Language) -> dict[str, list[tuple[str, ...]]]:
     for filler in language.fillers:
         fillers.setdefault(filler[0], []).append(filler)
     return fillers
+
+
+def spellings(
+    tokens: tuple[Token, ...], language: Language, lexicon: Lexicon
+) -> dict[int, tuple[str, ...]]:
+    """What words may be misspellings of: unknown ones of a word that is one small slip away, and
+    little ones of each other where the language says so ("form" for "from")."""
+    known = (
+        language.words,
+        names_of(language, lexicon).words,
+        language.closed,
+        signs(language),
+        words_for(language).verbs,  # what the robot cannot do is no slip
+    )
+    confused = language.speech.get("confused", {})
+    found: dict[int, tuple[str, ...]] = {}
+    for at, token in enumerate(tokens):
+        if token.kind != "word":
+            continue
+        if token.norm in confused:
+            found[at] = tuple(confused[token.norm])
+        elif not any(token.norm in words for words in known):
+            short = len(token.norm) < SHORTEST_CORRECTED
+            near = (
+                misspelt_little(token.norm, language, lexicon)
+                if short
+                else misspelt(token.norm, language, lexicon)
+            )
+            if near:
+                found[at] = near
+    return found
+
+
+@functools.lru_cache(maxsize=2048)
+def misspelt_little(word: str, language: Language, lexicon: Lexicon) -> tuple[str, ...]:
+    """Function words that a short one is with two letters swapped ("yuo"), or of three letters
+    those, or words of names, with one left out ("frm", "rom")."""
+    swapped = {word[:at] + word[at + 1] + word[at] + word[at + 2 :] for at in range(len(word) - 1)}
+    near = [each for each in sorted(language.closed) if each in swapped]
+    if len(word) == SHORTEST_CORRECTED - 1:
+        near += [
+            each
+            for each in sorted(language.closed | names_of(language, lexicon).words)
+            if len(each) == len(word) + 1
+            and each[0] == word[0]
+            and any(each[:at] + each[at + 1 :] == word for at in range(1, len(each)))
+        ]
+    return tuple(near[:3])
 
 
 @functools.lru_cache(maxsize=2048)

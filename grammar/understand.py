@@ -15,7 +15,7 @@ from dataclasses import replace
 from typing import Final
 
 from grammar.accounts import in_manner, left_out, unheeded, unspoken
-from grammar.chart import Chart, Node, Slot, TooMuch
+from grammar.chart import CORRECTION, Chart, Node, Slot, TooMuch
 from grammar.discourse import Discourse
 from grammar.doubts import Ambiguous, NotUnderstood
 from grammar.freetext import Doubt, doubtful, words_for
@@ -31,12 +31,11 @@ from grammar.refusals import (
     is_half,
     no_thing,
     out_of_range,
-    signs,
     strange,
     why_not,
 )
 from grammar.requests import Request
-from grammar.slips import SHORTEST_CORRECTED, fillers_by_first, mended, misspelt, perfects
+from grammar.slips import fillers_by_first, mended, perfects, spellings
 from grammar.slots import Slots, command_words
 from grammar.speech import speech
 from grammar.tidy import Unbound, charging_last, is_one_of_each, returning, scoped, without_unused
@@ -60,7 +59,7 @@ def understand(
 ) -> Understanding:
     """Understand a sentence. Never raises for any text; `UnknownLanguage` for a language that
     there is no folder for."""
-    from grammar import conversation
+    from grammar import repairs
 
     pack = load_language(language)
     context = context or Context()
@@ -68,7 +67,7 @@ def understand(
         return rejected(text, pack.phrase("empty"), context)
     if len(text) > LONGEST_TEXT or len(text.split()) > MOST_WORDS:
         return rejected(text, pack.phrase("too_long"), context)
-    return conversation.understood(text, lexicon, pack, context)
+    return repairs.understood(text, lexicon, pack, context)
 
 
 class Reader:
@@ -83,8 +82,8 @@ class Reader:
         known = language.words | self.names.words | language.closed
         commands = command_words(language)
         self.tokens = mended(tokenise(text, language.spelling), language, known, commands)
+        self.corrections = spellings(self.tokens, language, lexicon)
         self.skips = self._skips()
-        self.corrections = self._corrections()
         self.forms = dict(perfects(self.tokens, language, commands))
 
     def understand(self) -> Understanding:
@@ -290,33 +289,16 @@ class Reader:
         skips: dict[int, list[tuple[int, float]]] = {}
         words = [token.norm for token in self.tokens]
         for at, token in enumerate(self.tokens):
-            said_twice = at > 0 and words[at - 1] == token.norm and token.kind == "word"
+            said_twice = words[max(0, at - 2) : at].count(token.norm) == 1 and token.kind == "word"
+            said_twice = said_twice and words[at - 1] == token.norm
             if token.norm == COMMA or said_twice:
                 skips.setdefault(at, []).append((at + 1, COMMA_PASSED_OVER))
             for filler in fillers_by_first(self.language).get(token.norm, ()):
                 if tuple(words[at : at + len(filler)]) == filler:
                     skips.setdefault(at, []).append((at + len(filler), FILLER_PASSED_OVER))
+            if any((other,) in self.language.fillers for other in self.corrections.get(at, ())):
+                skips.setdefault(at, []).append((at + 1, CORRECTION))  # "pleas"
         return skips
-
-    def _corrections(self) -> dict[int, tuple[str, ...]]:
-        """What unknown words may be misspellings of."""
-        corrections: dict[int, tuple[str, ...]] = {}
-        known = (
-            self.language.words,
-            self.names.words,
-            self.language.closed,
-            signs(self.language),
-            words_for(self.language).verbs,  # what the robot cannot do is no slip
-        )
-        for at, token in enumerate(self.tokens):
-            if token.kind != "word" or len(token.norm) < SHORTEST_CORRECTED:
-                continue
-            if any(token.norm in words for words in known):
-                continue
-            found = misspelt(token.norm, self.language, self.lexicon)
-            if found:
-                corrections[at] = found
-        return corrections
 
     # --- after parsing
 

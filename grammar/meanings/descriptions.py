@@ -59,6 +59,13 @@ def descriptor_fixed(d: Discourse, node: Node) -> str:
     return f"{SUPERLATIVE}{node.production.fixed['what']}"
 
 
+@meaning("wanted_by")
+def wanted_by(d: Discourse, node: Node) -> str:
+    """ "the stapler that Clara needs": nothing that can be seen, but whom "her" means then."""
+    d.build(node.parts["person_ref"])
+    return ""
+
+
 @meaning("worn")
 def worn(d: Discourse, node: Node) -> str:
     """ "in a red shirt", "in white": what somebody wears. Anything else is no place we know."""

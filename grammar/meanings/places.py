@@ -348,6 +348,26 @@ def piece_called(d: Discourse, furniture: str) -> str:
     return furniture if furniture in pieces or len(pieces) != 1 else pieces.pop()
 
 
+def extraposed(d: Discourse, part: Leaf | Node | None) -> tuple[Where, Where] | None:
+    """ "put the comb on the table that is in the bathtub": where the comb goes and where it is, if
+    the furniture that it goes to stands elsewhere by all that is known."""
+    spot = part.parts.get("spot", part) if isinstance(part, Node) else None
+    if not isinstance(spot, Node) or "furniture" not in spot.parts:
+        return None
+    source = Where(d.get(spot, "place_at"))
+    if "beside" in spot.parts:
+        beside = piece_called(d, d.get(spot, "beside"))
+        words = d.norms(spot.parts["furniture"].end, spot.parts["beside"].start)
+        stands = d.language.speech.get("stands", {})
+        how = next((stands[word] for word in words if word in stands), "")
+        source = Where(home_of(d, beside), beside, preposition=how)
+    furniture = piece_called(d, d.get(spot, "furniture"))
+    homes = {each.inside for each in d.lexicon.furniture if each.name == furniture and each.inside}
+    if not isinstance(source.place, Text) or not homes or source.place.value in homes:
+        return None
+    return Where(home_of(d, furniture), furniture), source
+
+
 @meaning("where_it")
 def where_it(d: Discourse, node: Node) -> Where:
     """ "go to the shelf and put the cup on it"."""

@@ -190,7 +190,7 @@ def best_of(d: Discourse, node: Node) -> Report:
             thing, place=thing.place or more.place, furniture=thing.furniture or more.furniture
         )
     found = best_there(d, thing)
-    d.thing, d.thing_last = replace(thing, here=True), True
+    d.thing, d.thing_last = replace(thing, here=thing.place is None), True
     return found
 
 

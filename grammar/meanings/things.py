@@ -22,7 +22,14 @@ from grammar.meanings.finding import (
 from grammar.meanings.holders import take_from_holder
 from grammar.meanings.nouns import thing_it
 from grammar.meanings.persons import is_me
-from grammar.meanings.places import home_of, kind_places, piece_called, place_there, sought
+from grammar.meanings.places import (
+    extraposed,
+    home_of,
+    kind_places,
+    piece_called,
+    place_there,
+    sought,
+)
 from grammar.meanings.registry import meaning
 from grammar.meanings.remarks import fetched_there, known_to_be, mislaid
 from grammar.meanings.reports import Report, found_out
@@ -124,6 +131,8 @@ def fetch_from(d: Discourse, node: Node) -> Steps:
 @meaning("put")
 def put(d: Discourse, node: Node) -> Steps:
     """ "put the cup on the table", "... in the kitchen", "... down"."""
+    where = node.parts.get("where")
+    on_it = where_gone_to(d, node)
     thing: Thing = d.get(node, "thing") or thing_it(d, node)
     if thing.person and thing.known:  # "otherwise put it there", where only Bob was spoken of
         words = d.words(node.start, node.end)
@@ -134,7 +143,10 @@ def put(d: Discourse, node: Node) -> Steps:
         thing = replace(thing, place=source.place, furniture=source.furniture)
     if source is not None and node.parts["from"].start > node.parts.get("where", node).start:
         d.place = there
-    spot: Where = d.get(node, "where") or Where()
+    spot: Where = on_it or d.get(node, "where") or Where()
+    stray = extraposed(d, where) if thing.place is None else None
+    if stray is not None:
+        spot, thing = stray[0], located_at(thing, stray[1])
     if node.production.fixed.get("there") and (d.place is not None or not d.done):
         spot = Where(place_there(d, node))
     last = d.done[-1] if d.done else None
@@ -157,6 +169,31 @@ def put(d: Discourse, node: Node) -> Steps:
     if d.holding != thing.value and spot == Where() and not elsewhere:
         return [Call("put", {"thing": thing.value})]
     return deliver(d, thing, None, spot)
+
+
+def located_at(thing: Thing, spot: Where) -> Thing:
+    """The thing, where it is said to be."""
+    return replace(thing, place=spot.place, furniture=spot.furniture, preposition=spot.preposition)
+
+
+def where_gone_to(d: Discourse, node: Node) -> Where | None:
+    """ "go to the table and put the cup on it": where it goes. It is not there yet, so it has to be
+    looked for before anybody goes there."""
+    where, thing = node.parts.get("where"), node.parts.get("thing")
+    last = d.done[-1] if d.done else None
+    if (
+        not isinstance(where, Node)
+        or where.means != "where_it"
+        or not (isinstance(thing, Node) and thing.means == "thing")
+        or not (isinstance(last, Call) and last.method == "goto")
+        or last.arguments.get("place") != d.at
+        or d.holding is not None
+    ):
+        return None
+    spot: Where = d.build(where)
+    d.done.pop()
+    d.at = d.at_furniture = None
+    return spot
 
 
 def was_moved(d: Discourse, thing: Thing) -> bool:
@@ -398,6 +435,9 @@ def scan(d: Discourse, node: Node) -> Steps:
         steps = meet(d, person)
     elif thing is not None and not thing.here and not thing.pronoun:
         steps = look_for(d, thing)
+    elif thing is not None and thing.here:  # the code is what counts, whatever it is on
+        part = node.parts["thing"]
+        d.resolved.update(range(part.start, part.end))
     d.code = d.variable("code")
     d.answer = d.report = None
     return [*steps, Call("scan", {}, save_as=d.code)]

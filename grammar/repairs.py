@@ -1,0 +1,151 @@
+"""What somebody takes back while still speaking: "bring Bob the blue cup, no, the red one".
+
+Behind such a word stands what is meant instead, and before it, as its last part, what that takes
+the place of: a person for a person, a place for a place, "to Bob" for "to Alice". Where it is not
+the last part ("bring the cup to Bob, no, the plate"), the sentence so far is taken as a command and
+the rest as a change to it, as in a conversation. The outcome is a whole sentence, understood anew.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator
+from typing import Final
+
+from grammar import conversation
+from grammar.accounts import TEXTS
+from grammar.chart import TooMuch
+from grammar.language import Language
+from grammar.lexicon import Lexicon
+from grammar.pieces import Piece, is_pieces, leading, leaves, pieces_at
+from grammar.understand import Reader
+from grammar.understanding import Context, Understanding
+
+MOST_REPAIRS: Final = 3
+"""Times that somebody puts themselves right in one sentence."""
+MOST_TRIED: Final = 6
+
+
+def understood(
+    text: str, lexicon: Lexicon, language: Language, context: Context, depth: int = 0
+) -> Understanding:
+    """Understand a sentence of a conversation, as it was put right in the end."""
+    reader = Reader(text, lexicon, language, context)
+    for start, end in taken_back(reader) if depth < MOST_REPAIRS else ():
+        before = Reader(reader.words(0, start), lexicon, language, context)
+        behind = Reader(reader.text[reader.tokens[end].start :], lexicon, language, context)
+        for tried, fixed in enumerate(_in_its_place(before, behind)):
+            if tried == MOST_TRIED:
+                break
+            result = understood(fixed, lexicon, language, context, depth + 1)
+            if result.plan is not None:
+                return result
+        changed = _as_a_change(before, behind, reader.words(start, end), context)
+        if changed is not None:
+            return changed
+    return conversation.understood(text, lexicon, language, context)
+
+
+def taken_back(reader: Reader) -> Iterator[tuple[int, int]]:
+    """Where words take back what stands before them, with the marks around them."""
+    tokens = reader.tokens
+    words = [token.norm for token in tokens]
+    at = 1
+    while at < len(tokens):
+        parted = tokens[at - 1].kind == "mark"
+        length = max(
+            (
+                len(each)
+                for each in _terms(reader.language, parted)
+                if each == tuple(words[at : at + len(each)])
+            ),
+            default=0,
+        )
+        start, end = at - parted, at + length
+        while end < len(tokens) and tokens[end].kind == "mark":
+            end += 1
+        if length and start and end < len(tokens) and not _said_aloud(reader, start, end):
+            yield start, end
+        at = max(end, at + 1) if length else at + 1
+
+
+@functools.cache
+def _terms(language: Language, parted: bool) -> frozenset[tuple[str, ...]]:
+    """Words that take something back; some do so only behind a comma."""
+    data = language.speech.get("taking_back", {})
+    listed = [*data.get("anywhere", ()), *(data.get("parted", ()) if parted else ())]
+    return frozenset(map(language.tokens_of, listed))
+
+
+def _said_aloud(reader: Reader, start: int, end: int) -> bool:
+    """Whether these words are a part of what is to be said: "tell Bob no, he must wait"."""
+    try:
+        tree = reader.chart().best("utterance")
+    except (TooMuch, RecursionError):
+        return False
+    return tree is not None and any(
+        leaf.slot in TEXTS and leaf.start <= start and end <= leaf.end for leaf in leaves(tree)
+    )
+
+
+def _in_its_place(before: Reader, behind: Reader) -> Iterator[str]:
+    """The sentence with its last part before the words replaced by the first one behind them."""
+    for new in _first_pieces(behind):
+        lead = leading(behind, new.start)
+        for old in _last_pieces(before):
+            if old.rule != new.rule:
+                continue
+            old_lead = leading(before, old.start)
+            first = old.start - (old_lead if lead else 0)
+            if not lead and _has_article(before, old) and not _has_article(behind, new):
+                first += 1  # "the blue, no, red cup": the article stays
+            kept = before.text[: before.tokens[first].start]
+            said, rest = behind.words(0, new.end), behind.text[behind.tokens[new.end - 1].end :]
+            yield f"{kept}{said}{rest.lstrip(' ,') if rest.startswith(',') else rest}"
+            if rest.startswith(","):
+                yield f"{kept}{said} {rest.lstrip(' ,')}"
+
+
+def _first_pieces(behind: Reader) -> list[Piece]:
+    """The parts that stand first, the longest before the others."""
+    starts = [at for at in range(min(4, behind.last_word)) if at == 0 or leading(behind, at) == at]
+    found = [piece for start in starts for piece in pieces_at(behind, start)]
+    return sorted(found, key=lambda piece: (not piece.known, -piece.end))
+
+
+def _last_pieces(before: Reader) -> list[Piece]:
+    """The parts that stand last, the shortest before the others."""
+    end = before.last_word
+    found = [
+        piece
+        for start in range(end - 1, -1, -1)
+        for piece in pieces_at(before, start)
+        if piece.end == end
+    ]
+    return sorted(found, key=lambda piece: (not piece.known, piece.end - piece.start))
+
+
+def _has_article(reader: Reader, piece: Piece) -> bool:
+    """Whether a part of several words begins with a little one."""
+    return piece.end - piece.start > 1 and reader.is_little(range(piece.start, piece.start + 1))
+
+
+def _as_a_change(
+    before: Reader, behind: Reader, words: str, context: Context
+) -> Understanding | None:
+    """What stands behind as a change to the command before, with what goes on behind it."""
+    end = next(
+        (at for at, token in enumerate(behind.tokens) if token.kind == "mark"), behind.last_word
+    )
+    change = behind.words(0, end)
+    parts = Reader(change, behind.lexicon, behind.language, context)
+    if not parts.tokens or not is_pieces(parts):
+        return None
+    rest = behind.text[behind.tokens[end - 1].end :]
+    first = conversation.understood(before.text + rest, before.lexicon, before.language, context)
+    if first.plan is None:
+        return None
+    changed = conversation.understood(
+        f"{words.strip(' ,.')} {change}", before.lexicon, before.language, first.context
+    )
+    return changed if changed.plan is not None else None
