@@ -64,11 +64,16 @@ def _times_told(method: str, explanation: str, language: str) -> int:
     spans: set[int] = set()
     for pattern in _patterns(words):
         pieces = [_LITTLE.sub("", _plain(piece)) for piece in _GAP.split(pattern)]
-        skeleton = ".*?".join(re.escape(piece) for piece in pieces if piece)
+        skeleton = ".*?".join(_either(piece) for piece in pieces if piece)
         if skeleton:
             found = re.finditer(rf"\b(?={skeleton})", _plain(explanation))
             spans |= {each.start() for each in found}
     return len(spans)
+
+
+def _either(piece: str) -> str:
+    """A piece of a pattern, or one of the two prepositions that it leaves open: "sur ou dans"."""
+    return re.sub(r"(\w+)\\ ou\\ (\w+)", r"(?:\1\\ ou\\ \2|\1|\2)", re.escape(piece))
 
 
 def _patterns(words: Words) -> Iterator[str]:
