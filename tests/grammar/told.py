@@ -53,7 +53,9 @@ def untold(
         for text in _texts(call):
             name = called(text)
             stems = {each[:STEM] for each in _plain(name).split() if len(each) >= STEM}
+            tongue = speech(language).languages.get(text)  # "de" is told as "German"
             ways = (text,) if spoken else (text, name, many(name), *stems)
+            ways = ways if tongue is None else (*ways, tongue)
             if not any(_plain(way) in said for way in ways):
                 missing.append(text)
     return missing
