@@ -7,6 +7,7 @@ from dataclasses import replace
 from grammar.chart import Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
+from grammar.freetext import words_for
 from grammar.meanings.carrying import deliver, pick_up, take_back_delivery
 from grammar.meanings.chosen import handed_already
 from grammar.meanings.deliveries import Delivery, meant_for
@@ -37,6 +38,7 @@ from grammar.meanings.sights import best_there, which_there
 from grammar.meanings.sources import all_there_are, told_where
 from grammar.meanings.speaking import sentence_form
 from grammar.plan import Call, ForEach, Items, Recall, Step, Text, Value
+from grammar.slots import command_words
 from grammar.tidy import nodes
 from grammar.wordforms import head_word, singular
 
@@ -361,6 +363,9 @@ def bring_too(d: Discourse, node: Node) -> Steps:
 
 def whole(d: Discourse, node: Node) -> bool:
     """Whether a command without a verb says from where and where to: "cup from here to there"."""
+    orders = command_words(d.language) | words_for(d.language).verbs
+    if d.tokens[node.start].norm in orders:  # "go from here to there"
+        return False
     thing: Thing = d.get(node, "thing")
     return not d.done and (thing.place is not None or thing.furniture is not None)
 
