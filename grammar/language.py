@@ -133,9 +133,11 @@ def load_language(code: str) -> Language:
     sources = [path.read_bytes() for path in files]
 
     def compile_language() -> Compiled:
+        contents = [_read(path, source) for path, source in zip(files, sources, strict=True)]
+        _no_name_twice(files, contents)
         data: dict[str, Any] = {}
-        for path, source in zip(files, sources, strict=True):
-            for key, value in _read(path, source).items():
+        for path, content in zip(files, contents, strict=True):
+            for key, value in content.items():
                 _merge(data, key, value, path)
         return _compiled(data)
 
@@ -190,6 +192,21 @@ _Loader.yaml_implicit_resolvers = {
     for letter, entries in _Loader.yaml_implicit_resolvers.items()
 }
 _Loader.add_implicit_resolver("tag:yaml.org,2002:bool", re.compile("true|false"), list("tf"))
+
+
+def _no_name_twice(files: list[Path], contents: list[dict[str, Any]]) -> None:
+    """Two files that call different things by one name would be merged in silence. A rule that is
+    meant to get entries from several files ("command", "thing") is listed under `extended`."""
+    extended = {rule for content in contents for rule in content.get("extended", ())}
+    home: dict[str, Path] = {}
+    for path, content in zip(files, contents, strict=True):
+        for rule in content.get("rules", ()):
+            if rule in home and rule not in extended:
+                raise RuleError(
+                    f"{path.name} and {home[rule].name} both have a rule {rule!r}: name one "
+                    "of them otherwise, or list it under 'extended' if both should add to it"
+                )
+            home[rule] = path
 
 
 def _merge(data: dict[str, Any], key: str, value: Any, path: Path) -> None:

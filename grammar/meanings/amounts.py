@@ -22,12 +22,6 @@ def quantity(d: Discourse, node: Node) -> float:
     return result
 
 
-@meaning("negative")
-def negative(d: Discourse, node: Node) -> float:
-    value: float = -d.get(node, "quantity")
-    return value
-
-
 @meaning("clock_time")
 def clock_time(d: Discourse, node: Node) -> str:
     """A time of day as "HH:MM"."""

@@ -104,8 +104,3 @@ def gesture(d: Discourse, node: Node) -> Steps:
 @meaning("skill")
 def skill(d: Discourse, node: Node) -> Steps:
     return [Call("do", {"skill": as_value(d.get(node, "skill"))})]
-
-
-@meaning("emotion_gesture")
-def emotion_gesture(d: Discourse, node: Node) -> Steps:
-    return [Call("emotion", {"name": as_value(d.get(node, "emotion"))})]

@@ -185,8 +185,8 @@ def settings(d: Discourse, node: Node) -> Settings:
 ANYWHERE: Final = frozenset(
     {
         *("say", "say_that", "said_with", "say_it", "phrase", "greet", "report", "ask", "listen"),
-        *("gesture", "emotion", "emotion_gesture", "skill", "joint_turn", "turn", "wait"),
-        *("show", "touch", "scan", "set_volume", "set_language", "dance"),
+        *("gesture", "emotion", "skill", "joint_turn", "turn", "wait"),
+        *("show", "touch", "scan", "set_volume", "set_language"),
     }
 )
 """Commands that are done wherever the robot is; others say themselves what a place is to them."""

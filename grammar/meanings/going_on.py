@@ -53,10 +53,10 @@ STAYS_OUTSIDE: Final = frozenset(
         *("news", "round_count", "compared"),
         *("come_back", "go", "go_places", "go_person", "go_find", "dock", "stop", "bring_too"),
         *("for_each_place", "for_each_place_such", "check_each_place"),
-        *("do_that_times", "do_that_again", "do_that_until", "do_that_while", "do_that_forever"),
+        *("do_that_times", "do_that_again"),
         *("skip_empty", "ended", "tour", "tour_goes_on", "look_now", "round_check"),
         *("same_for", "tell_that", "tell_me_that", "say_it", "reversed", "delayed", "bring_each"),
-        *("when", "repeat", "until", "while", "forever", "at_intervals", "corrected", "guide_list"),
+        *("when", "repeat", "until", "forever", "corrected", "guide_list"),
     }
 )
 """Clauses that do not belong to a round in the sentence before."""

@@ -119,14 +119,6 @@ def led_there(body: Steps, condition: Condition) -> Steps | None:
     return [*body[:-1], Call("follow", {**last.arguments, "to": sought_for["place"]})]
 
 
-@meaning("while")
-def while_(d: Discourse, node: Node) -> Steps:
-    looking, condition = condition_of(d, node)
-    meet_there(d, d.met)
-    body = d.build(node.parts["steps"])
-    return [*looking, While(condition, (*body, *looking))]
-
-
 # --- repeating
 
 
@@ -149,13 +141,6 @@ def so_often(d: Discourse, times: Leaf | Node, make: Callable[[], Steps]) -> Ste
         d.person = d.last_counted = who
         return [*held(body), Repeat(number, (Call("wait_for", {"thing": who.value}),))]
     return there_first([Repeat(number, tuple(body))])
-
-
-@meaning("at_intervals")
-def at_intervals(d: Discourse, node: Node) -> Steps:
-    """ "every ten minutes, ...": again and again, with a pause in between."""
-    seconds = as_value(d.get(node, "seconds"))
-    return [Forever((*d.build(node.parts["steps"]), Call("wait", {"seconds": seconds})))]
 
 
 @meaning("loop")

@@ -67,7 +67,7 @@ from grammar.plan import (
 from grammar.tidy import nodes
 from grammar.wordforms import singular
 
-LIST_PARTS: Final = frozenset({"more_names", "either_names", "more_things", "either_things"})
+LIST_PARTS: Final = frozenset({"more_names", "either_names", "more_things"})
 """Rules for the rest of a list, which is a part of the whole."""
 
 TOGETHER: Final = frozenset(

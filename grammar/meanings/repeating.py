@@ -21,11 +21,9 @@ from grammar.plan import (
     Number,
     Recall,
     Repeat,
-    RepeatUntil,
     Step,
     Text,
     Value,
-    While,
 )
 from grammar.tidy import nodes, replaced
 
@@ -72,23 +70,6 @@ def do_that_more(d: Discourse, node: Node) -> Steps:
 def do_that_again(d: Discourse, node: Node) -> Steps:
     """ "and again", "repeat that": once more."""
     return [Repeat(as_value(d.get(node, "times", 2)), all_before(d))]
-
-
-@meaning("do_that_until")
-def do_that_until(d: Discourse, node: Node) -> Steps:
-    looking, condition = condition_of(d, node)
-    return [RepeatUntil(condition, (*all_before(d), *looking))]
-
-
-@meaning("do_that_while")
-def do_that_while(d: Discourse, node: Node) -> Steps:
-    looking, condition = condition_of(d, node)
-    return [*looking, While(condition, (*all_before(d), *looking))]
-
-
-@meaning("do_that_forever")
-def do_that_forever(d: Discourse, node: Node) -> Steps:
-    return [Forever(all_before(d))]
 
 
 @meaning("same_for")

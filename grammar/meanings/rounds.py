@@ -228,7 +228,6 @@ def round_count(d: Discourse, node: Node) -> Steps:
     return steps
 
 
-@meaning("around_told")
 def counted_around(d: Discourse, node: Node) -> Told:
     """Going round for nothing but to count."""
     thing: Thing = d.get(node, "thing")
