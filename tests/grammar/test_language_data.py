@@ -1,0 +1,78 @@
+"""What keeps the folders of the languages tidy: nothing dead, and no name used twice by accident."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from grammar import language as language_module
+from grammar.discourse import SETTING
+from grammar.language import languages, load_language
+from grammar.meanings import MEANINGS
+from grammar.network import RuleError
+
+FOLDER = Path(language_module.__file__).parent / "languages"
+
+
+def sources(language: str) -> dict[str, str]:
+    return {path.stem: path.read_text(encoding="utf-8") for path in (FOLDER / language).glob("*")}
+
+
+def rules_of(source: str) -> list[str]:
+    """The names of the rules that a file writes down itself."""
+    _, found, rest = f"\n{source}".partition("\nrules:\n")
+    ours = re.split(r"\n(?=\w)", rest)[0] if found else ""
+    return re.findall(r"^  (\w+):", ours, re.MULTILINE)
+
+
+def test_every_meaning_is_used_by_some_language() -> None:
+    used = {
+        production.means or production.rule
+        for language in languages()
+        for production in load_language(language).network.productions
+    }
+    assert MEANINGS.keys() - used - {SETTING} == set()
+
+
+@pytest.mark.parametrize("language", languages())
+def test_every_rule_is_used_by_another(language: str) -> None:
+    files = sources(language)
+    everything = "\n".join(files.values())
+    written = {rule for source in files.values() for rule in rules_of(source)}
+    referred = set(re.findall(r"[<~](\w+)", everything))
+    assert written - referred == {"utterance"}
+
+
+@pytest.mark.parametrize("language", languages())
+def test_a_rule_that_is_said_to_be_extended_is(language: str) -> None:
+    control = sources(language)["control"]
+    extended = re.search(r"^extended:\n((?:  .*\n)+)", control, re.MULTILINE)
+    assert extended
+    files_with = Counter(rule for source in sources(language).values() for rule in rules_of(source))
+    assert [rule for rule in re.findall(r"\w+", extended[1]) if files_with[rule] < 2] == []
+
+
+def test_two_files_with_one_name_are_not_loaded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ward = tmp_path / "xx"
+    ward.mkdir()
+    (ward / "driving.yaml").write_text('rules:\n  way: "to the ward"\n')
+    (ward / "people.yaml").write_text('rules:\n  way: "by the lift"\n')
+    monkeypatch.setattr(language_module, "_FOLDER", tmp_path)
+    with pytest.raises(RuleError, match=r"people.yaml and driving.yaml both have a rule 'way'"):
+        load_language("xx")
+
+
+def test_a_name_that_a_file_has_twice_is_told_with_its_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ward = tmp_path / "xx"
+    ward.mkdir()
+    (ward / "driving.yaml").write_text('rules:\n  way: "to the ward"\n  way: "by the lift"\n')
+    monkeypatch.setattr(language_module, "_FOLDER", tmp_path)
+    with pytest.raises(RuleError, match=r"driving.yaml: 'way' stands twice in line 2"):
+        load_language("xx")
