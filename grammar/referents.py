@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from grammar.plan import Step, Text, Value
@@ -48,6 +48,11 @@ class Thing:
     def several(self) -> bool:
         """Whether it is to be done with one after the other."""
         return self.count is not None or self.every
+
+    @property
+    def single(self) -> Thing:
+        """One of them, whichever."""
+        return replace(self, count=None, every=False, plural=False, pronoun=False)
 
     @property
     def text(self) -> str:

@@ -22,9 +22,9 @@ from grammar.meanings.surveys import (
     Survey,
     asked_so_far,
     asked_without_end,
+    exchanged,
     in_loop,
     polled_before,
-    replacing,
 )
 from grammar.meanings.there import just_agreed, just_branched, seen_there
 from grammar.plan import (
@@ -35,7 +35,6 @@ from grammar.plan import (
     Condition,
     Either,
     ForEach,
-    Forever,
     Holds,
     If,
     Items,
@@ -150,11 +149,7 @@ def ask_openly(d: Discourse) -> None:
         return
     arguments = {name: each for name, each in last.call.arguments.items() if name != "options"}
     openly = Call(last.call.method, arguments, save_as=last.call.save_as)
-    d.done[:] = [
-        other
-        for each in d.done
-        for other in ([openly] if each is last.call else [replacing(each, last.call, [openly])])
-    ]
+    d.done[:] = exchanged(d.done, last.call, [openly])
     d.surveys = [
         replace(each, call=openly, options=()) if each is last else each for each in d.surveys
     ]
@@ -355,6 +350,5 @@ def unanswered(d: Discourse, node: Node) -> Condition:
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
     heard = Try((survey.call,), (Remember(name, Text("")),))
-    whole = replacing(Forever(tuple(d.done)), survey.call, [heard])
-    d.done[:] = whole.steps
+    d.done[:] = exchanged(d.done, survey.call, [heard])
     return Compare(Recall(name), "==", Text(""))

@@ -68,7 +68,6 @@ def reached(d: Discourse, node: Node) -> Condition:
 
     surveys = polled_before(d)
     said = d.get(node, "answer")
-
     wanted = None if said is None else Wanted((str(said),))
     d.said = wanted
     number = int(d.get(node, "count"))

@@ -41,8 +41,7 @@ def swap_owned(d: Discourse, node: Node) -> Steps:
     what: Thing = d.get(node, "thing")
     one: Thing = d.get(node, "first")
     other: Thing = d.get(node, "second")
-    single = replace(what, every=False, plural=False, pronoun=False, count=None)
-    first, second = (replace(single, place=own_place(d, each)) for each in (one, other))
+    first, second = (replace(what.single, place=own_place(d, each)) for each in (one, other))
     return swapped(d, node, first, second)
 
 
@@ -50,9 +49,8 @@ def swap_owned(d: Discourse, node: Node) -> Steps:
 def swap_between(d: Discourse, node: Node) -> Steps:
     """ "swap the plants in the library and in the lounge"."""
     what: Thing = d.get(node, "thing")
-    single = replace(what, every=False, plural=False, pronoun=False, count=None)
     places = (d.get(node, "one"), d.get(node, "other"))
-    first, second = (replace(single, place=place) for place in places)
+    first, second = (replace(what.single, place=place) for place in places)
     return swapped(d, node, first, second)
 
 

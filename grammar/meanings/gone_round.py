@@ -52,16 +52,10 @@ def of_those(d: Discourse, places: Value) -> Value:
     before went to for nothing else, which then comes to nothing."""
     loop = visits_alone(d)
     visited = loop.items.items if loop is not None and isinstance(loop.items, Items) else ()
-    all_of_kind = next(
-        (
-            names
-            for kind, known in d.lexicon.place_kinds.items()
-            if kind_places(d, kind) == places
-            for names in [[Text(each.name) for each in known]]
-        ),
-        [],
-    )
-    if loop is None or not visited or not all(each in all_of_kind for each in visited):
+    kinds = d.lexicon.place_kinds
+    meant = next((kinds[kind] for kind in kinds if kind_places(d, kind) == places), ())
+    names = [Text(each.name) for each in meant]
+    if loop is None or not visited or not all(each in names for each in visited):
         return places
     d.done.pop()
     return loop.items

@@ -12,8 +12,8 @@ from grammar.discourse import Discourse, Steps, Thing
 from grammar.doubts import NotUnderstood
 from grammar.meanings.deliveries import hands_it_over
 from grammar.meanings.registry import meaning
-from grammar.meanings.surveys import Survey, note, replacing
-from grammar.plan import Call, End, ForEach, Forever, If, Recall, Repeat, Step, Text, Value
+from grammar.meanings.surveys import Survey, exchanged, note
+from grammar.plan import Call, End, ForEach, If, Recall, Repeat, Step, Text, Value
 from grammar.tidy import nodes
 
 ROUNDS: Final = (ForEach, Repeat)
@@ -72,7 +72,7 @@ def from_whoever_has_it(d: Discourse, thing: Thing, delivered: Callable[[], Step
     taken, *end = taking.step.then
     brought = If(taking.step.condition, (taken, *bringing, *end))
     for done in (*d.around, d.done):
-        done[:] = replacing(Forever(tuple(done)), taking.step, [brought]).steps
+        done[:] = exchanged(done, taking.step, [brought])
     d.at, d.away = None, True
     return True
 

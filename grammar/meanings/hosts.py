@@ -11,7 +11,7 @@ import msgspec
 from grammar.discourse import Discourse
 from grammar.doubts import NotUnderstood
 from grammar.meanings.places import is_of
-from grammar.meanings.surveys import Survey, replacing
+from grammar.meanings.surveys import Survey, exchanged
 from grammar.plan import Items, Recall, Sentence, Text, Value
 from grammar.tidy import nodes
 
@@ -52,8 +52,6 @@ def offer(d: Discourse, survey: Survey, names: tuple[str, ...]) -> None:
     )
     if not any(each is survey.call for each in nodes(tuple(d.done))):
         raise NotUnderstood(d.language.phrase("too_complicated"))
-    d.done[:] = [
-        call if each is survey.call else replacing(each, survey.call, [call]) for each in d.done
-    ]
+    d.done[:] = exchanged(d.done, survey.call, [call])
     at = d.surveys.index(survey)
     d.surveys[at] = replace(survey, call=call, options=names)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from grammar.discourse import Discourse, Thing
 from grammar.meanings.asking import asked, remember_answer
-from grammar.meanings.surveys import replacing
+from grammar.meanings.surveys import exchanged
 from grammar.plan import Ask, Call, Holds, If, Items, Step, Text, Value
 
 
@@ -36,7 +36,7 @@ def put_as_question(d: Discourse) -> None:
         arguments["person"] = who
     name = remember_answer(d, options, "answer")
     question = asked(d, Call("ask", arguments, save_as=name), options, who)
-    d.done[-1] = question if last is request.saying else replacing(last, request.saying, [question])
+    d.done[-1:] = exchanged([last], request.saying, [question])
 
 
 def _ends_with(step: Step, saying: Call) -> bool:

@@ -53,7 +53,7 @@ def over_things(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
     if thing.place is None and d.at is not None:
         thing = replace(thing, place=d.at)
     at = d.at
-    single = replace(thing, count=None, every=False, plural=False, pronoun=False)
+    single = thing.single
     if thing.count is None:  # "them" are all of them
         thing = replace(thing, every=True)
 

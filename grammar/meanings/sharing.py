@@ -31,9 +31,7 @@ class Share:
 @meaning("one_more")
 def one_more(d: Discourse, node: Node) -> Thing:
     """ "one", "the other one": of what was spoken of, where that is taken from."""
-    one = replace(
-        spoken_of(d, node), count=None, every=False, plural=False, here=False, pronoun=False
-    )
+    one = replace(spoken_of(d, node).single, here=False)
     spot: Where | None = d.get(node, "where")
     return one if spot is None else replace(one, place=spot.place, furniture=spot.furniture)
 

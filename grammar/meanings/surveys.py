@@ -68,14 +68,17 @@ def noting(step: Any, call: Step, notes: Steps) -> Any:
     return step if inner == bodies else msgspec.structs.replace(step, **inner)
 
 
+def exchanged(steps: Iterable[Step], old: Step | None, new: Steps) -> Steps:
+    """Steps with others in the place of one of them, or of one inside them."""
+    return [
+        other for each in steps for other in (new if each is old else (replacing(each, old, new),))
+    ]
+
+
 def replacing(step: Any, old: Step | None, new: Steps) -> Any:
     """A step with others in the place of one inside it."""
     inner = {
-        name: tuple(
-            other
-            for each in body
-            for other in (new if each is old else (replacing(each, old, new),))
-        )
+        name: tuple(exchanged(body, old, new))
         for name in BODIES
         if (body := getattr(step, name, ()))
     }

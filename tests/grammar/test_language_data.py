@@ -1,4 +1,4 @@
-"""What keeps the folders of the languages tidy: nothing dead, and no name used twice by accident."""
+"""What keeps the folders of the languages tidy: nothing dead, and no name shared by accident."""
 
 from __future__ import annotations
 
