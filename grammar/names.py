@@ -46,8 +46,12 @@ class Names:
         self.spelled: set[str] = set()
         """The names as people write and speak them."""
         self._places()
+        full = {self.language.tokens_of(each.name) for each in lexicon.people}
         for name in lexicon.people:
             self._add_name("person", name)
+            for part in self._parts(name):
+                if (part,) not in full:
+                    self._add_words("person", (part,), name)
             for word in (name.kind or "", plural(name.kind or "", language)):
                 if word and word not in language.words:  # "porter" carries things in French
                     self._add("person_kind", word, name.kind)
@@ -119,6 +123,16 @@ class Names:
             self._add_words("place_tail", (last,), place)
         elif last in kinds and not {*before} <= self.language.closed and len(before[-1]) > 2:
             self._add_words("place_short", tuple(before), place)
+
+    def _parts(self, person: Name) -> Iterable[str]:
+        """First and last name of "Dr. Eve Miller", where neither is a word of the language."""
+        titles = self.language.speech.get("personal_titles", ())
+        for text in (person.name, *person.aliases):
+            words = self.language.tokens_of(text)
+            bare = [word for word in words if word not in titles]
+            for part in (bare[0], bare[-1]) if len(words) > 1 and bare else ():
+                if part not in self.language.words and part not in self.language.closed:
+                    yield part
 
     def _asked(self, words: tuple[str, ...]) -> Iterable[tuple[str, ...]]:
         """A question; without its articles; as it is put to others: "when visiting hours are"."""

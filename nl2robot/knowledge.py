@@ -7,6 +7,7 @@ from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 from grammar.lexicon import Lexicon, Name, Question, Routine
+from grammar.owners import with_owners
 from nl2robot.errors import UserError
 from sim.world import World
 
@@ -81,6 +82,7 @@ class Knowledge:
                 if q.ask.get(language)
             ),
         )
+        lexicon = with_owners(lexicon, language)
         if robot is None:
             return replace(lexicon, robot_name=world.robot.name or "")
         # A robot may declare less than people suggest; what it cannot do, the review refuses.
