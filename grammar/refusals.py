@@ -38,7 +38,7 @@ def no_thing(plan: Plan, lexicon: Lexicon, language: Language) -> tuple[str, str
     looks for what is in no house ("wait for the full moon"), and the name of it. What the world
     lists is a thing, whatever it is called."""
     known = {each.name for each in lexicon.objects}
-    people = {each.name for each in lexicon.people}
+    people = tuple(each.name for each in lexicon.people)
     for step in nodes(plan.steps):
         if not isinstance(step, Call | Ask):
             continue
@@ -52,7 +52,7 @@ def no_thing(plan: Plan, lexicon: Lexicon, language: Language) -> tuple[str, str
         if len(words) == 1 and words[0] in language.words_called("qualities"):
             return "no_quality", thing.value  # "which lab is quieter"
         titles = language.speech.get("personal_titles", ())
-        stranger = step.method in IN_HAND or thing.value not in people
+        stranger = step.method in IN_HAND or not thing.value.startswith(people)
         if len(words) > 1 and words[0] in titles and stranger:  # "take Mrs Jones to radiology"
             return "unknown_person", thing.value.title()
         if step.method == "give" and _treats(step, lexicon, language):
