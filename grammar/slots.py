@@ -67,6 +67,7 @@ class Slots:
         self._numerals = Numerals(tokens, self.language)
         self._adverb = re.compile(self.language.speech.get("adverbs", r"(?!)")).search
         self._possessive = str(self.language.speech.get("possessive", "")).strip()
+        self._no_nouns = frozenset(self.language.speech.get("no_nouns", ()))
         self._noun_joins = frozenset(self.language.speech.get("noun_joins", ()))
         self._spoken_fillers = frozenset(self.language.speech.get("spoken_fillers", ()))
         self._fillers = {word for filler in self.language.fillers for word in filler}
@@ -403,7 +404,7 @@ class Slots:
                 break
             if position > at and self._named("person", position):
                 break
-            if position == at and self._is_doing(at):
+            if position == at and (token.norm in self._no_nouns or self._is_doing(at)):
                 break
             before = doubt
             doubt += MISSPELT_NOUN if position in self.corrections else 0.0

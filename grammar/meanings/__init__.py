@@ -10,6 +10,7 @@ from __future__ import annotations
 import grammar.meanings.agreement
 import grammar.meanings.amounts
 import grammar.meanings.answered
+import grammar.meanings.answered_numbers
 import grammar.meanings.answers
 import grammar.meanings.asking_until
 import grammar.meanings.best_places

@@ -74,7 +74,7 @@ def wanted(d: Discourse, survey: Survey, said: Said, *, strict: bool = False) ->
                 d.language.phrase("not_understood", part=d.words(said.start, said.end))
             )
         return Wanted((refuse if negative else agree,))
-    chosen = tuple(each for each in survey.options if _names(d, norms, each))
+    chosen = tuple(each for each in survey.options if names_option(d, norms, each))
     named = {word for each in chosen for word in d.language.tokens_of(each)}
     if strict and not is_about(d, survey, [norm for norm in norms if norm not in named]):
         chosen = ()
@@ -87,11 +87,11 @@ def wanted(d: Discourse, survey: Survey, said: Said, *, strict: bool = False) ->
         raise NotUnderstood(d.language.phrase("not_understood", part=d.words(said.start, said.end)))
     if negative:  # of what was not said in so many words nobody can tell
         raise NotUnderstood(d.language.phrase("not_understood", part=d.words(said.start, said.end)))
-    telling = [norm for norm in norms if norm not in _silent(d)] or norms
+    telling = [norm for norm in norms if norm not in silent_words(d)] or norms
     return Wanted((" ".join(telling),), negative)
 
 
-def _names(d: Discourse, norms: Sequence[str], option: str) -> bool:
+def names_option(d: Discourse, norms: Sequence[str], option: str) -> bool:
     """Whether the words of an option stand among others."""
     words = [word for word in d.language.tokens_of(option) if word not in d.language.closed]
     words = words or list(d.language.tokens_of(option))
@@ -109,11 +109,11 @@ def is_about(d: Discourse, survey: Survey, norms: Sequence[str]) -> bool:
     """Whether some words speak of what was asked, or say no more than that somebody agreed."""
     question = survey.call.arguments["question"]
     asked = d.language.tokens_of(question.value) if isinstance(question, Text) else ()
-    silent = _silent(d) | _words(d, "negations")
+    silent = silent_words(d) | _words(d, "negations")
     return all(norm in silent or any(_alike(d, norm, word) for word in asked) for norm in norms)
 
 
-def _silent(d: Discourse) -> set[str]:
+def silent_words(d: Discourse) -> set[str]:
     """Words that name no answer: function words, fillers, and verbs such as "agree"."""
     fillers = {filler[0] for filler in d.language.fillers if len(filler) == 1}
     ones = _words(d, "one_words")

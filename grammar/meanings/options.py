@@ -29,10 +29,9 @@ def options_of(d: Discourse, node: Node) -> tuple[str, ...]:
     joins = set(d.language.speech.get("or", ()))
     rest, tail = node.parts.get("rest"), node.parts.get("tail")
     if rest is not None and tail is not None and d.tokens[tail.start].norm in joins:
-        later = split_options(d, tail.start, tail.end)
+        later = split_options(d, max(rest.start, rest.end - 1), tail.end)[1:]
         words = max(len(each.split()) for each in later) if later else 1
-        start = max(rest.start, rest.end - words)
-        return (*split_options(d, start, rest.end), *later)
+        return split_options(d, max(rest.start, rest.end - words), tail.end)
     subject = node.parts.get("subject")
     if subject is not None and joins & set(d.norms(subject.start, subject.end)):
         return split_options(d, subject.start, subject.end)
@@ -99,6 +98,8 @@ def split_options(d: Discourse, start: int, end: int) -> tuple[str, ...]:
                 options += row
                 continue
             begin = max(begin, last - longest)
+            while begin < last - 1 and d.tokens[begin].norm in _words_of(d, "wishes"):
+                begin += 1  # "like tea"
             begin, last = without_little_words(d, begin, last)
         options.append(d.words(begin, last).strip(" ()"))
     # "one, two or three boxes": how many of them
@@ -162,8 +163,8 @@ def _of_one_list(d: Discourse, start: int, end: int) -> bool:
 def without_little_words(d: Discourse, start: int, end: int) -> tuple[int, int]:
     kept = d.language.words_called("negations")  # "not at all"
     while start < end - 1 and d.tokens[start].norm in d.language.closed:
-        if d.tokens[start].norm in kept:
-            break
+        if d.tokens[start].norm in kept or _of_one_list(d, start, start + 1):
+            break  # "Sunday for the picnic"
         start += 1
     if d.language.speech.get("capital_nouns"):  # "den Schlüssel leihen": the verb is no part of it
         nouns = [at for at in range(start, end) if d.tokens[at].capital]

@@ -12,7 +12,7 @@ from grammar.doubts import NotUnderstood
 from grammar.meanings.answered import says_the_same
 from grammar.meanings.asking import Audience, asked, audience, put, remember_answer
 from grammar.meanings.descriptions import described
-from grammar.meanings.finding import go, speak_to, visits_only
+from grammar.meanings.finding import go, speak_to
 from grammar.meanings.holders import asks_who_has, says_having
 from grammar.meanings.options import (
     MOST_OPTIONS,
@@ -24,11 +24,12 @@ from grammar.meanings.options import (
     places_named,
     without_little_words,
 )
-from grammar.meanings.persons import is_me, known_by_name
+from grammar.meanings.persons import is_me
 from grammar.meanings.references import answers_in, nouns_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import tell_speaker
 from grammar.meanings.requested import Request
+from grammar.meanings.whom_asked import all_meant, just_visited, several_of_a_kind
 from grammar.naming import the
 from grammar.plan import (
     Ask,
@@ -56,12 +57,8 @@ def ask(d: Discourse, node: Node) -> Steps:
     question = node.parts.get("question")
     if person is None and isinstance(question, Node) and "asked_one" in question.parts:
         person = d.build(question.parts["asked_one"])  # "find out what Bob wants"
-    if person is None and isinstance(question, Node) and "each" in question.production.fixed:
-        person = Thing(Text(ANYONE), person=True, plural=True, here=True)  # "ask who wants tea"
-    if person is None and asks_anybody(d, question):
-        person = Thing(Text(ANYONE), person=True, plural=True, here=True)
     if person is None:
-        person = just_visited(d)
+        person = just_visited(d) or all_meant(d, node)
     if person is not None and person.coming:
         going = go(d, person.place) if person.place is not None else []
         waiting = Call("wait_for", {"thing": person.value})
@@ -71,26 +68,6 @@ def ask(d: Discourse, node: Node) -> Steps:
     if node.production.fixed.get("to_me"):
         d.put = d.surveys[-1]
     return steps
-
-
-def asks_anybody(d: Discourse, question: Leaf | Node | None) -> bool:
-    """Whether nobody was named and whoever is there is meant: "frag in der Küche, ob jemand Tee
-    will"."""
-    asked = question.parts.get("asked") if isinstance(question, Node) else None
-    anybody = set(d.language.speech.get("somebody_else", ()))
-    said = set() if asked is None else set(d.norms(asked.start, asked.end))
-    return bool(anybody & said) and d.with_person is None
-
-
-def just_visited(d: Discourse) -> Thing | None:
-    """Those who were gone to one by one for nothing else: "go to Alice and Bob and ask if ..."."""
-    last = d.done[-1] if d.done else None
-    if not isinstance(last, ForEach) or not isinstance(last.items, Items):
-        return None
-    visits_only(d, last.items)
-    if d.done and d.done[-1] is last:
-        return None
-    return Thing(Text(ANYONE), person=True, plural=True, known=True, group=last.items)
 
 
 def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
@@ -124,6 +101,8 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
         d.place = Text(spoken_of[0])  # "ask whether they want to see the lab; take them there"
     if whom.many and "each" in question.production.fixed:
         d.polled_for = "who"
+    if node.production.fixed.get("vote"):
+        d.polled_for = "each"  # nobody asks who voted for what
     offered(d, question, options, name)
     return put(
         d, whom, Call("ask", arguments, save_as=name), options, nouns_of(d, question, options)
@@ -138,26 +117,6 @@ def worded(d: Discourse, question: Node, whom: Audience) -> tuple[str, tuple[str
     options = options_of(d, question)
     d.asking_each = d.asking_one = False
     return text, options
-
-
-def several_of_a_kind(d: Discourse, node: Node, person: Thing | None) -> Thing | None:
-    """ "the visitors in the lobby": each of them."""
-    part = node.parts.get("person_ref")
-    if person is None or not isinstance(part, Node) or person.group or person.count:
-        return person
-    if part.means == "person_coming":  # one after the other
-        return person
-    kind = part.parts.get("kind_of_person")
-    if not isinstance(kind, Leaf) or person.value != Text(str(kind.value[0])):
-        return person
-    said = " ".join(d.norms(kind.start, kind.end))
-    if singular(said, d.language) == said:
-        return person
-    named = known_by_name(d, person, person.text)
-    if named:
-        d.group = Items(named)
-        return replace(person, known=True, plural=True, group=d.group)
-    return replace(person, value=Text(ANYONE), plural=True)
 
 
 def ask_everybody_here(d: Discourse, start: int, end: int) -> Steps:

@@ -254,6 +254,7 @@ def known_words(d: Discourse) -> Steps:
 def tell_that(d: Discourse, node: Node) -> Steps:
     """ "and tell Alice how many there are": what was found out before, told to somebody else."""
     search = news.searched_last(d, node, "person_ref")
+    of_answers(d, node)
     person: Thing | None = d.get(node, "person_ref")
     person_at: Where | None = d.get(node, "person_at")
     if person is not None and person_at is not None:  # "go and tell him in his office"
@@ -267,6 +268,13 @@ def tell_that(d: Discourse, node: Node) -> Steps:
     if person is not None and is_me(person):
         return coming_back(d, node, told_again(d, person))
     return told_again(d, person)
+
+
+def of_answers(d: Discourse, node: Node) -> None:
+    """Of those who were asked, only a number is told: "ask who wants tea and tell me how many"."""
+    yes_no = {d.language.phrase("yes"), d.language.phrase("no")}
+    if node.production.fixed.get("many") and d.answer is not None and d.surveys:
+        d.polled_for = "many" if set(d.surveys[-1].options) == yes_no else "each"
 
 
 def looks_around(d: Discourse) -> bool:
@@ -421,6 +429,7 @@ def not_back_yet(d: Discourse) -> None:
 def tell_me_that(d: Discourse, node: Node) -> Steps:
     """ "and tell me": what was found out just before, brought back to the speaker."""
     search = news.searched_last(d, node, "person_ref")
+    of_answers(d, node)
     if search is not None and search.person:
         return news.where_it_is(d, search, None)  # "find Alice and inform me"
     return coming_back(d, node, tell_speaker(d))

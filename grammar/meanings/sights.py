@@ -8,6 +8,7 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings import news
+from grammar.meanings.answered_numbers import number_answered
 from grammar.meanings.descriptions import described
 from grammar.meanings.finding import found, in_state, is_here, not_found
 from grammar.meanings.places import place_called_after, sought
@@ -211,6 +212,9 @@ def counted_info(d: Discourse, node: Node) -> Report | Steps:
         said = told_as_asked(d, node.start, node.end)
         if said is not None:
             return said.words
+    answered = number_answered(d, node)
+    if answered is not None:
+        return answered.words
     thing: Thing = d.get(node, "thing")
     more = described(d, thing.text, node)
     first: Where | None = d.get(node, "spot_first")

@@ -1,0 +1,64 @@
+"""Who is asked where a question names nobody, or all of a kind."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from grammar.chart import Leaf, Node
+from grammar.discourse import ANYONE, Discourse, Thing
+from grammar.meanings.finding import visits_only
+from grammar.meanings.persons import known_by_name
+from grammar.plan import ForEach, Items, Text
+from grammar.wordforms import singular
+
+
+def all_meant(d: Discourse, node: Node) -> Thing | None:
+    """Everybody who is there, if they are meant: "ask who wants tea", "let them vote"."""
+    question = node.parts.get("question")
+    each = isinstance(question, Node) and "each" in question.production.fixed
+    voting = node.production.fixed.get("vote", False)
+    if voting and d.person is not None and d.person.group is not None:
+        return d.person
+    if not (each or voting or asks_anybody(d, question)):
+        return None
+    return Thing(Text(ANYONE), person=True, plural=True, here=True)
+
+
+def asks_anybody(d: Discourse, question: Leaf | Node | None) -> bool:
+    """Whether nobody was named and whoever is there is meant: "frag in der Küche, ob jemand Tee
+    will"."""
+    asked = question.parts.get("asked") if isinstance(question, Node) else None
+    anybody = set(d.language.speech.get("somebody_else", ()))
+    said = set() if asked is None else set(d.norms(asked.start, asked.end))
+    return bool(anybody & said) and d.with_person is None
+
+
+def just_visited(d: Discourse) -> Thing | None:
+    """Those who were gone to one by one for nothing else: "go to Alice and Bob and ask if ..."."""
+    last = d.done[-1] if d.done else None
+    if not isinstance(last, ForEach) or not isinstance(last.items, Items):
+        return None
+    visits_only(d, last.items)
+    if d.done and d.done[-1] is last:
+        return None
+    return Thing(Text(ANYONE), person=True, plural=True, known=True, group=last.items)
+
+
+def several_of_a_kind(d: Discourse, node: Node, person: Thing | None) -> Thing | None:
+    """ "the visitors in the lobby": each of them."""
+    part = node.parts.get("person_ref")
+    if person is None or not isinstance(part, Node) or person.group or person.count:
+        return person
+    if part.means == "person_coming":  # one after the other
+        return person
+    kind = part.parts.get("kind_of_person")
+    if not isinstance(kind, Leaf) or person.value != Text(str(kind.value[0])):
+        return person
+    said = " ".join(d.norms(kind.start, kind.end))
+    if singular(said, d.language) == said:
+        return person
+    named = known_by_name(d, person, person.text)
+    if named:
+        d.group = Items(named)
+        return replace(person, known=True, plural=True, group=d.group)
+    return replace(person, value=Text(ANYONE), plural=True)
