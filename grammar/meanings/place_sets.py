@@ -3,13 +3,68 @@ and c", "Alice's and Bob's office"."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse
 from grammar.doubts import NotUnderstood
 from grammar.lexicon import Name, series_of
-from grammar.meanings.places import is_of, unknown_place
+from grammar.meanings.places import is_of, kind_places, unknown_place
 from grammar.meanings.registry import meaning
-from grammar.plan import Items, Text, Value
+from grammar.plan import Ask, Items, Text, Value
+
+
+@meaning("all_places")
+def all_places(d: Discourse, node: Node) -> Value:
+    """ "every office but Bob's", "the other labs", "the first two wards", "offices 1 to 4"."""
+    if "place" in node.parts:  # "the kitchen and the lounge"
+        return Items((d.get(node, "place"), *d.get(node, "place_list")))
+    kind: str | None = d.get(node, "kind") or d.get(node, "kinds")
+    fixed = node.production.fixed
+    but: list[Value | None] = [d.get(node, "but"), *(d.get(node, "place_list") or [])]
+    number = d.get(node, "number")
+    skipped = d.get(node, "skipped")
+    if skipped is not None:  # "all labs but the first one"
+        left = list(d.lexicon.place_kinds[str(kind)])
+        position = int(skipped) - 1 if int(skipped) > 0 else int(skipped)
+        if not -len(left) <= position < len(left):
+            raise NotUnderstood(d.language.phrase("which_places"))
+        del left[position]
+        return Items(tuple(Text(each.name) for each in left))
+    if "last" in node.parts:
+        return numbered(d, str(kind), int(d.get(node, "first")), int(d.get(node, "last")))
+    if but == [None] and number is None and not fixed.get("other"):
+        return kind_places(d, kind)
+    if fixed.get("other"):
+        but = [d.place, *(d.get(node, "place_list") or [])]
+    known = d.lexicon.place_kinds[kind] if kind else d.lexicon.places
+    but = [owned_by(d, known, each) if isinstance(each, str) else each for each in but]
+    names = [Text(each.name) for each in known if Text(each.name) not in but]
+    lost = [each for each in but if each is not None and not isinstance(each, Text)]
+    if lost or (fixed.get("other") and (d.place is None or len(names) == len(known))):
+        raise NotUnderstood(d.language.phrase("which_places"))
+    if number is not None and int(number) != len(names):
+        if not fixed.get("from_first") or int(number) > len(names):
+            raise NotUnderstood(d.language.phrase("which_places"))
+        names = names[: int(number)] if fixed["from_first"] > 0 else names[-int(number) :]
+    return Items(tuple(names))
+
+
+def owned_by(d: Discourse, places: Sequence[Name], owner: str) -> Text:
+    """Whichever of some places is somebody's: "the one of Alice"."""
+    found = next((each for each in places if is_of(d, each.name, owner)), None)
+    if found is None:
+        raise NotUnderstood(d.language.phrase("which_places"))
+    return Text(found.name)
+
+
+def numbered(d: Discourse, kind: str, first: int, last: int) -> Value:
+    """The places of a kind whose names end with some numbers."""
+    numbers = range(first, last + 1)
+    ends = {place.name.split()[-1]: place.name for place in d.lexicon.place_kinds[kind]}
+    if not numbers or any(str(number) not in ends for number in numbers):
+        raise NotUnderstood(d.language.phrase("which_places"))
+    return Items(tuple(Text(ends[str(number)]) for number in numbers))
 
 
 @meaning("places_numbered")
@@ -61,6 +116,34 @@ def some_of(d: Discourse, node: Node, places: list[Name]) -> Value:
     if not places:
         raise unknown_place(d, d.words(node.start, node.end), node)
     return Items(tuple(Text(each.name) for each in places))
+
+
+@meaning("places_joined")
+def places_joined(d: Discourse, node: Node) -> Value:
+    """ "all meeting rooms and lecture halls", "the wards and the lobby": one round of all."""
+    first: Value = d.get(node, "first")
+    rest: Value | None = d.get(node, "rest")
+    if rest is None:
+        return first
+    names = [name for part in (first, rest) for name in _names_of(d, part)]
+    return Items(tuple(dict.fromkeys(names)))
+
+
+def _names_of(d: Discourse, places: Value | str) -> list[Value]:
+    """The places that are meant, each by its name."""
+    known = kind_places(d, places)
+    if isinstance(known, Ask):
+        kind = known.arguments.get("kind")
+        found = d.lexicon.place_kinds[kind.value] if isinstance(kind, Text) else d.lexicon.places
+        return [Text(each.name) for each in found]
+    return list(known.items) if isinstance(known, Items) else [known]
+
+
+@meaning("place_left")
+def place_left(d: Discourse, node: Node) -> Value | str:
+    """What is left out: a place, or whose it is."""
+    owner: str | None = d.get(node, "owner")
+    return d.get(node, "place") if owner is None else owner
 
 
 @meaning("owner_list")

@@ -57,50 +57,6 @@ def only_taken_apart(d: Discourse, node: Node) -> None:
         raise NotUnderstood(d.language.phrase("one_of_several", words=words))
 
 
-@meaning("all_places")
-def all_places(d: Discourse, node: Node) -> Value:
-    """ "every office but Bob's", "the other labs", "the first two wards", "offices 1 to 4"."""
-    if "place" in node.parts:  # "the kitchen and the lounge"
-        return Items((d.get(node, "place"), *d.get(node, "place_list")))
-    kind: str | None = d.get(node, "kind") or d.get(node, "kinds")
-    fixed = node.production.fixed
-    but: list[Value | None] = [d.get(node, "but"), *(d.get(node, "place_list") or [])]
-    number = d.get(node, "number")
-    skipped = d.get(node, "skipped")
-    if skipped is not None:  # "all labs but the first one"
-        left = list(d.lexicon.place_kinds[str(kind)])
-        position = int(skipped) - 1 if int(skipped) > 0 else int(skipped)
-        if not -len(left) <= position < len(left):
-            raise NotUnderstood(d.language.phrase("which_places"))
-        del left[position]
-        return Items(tuple(Text(each.name) for each in left))
-    if "last" in node.parts:
-        return numbered(d, str(kind), int(d.get(node, "first")), int(d.get(node, "last")))
-    if but == [None] and number is None and not fixed.get("other"):
-        return kind_places(d, kind)
-    if fixed.get("other"):
-        but = [d.place, *(d.get(node, "place_list") or [])]
-    known = d.lexicon.place_kinds[kind] if kind else d.lexicon.places
-    names = [Text(each.name) for each in known if Text(each.name) not in but]
-    lost = [each for each in but if each is not None and not isinstance(each, Text)]
-    if lost or (fixed.get("other") and (d.place is None or len(names) == len(known))):
-        raise NotUnderstood(d.language.phrase("which_places"))
-    if number is not None and int(number) != len(names):
-        if not fixed.get("from_first") or int(number) > len(names):
-            raise NotUnderstood(d.language.phrase("which_places"))
-        names = names[: int(number)] if fixed["from_first"] > 0 else names[-int(number) :]
-    return Items(tuple(names))
-
-
-def numbered(d: Discourse, kind: str, first: int, last: int) -> Value:
-    """The places of a kind whose names end with some numbers."""
-    numbers = range(first, last + 1)
-    ends = {place.name.split()[-1]: place.name for place in d.lexicon.place_kinds[kind]}
-    if not numbers or any(str(number) not in ends for number in numbers):
-        raise NotUnderstood(d.language.phrase("which_places"))
-    return Items(tuple(Text(ends[str(number)]) for number in numbers))
-
-
 @meaning("place_own")
 def place_own(d: Discourse, node: Node) -> Value:
     """ "his office", after Bob: Bob's office; of nobody by name, the only office there is."""
