@@ -11,10 +11,11 @@ from grammar.meanings.absences import undelivered
 from grammar.meanings.asking import Audience, audience, put, remember_answer
 from grammar.meanings.questions import ask_one, base_form, worded
 from grammar.meanings.references import nouns_of
-from grammar.meanings.registry import meaning
+from grammar.meanings.registry import MEANINGS, meaning
 from grammar.meanings.surveys import Survey, in_line, in_loop, note
 from grammar.plan import Call, Items, Text, Value
 from grammar.tidy import nodes
+from grammar.tokens import COMMA
 
 
 @meaning("ask_again")
@@ -42,6 +43,17 @@ def ask_again(d: Discourse, node: Node) -> Steps:
     d.person = d.person if whom.many else person
     name = remember_answer(d, last.options, "answer")
     return put(d, whom, Call("ask", arguments, save_as=name), last.options, last.nouns)
+
+
+@meaning("ask_on")
+def ask_on(d: Discourse, node: Node) -> Steps:
+    """ "if she has none, go on to Bob": he is asked the same, if nothing else is to be done there."""
+    after = d.tokens[node.end].norm if node.end < len(d.tokens) else ""
+    in_branch = d.depth > 1 and bool(d.surveys)
+    if in_branch and after not in {COMMA, *d.language.speech.get("joins", ())}:
+        return ask_again(d, node)
+    going: Steps = MEANINGS["go_person"](d, node)
+    return going
 
 
 @meaning("ask_more")

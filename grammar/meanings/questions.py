@@ -30,7 +30,7 @@ from grammar.meanings.registry import meaning
 from grammar.meanings.reports import tell_speaker
 from grammar.meanings.requested import Request
 from grammar.meanings.whom_asked import all_meant, just_visited, several_of_a_kind
-from grammar.naming import the
+from grammar.naming import some, the
 from grammar.plan import (
     Ask,
     Call,
@@ -285,6 +285,11 @@ def question(d: Discourse, node: Node) -> str:
     it = rest is not None and set(d.norms(rest.start, rest.end)) <= d.language.words_called("it")
     if it and d.thing is not None and d.thing.text:
         values["rest"] = the(d.called(d.thing.text), d.language)  # who is asked did not hear of it
+    one = rest is not None and " ".join(d.norms(rest.start, rest.end)) in d.language.words_called(
+        "one_of_such"
+    )
+    if one and d.thing is not None and d.thing.text and not d.thing.known:
+        values["rest"] = some(d.called(d.thing.text), d.language)  # "ask Clara if she has one"
     form = form if values["rest"].strip() else form.replace(" {rest},", ",")
     text = " ".join(form.format_map(values).split())
     for pattern, instead in d.language.speech.get("question_joined", ()):
