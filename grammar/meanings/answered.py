@@ -331,7 +331,7 @@ def people_asked(d: Discourse, surveys: list[Survey]) -> Value:
     call = surveys[-1].call
     if not any(in_loop(d, each.call) for each in surveys):
         return Number(len(surveys))
-    for loop in d.done:
+    for loop in (each for steps in (*d.around, d.done) for each in steps):
         if not isinstance(loop, ForEach) or not isinstance(loop.items, Items):
             continue
         if any(each is call for each in nodes(loop)):

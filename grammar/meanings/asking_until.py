@@ -10,6 +10,7 @@ import msgspec
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing
 from grammar.doubts import NotUnderstood
+from grammar.meanings.answers import Wanted
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import (
     Survey,
@@ -63,7 +64,6 @@ def counting_to(d: Discourse, node: Node) -> Compare:
 def reached(d: Discourse, node: Node) -> Condition:
     """Whether so many of those who were asked have given an answer."""
     from grammar.meanings.answered import of_those_asked
-    from grammar.meanings.answers import Wanted
     from grammar.meanings.polls import counted
 
     surveys = polled_before(d)
@@ -177,6 +177,7 @@ def stopped_when(d: Discourse, node: Node) -> tuple[Survey, Compare]:
     count: Step = Increase(name)
     if answer is not None:
         count = If(survey.said(answer), (count,))
+        d.said, d.polled_for = Wanted((answer,)), "who"  # "... and tell me"
     leave = If(condition, (End(),))
     noted = noting(_left_when(d.done, survey.call, leave), survey.call, [count, leave])
     d.done[:] = [Remember(name, Number(0)), *noted]

@@ -311,7 +311,8 @@ def _of_others(d: Discourse, person: Thing, word: str, data: Mapping[str, Any]) 
     "tell Alice that they agree", "wait for a visitor and tell Alice that they are here"."""
     several = word in data.get("plural", ())
     alone = person.known and person.group is None and not person.plural
-    others = d.visitor is not None or any(isinstance(each.who, Recall) for each in d.surveys)
+    asked = [each.who for each in d.surveys if isinstance(each.who, Recall)]
+    others = d.visitor is not None or any(who != person.value for who in asked)
     return several and alone and others
 
 

@@ -214,7 +214,8 @@ def _alike(one: Survey, other: Survey) -> bool:
 
 def in_loop(d: Discourse, call: Call) -> bool:
     """Whether it is done more than once."""
-    loops = [each for each in nodes(tuple(d.done)) if isinstance(each, LOOPS)]
+    steps = (*d.around, d.done)
+    loops = [each for done in steps for each in nodes(tuple(done)) if isinstance(each, LOOPS)]
     return any(each is call for loop in loops for each in nodes(loop))
 
 

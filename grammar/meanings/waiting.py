@@ -19,6 +19,7 @@ from grammar.meanings.conditions import condition_of, negated
 from grammar.meanings.deliveries import hands_it_over, inside
 from grammar.meanings.finding import speak_to
 from grammar.meanings.news import Told, go_back, in_round
+from grammar.meanings.other_answers import other_answer
 from grammar.meanings.persons import is_me, kind_in_plural
 from grammar.meanings.polls import told_as_asked
 from grammar.meanings.registry import meaning
@@ -67,6 +68,12 @@ def when(d: Discourse, node: Node) -> Steps:
     """ "when somebody comes, ...": wait for it, then do it; "whenever": again and again, but once
     at each place of a round: "go round the labs, and whenever you find a cup, ...". "Go tell
     Clara when he wants to leave", after he was asked that, tells her what he said."""
+    parted = other_answer(node)
+    if parted is not None:
+        own, others = parted
+        d.done += when(d, own)
+        other: Steps = d.build(others)
+        return other
     if node.production.fixed.get("always") and in_round(d):
         return if_(d, node)
     if waited_in_time(d) and not node.production.fixed.get("always"):
