@@ -140,7 +140,8 @@ def look_for(d: Discourse, thing: Thing) -> Steps:
     else:
         d.thing, d.thing_last = thing, True
     if several:
-        return [If(Not(whether_found(d, thing)), (not_found(d, thing),))]
+        looking = If(Not(whether_found(d, thing)), (not_found(d, thing),))
+        return [] if d.done and d.done[-1] == looking else [looking]
     return [found(d, thing)]
 
 
@@ -220,12 +221,21 @@ def if_met(d: Discourse, person: Thing, steps: Steps) -> Steps:
     last = d.done[-1] if d.done else None
     if person.value != d.with_person or not isinstance(last, If):
         return steps
-    sought_before = last.condition.value if isinstance(last.condition, Holds) else None
-    looked = isinstance(sought_before, Ask) and sought_before.method == "find"
-    if not looked or last.otherwise != (not_found(d, person),):
+    condition, then, otherwise = last.condition, last.then, last.otherwise
+    if isinstance(condition, Not) and not otherwise:  # looked for in several places
+        condition, then, otherwise = condition.condition, (), then
+    if not _is_search(condition) or otherwise != (not_found(d, person),):
         return steps
     d.done.pop()
-    return [If(last.condition, (*last.then, *steps), last.otherwise)]
+    return [If(condition, (*then, *steps), otherwise)]
+
+
+def _is_search(condition: Condition) -> bool:
+    """Whether it is that something is found, in one place or in one of several."""
+    if isinstance(condition, Either):
+        return all(_is_search(each) for each in condition.conditions)
+    sought_for = condition.value if isinstance(condition, Holds) else None
+    return isinstance(sought_for, Ask) and sought_for.method == "find"
 
 
 def if_missing(d: Discourse, who: Value) -> Steps:
