@@ -47,7 +47,7 @@ def ask_again(d: Discourse, node: Node) -> Steps:
 
 @meaning("ask_on")
 def ask_on(d: Discourse, node: Node) -> Steps:
-    """ "if she has none, go on to Bob": he is asked the same, if nothing else is to be done there."""
+    """ "if she has none, go on to Bob": he is asked the same, if there is nothing else to do."""
     after = d.tokens[node.end].norm if node.end < len(d.tokens) else ""
     in_branch = d.depth > 1 and bool(d.surveys)
     if in_branch and after not in {COMMA, *d.language.speech.get("joins", ())}:

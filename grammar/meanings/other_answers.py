@@ -1,5 +1,5 @@
-"""What is done for another answer, though it goes on in the same sentence: "when they say yes, thank
-them, if they say no, remind them"."""
+"""What is done for another answer, though it goes on in the same sentence: "when they say yes,
+thank them, if they say no, remind them"."""
 
 from __future__ import annotations
 
@@ -48,5 +48,5 @@ def _parted(steps: Node) -> tuple[Node, Node] | None:
 
 def _condition(branch: Node) -> Node | None:
     """What a branch hangs on, which may stand for another part."""
-    found = next((each.parts["condition"] for each in inside(branch) if "condition" in each.parts))
+    found = next(each.parts["condition"] for each in inside(branch) if "condition" in each.parts)
     return found if isinstance(found, Node) else None
