@@ -27,6 +27,7 @@ from grammar.pieces import (
     lead_words,
     leading,
     leaves,
+    named_until,
     norms,
     pieces_at,
     pieces_of,
@@ -111,7 +112,8 @@ class Sentence:
                 if name in NAMED and not inside:
                     found.append(Piece(NAMED[name], part.start, part.end, means))
                 if name in CORRECTABLE:
-                    found.append(Piece(name, part.start, part.end, means))
+                    told = named_until(part) if isinstance(part, Node) else 0
+                    found.append(Piece(name, part.start, part.end, means, named_until=told))
                 if isinstance(part, Node):
                     visit(part, inside or name in NOUNS)
 
@@ -231,7 +233,7 @@ class Sentence:
             )
             first = piece.start if kept else piece.start - lead
             start = old.start if kept else old.start - old_lead
-            changes.append((start, old.end, new.words(first, piece.end)))
+            changes.append((start, old.replaced_until(piece), new.words(first, piece.end)))
         text = self.text
         for start, end, words in sorted(changes, reverse=True):
             changed = self.with_words(start, end, words)
@@ -271,8 +273,9 @@ class Sentence:
                 best, best_score = old, score
         return best
 
-    def with_other_look(self, new: Reader) -> str | None:
-        """ "no, the red one": the last thing with another word for how it looks."""
+    def with_other_look(self, new: Reader, *, instead: bool = False) -> str | None:
+        """ "no, the red one": the last thing with another word for how it looks. `instead`: only
+        if there is a word for that already."""
         language, lexicon = self.reader.language, self.reader.lexicon
         counted = {word for (word,) in words_listed(language, "counted_words")}
         words = [token for token in new.tokens[new.lead : new.last_word] if token.kind == "word"]
@@ -299,6 +302,8 @@ class Sentence:
             after += 1
         if after > head + 1:  # or behind the noun
             return self.with_words(head + 1, after, look)
+        if instead:
+            return None
         noun = self.reader.words(head, head + 1)
         first_noun = language.speech.get("adjectives_first") or "adjectives_first" not in (
             language.speech
@@ -431,7 +436,9 @@ class Sentence:
 def _is_look(word: str, language: Language, lexicon: Lexicon) -> bool:
     """Whether a word says how something looks: "red", "rote", "verte"."""
     return any(
-        word[:3] == look[:3] and abs(len(word) - len(look)) <= MOST_ENDING
+        word[:3] == look[:3]
+        and abs(len(word) - len(look)) <= MOST_ENDING
+        and word.startswith(look[: len(word) - MOST_ENDING])  # "assiette" is not "assis"
         for look in _looks(language, lexicon)
     )
 

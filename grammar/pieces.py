@@ -54,6 +54,14 @@ class Piece:
     means: str = ""
     known: bool = True
     """Whether it is more than a noun that nobody has heard of."""
+    named_until: int = 0
+    """Of a thing of which more is told ("the cup | from the kitchen"), where that begins."""
+
+    def replaced_until(self, new: Piece) -> int:
+        """Where a new part takes the place of this one: what is told of a thing stays true of the
+        thing that is meant instead, unless something else is told of it."""
+        stays = self.named_until and self.means == new.means and not new.named_until
+        return self.named_until if stays else self.end
 
 
 def leaves(node: Node) -> Iterator[Leaf]:
@@ -63,6 +71,13 @@ def leaves(node: Node) -> Iterator[Leaf]:
             yield from leaves(part)
         else:
             yield part
+
+
+def named_until(node: Node) -> int:
+    """Where more is told of a thing, or 0."""
+    mods = node.parts.get("mods")
+    told = node.production.rule == "thing" and isinstance(mods, Node) and mods.end == node.end
+    return mods.start if told and isinstance(mods, Node) else 0
 
 
 def is_pieces(reader: Reader) -> bool:
@@ -140,7 +155,7 @@ def pieces_at(reader: Reader, start: int) -> Iterator[Piece]:
             node = reader.chart().longest(rule, start)
             if node is not None and node.cost < UNKNOWN_NAME:
                 known = all(leaf.slot not in UNHEARD for leaf in leaves(node))
-                yield Piece(rule, node.start, node.end, node.means, known)
+                yield Piece(rule, node.start, node.end, node.means, known, named_until(node))
         else:
             for end, _, _ in reader.slots[f"{{{rule}}}"](start):
                 yield Piece(rule, start, end)

@@ -9,12 +9,14 @@ the rest as a change to it, as in a conversation. The outcome is a whole sentenc
 from __future__ import annotations
 
 import functools
+import itertools
 from collections.abc import Iterator
 from typing import Final
 
 from grammar import conversation
 from grammar.accounts import TEXTS
 from grammar.chart import TooMuch
+from grammar.edits import Sentence
 from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.pieces import Piece, is_pieces, leading, leaves, pieces_at
@@ -34,7 +36,8 @@ def understood(
     for start, end in taken_back(reader) if depth < MOST_REPAIRS else ():
         before = Reader(reader.words(0, start), lexicon, language, context)
         behind = Reader(reader.text[reader.tokens[end].start :], lexicon, language, context)
-        for tried, fixed in enumerate(_in_its_place(before, behind)):
+        others = itertools.chain(_with_other_look(before, behind), _in_its_place(before, behind))
+        for tried, fixed in enumerate(others):
             if tried == MOST_TRIED:
                 break
             result = understood(fixed, lexicon, language, context, depth + 1)
@@ -88,6 +91,20 @@ def _said_aloud(reader: Reader, start: int, end: int) -> bool:
     )
 
 
+def _with_other_look(before: Reader, behind: Reader) -> Iterator[str]:
+    """The sentence with its last thing looking otherwise: "the blue cup, no, the red one"."""
+    end = _first_mark(behind)
+    look = Reader(behind.words(0, end), behind.lexicon, behind.language, behind.context)
+    fixed = Sentence(before).with_other_look(look, instead=True) if look.tokens else None
+    if fixed is not None:
+        yield fixed.rstrip(" ,") + behind.text[behind.tokens[end - 1].end :]
+
+
+def _first_mark(reader: Reader) -> int:
+    marks = (at for at, token in enumerate(reader.tokens) if token.kind == "mark")
+    return next(marks, reader.last_word)
+
+
 def _in_its_place(before: Reader, behind: Reader) -> Iterator[str]:
     """The sentence with its last part before the words replaced by the first one behind them."""
     for new in _first_pieces(behind):
@@ -101,6 +118,9 @@ def _in_its_place(before: Reader, behind: Reader) -> Iterator[str]:
                 first += 1  # "the blue, no, red cup": the article stays
             kept = before.text[: before.tokens[first].start]
             said, rest = behind.words(0, new.end), behind.text[behind.tokens[new.end - 1].end :]
+            until = old.replaced_until(new)
+            if until < old.end:
+                said = f"{said} {before.words(until, old.end)}"
             yield f"{kept}{said}{rest.lstrip(' ,') if rest.startswith(',') else rest}"
             if rest.startswith(","):
                 yield f"{kept}{said} {rest.lstrip(' ,')}"
@@ -134,9 +154,7 @@ def _as_a_change(
     before: Reader, behind: Reader, words: str, context: Context
 ) -> Understanding | None:
     """What stands behind as a change to the command before, with what goes on behind it."""
-    end = next(
-        (at for at, token in enumerate(behind.tokens) if token.kind == "mark"), behind.last_word
-    )
+    end = _first_mark(behind)
     change = behind.words(0, end)
     parts = Reader(change, behind.lexicon, behind.language, context)
     if not parts.tokens or not is_pieces(parts):

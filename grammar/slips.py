@@ -103,16 +103,19 @@ def perfects(
 ) -> Iterator[tuple[int, tuple[str, ...]]]:
     """The participles of verbs that a command can begin with, and these verbs: "when you have
     greeted him" speaks of greeting him. Unlike a gerund it may also be a word of a rule."""
-    data = language.speech.get("perfects", {"after": (), "between": (), "ending": "-", "forms": {}})
-    ending, past = str(data["ending"]), language.speech.get("past_forms", {})
+    data = language.speech.get("perfects")
+    if data is None:
+        return
+    past = language.speech.get("past_forms", {})
     called_for = False
     for at, token in enumerate(tokens):
         if called_for and token.norm in data["between"]:
             continue
         if called_for:
-            stem = token.norm.removesuffix(ending)
             irregular = (data["forms"].get(token.norm), past.get(token.norm))
-            bases = irregular if any(irregular) or stem == token.norm else plain_forms(stem)
+            stems = (token.norm.removesuffix(each) for each in data["endings"])
+            regular = (base for stem in stems if stem != token.norm for base in plain_forms(stem))
+            bases = irregular if any(irregular) else regular
             found = tuple(dict.fromkeys(base for base in bases if base in verbs))
             if found:
                 yield at, found

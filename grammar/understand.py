@@ -288,7 +288,11 @@ class Reader:
         """Where words may be passed over: fillers, and commas that no rule asks for."""
         skips: dict[int, list[tuple[int, float]]] = {}
         words = [token.norm for token in self.tokens]
+        perfect = self.language.speech.get("perfects", {})
         for at, token in enumerate(self.tokens):
+            if token.norm in perfect.get("after", ()) and at:
+                if words[at - 1] in perfect.get("parted_by", ()):  # "quand tu l'as saluée"
+                    skips.setdefault(at, []).append((at + 1, FILLER_PASSED_OVER))
             said_twice = words[max(0, at - 2) : at].count(token.norm) == 1 and token.kind == "word"
             said_twice = said_twice and words[at - 1] == token.norm
             if token.norm == COMMA or said_twice:

@@ -66,6 +66,7 @@ def steps(d: Discourse, node: Node) -> Steps:
                 continue
             if first.production.means == "once_done" and "later" not in first.parts:
                 following = chained(each.parts["rest"])
+                only_once_done(d, first)
                 if done_already(d, first):
                     each = following
                 else:
@@ -239,6 +240,19 @@ def done_already(d: Discourse, node: Node) -> bool:
     return bool(calls) and all(_deed(each) in before for each in calls)
 
 
+def only_once_done(d: Discourse, node: Node) -> None:
+    """Refuse "when you greet her" where only "when you have greeted her" tells what is done first,
+    in a language whose rules do not part the two."""
+    earlier = node.parts["earlier"]
+    if not node.production.fixed.get("perfect"):
+        return
+    begin = max(earlier.start - 1, 0)
+    said = {token.norm for token in d.tokens[begin : earlier.end]}
+    if said.isdisjoint(d.language.speech["perfect_words"]):
+        words = d.words(earlier.start, earlier.end)
+        raise NotUnderstood(d.language.phrase("cannot_check", what=words))
+
+
 def _deed(call: Call) -> tuple[str, Any]:
     """What tells a call from others, whoever is asked."""
     asked = call.arguments.get("question") if call.method == "ask" else None
@@ -250,6 +264,7 @@ def _deed(call: Call) -> tuple[str, Any]:
 def reversed_(d: Discourse, node: Node) -> Steps:
     """ "before you go, say goodbye" and "go after you have said goodbye"."""
     earlier, later = node.parts["earlier"], node.parts["later"]
+    only_once_done(d, node)
     if later.start < earlier.start and d.thing is None:  # "put the cup here after you wash it"
         before = d.scene()
         d.sequence(lambda: d.done.extend(d.build(later)))
