@@ -122,10 +122,10 @@ def said_with(d: Discourse, node: Node) -> Steps:
 
 @meaning("say_it")
 def say_it(d: Discourse, node: Node) -> Steps:
-    """ "and say it": the answer or the code of before."""
+    """ "and say it": the answer, the code or the news of before."""
     from grammar.meanings.news import go_back
     from grammar.meanings.polls import said_by
-    from grammar.meanings.reports import known_words, tell_speaker
+    from grammar.meanings.reports import known_words, tell_speaker, told_again
 
     person: Thing | None = d.get(node, "person_ref")
     told = node.parts.get("person_ref")
@@ -135,6 +135,8 @@ def say_it(d: Discourse, node: Node) -> Steps:
         return [*go_back(d, []), *of_whom] if to_me else speak_to(d, person, of_whom)
     if to_me:
         return tell_speaker(d)
+    if (d.news or d.report) is not None and d.answer is None and d.code is None:
+        return told_again(d, person)  # "lunch is ready; say it to Bob"
     return speak_to(d, person, known_words(d))
 
 
