@@ -224,7 +224,9 @@ class Slots:
         if at >= len(self.tokens) or self.tokens[at].norm not in data.get("words", ()):
             return []
         after = self.tokens[at + 1].norm if at + 1 < len(self.tokens) else ""
-        return [(at + 1, WHERE_TO if after in data["not_before"] else 0.0, None)]
+        own = data.get("not_before_by_word", {}).get(self.tokens[at].norm, ())
+        unlike = after in data["not_before"] or after in own
+        return [(at + 1, WHERE_TO if unlike else 0.0, None)]
 
     # --- open slots
 
