@@ -156,7 +156,8 @@ def _cut(clause: Node, branch: str, chain: list[Node], tail: Node) -> tuple[Node
 def exclusive(done: Steps) -> Steps:
     """ "if they say tea, ...; if they say coffee, ..., otherwise ...": only one of them can be."""
     result: Steps = []
-    for step in done:
+    for each in done:
+        step = _other_case_beside(each) if isinstance(each, If) else each
         last = result[-1] if result else None
         if isinstance(last, If) and isinstance(step, If) and _told_otherwise(last, step):
             result[-1] = If(last.condition, last.then, step.then)
@@ -172,6 +173,16 @@ def exclusive(done: Steps) -> Steps:
         else:
             result.append(step)
     return result
+
+
+def _other_case_beside(step: If) -> If:
+    """A condition whose last step is for the other case, as its other branch: "if yes, tell Alice,
+    if he has not finished, come back"."""
+    inner = step.then[-1] if len(step.then) > 1 else None
+    first = If(step.condition, step.then[:-1], step.otherwise)
+    if step.otherwise or not isinstance(inner, If) or not excludes(first, inner):
+        return step
+    return _or_else(first, inner)
 
 
 def _takes_up(first: If, second: If) -> bool:
