@@ -109,6 +109,8 @@ def _rows(reader: Reader, at: int) -> Iterator[list[Piece]]:
         for start in sorted({begin, *(begin + lead for lead in leads)}):
             if start > begin and leading(reader, start) < start - begin:
                 continue
+            if start >= end:  # a preposition without more
+                continue
             for piece in sorted(_likely_at(reader, start), key=lambda piece: -piece.end):
                 for rest in _rows(reader, piece.end):
                     yield [piece, *rest]

@@ -20,6 +20,7 @@ from grammar.edits import Sentence
 from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.pieces import Piece, is_pieces, leading, leaves, pieces_at
+from grammar.tokens import COMMA
 from grammar.understand import Reader
 from grammar.understanding import Context, Understanding
 
@@ -56,20 +57,26 @@ def taken_back(reader: Reader) -> Iterator[tuple[int, int]]:
     at = 1
     while at < len(tokens):
         parted = tokens[at - 1].kind == "mark"
-        length = max(
-            (
-                len(each)
-                for each in _terms(reader.language, parted)
-                if each == tuple(words[at : at + len(each)])
-            ),
-            default=0,
-        )
+        terms = _terms(reader.language, parted)
+        length = max((_length(words[at:], each) for each in terms), default=0)
         start, end = at - parted, at + length
         while end < len(tokens) and tokens[end].kind == "mark":
             end += 1
         if length and start and end < len(tokens) and not _said_aloud(reader, start, end):
             yield start, end
         at = max(end, at + 1) if length else at + 1
+
+
+def _length(words: list[str], term: tuple[str, ...]) -> int:
+    """How many tokens a term takes at the beginning of others, commas in it included: "wait, no"; 0
+    if it is not there."""
+    at = 0
+    for word in term:
+        at += at > 0 and words[at : at + 1] == [COMMA]
+        if words[at : at + 1] != [word]:
+            return 0
+        at += 1
+    return at
 
 
 @functools.cache
@@ -130,6 +137,10 @@ def _first_pieces(behind: Reader) -> list[Piece]:
     """The parts that stand first, the longest before the others."""
     starts = [at for at in range(min(4, behind.last_word)) if at == 0 or leading(behind, at) == at]
     found = [piece for start in starts for piece in pieces_at(behind, start)]
+    end = _first_mark(behind)
+    if not found and end < behind.last_word:  # "to the lab, and give it ..." is no list of places
+        words = behind.words(0, end)
+        return _first_pieces(Reader(words, behind.lexicon, behind.language, behind.context))
     return sorted(found, key=lambda piece: (not piece.known, -piece.end))
 
 

@@ -290,9 +290,9 @@ class Reader:
         words = [token.norm for token in self.tokens]
         perfect = self.language.speech.get("perfects", {})
         for at, token in enumerate(self.tokens):
-            if token.norm in perfect.get("after", ()) and at:
-                if words[at - 1] in perfect.get("parted_by", ()):  # "quand tu l'as saluée"
-                    skips.setdefault(at, []).append((at + 1, FILLER_PASSED_OVER))
+            parted = at and words[at - 1] in perfect.get("parted_by", ())
+            if parted and token.norm in perfect["after"]:  # "quand tu l'as saluée"
+                skips.setdefault(at, []).append((at + 1, FILLER_PASSED_OVER))
             said_twice = words[max(0, at - 2) : at].count(token.norm) == 1 and token.kind == "word"
             said_twice = said_twice and words[at - 1] == token.norm
             if token.norm == COMMA or said_twice:

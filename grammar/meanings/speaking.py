@@ -135,7 +135,8 @@ def say_it(d: Discourse, node: Node) -> Steps:
         return [*go_back(d, []), *of_whom] if to_me else speak_to(d, person, of_whom)
     if to_me:
         return tell_speaker(d)
-    if (d.news or d.report) is not None and d.answer is None and d.code is None:
+    somebody = person is not None and (person.known or person.plural or person.place is not None)
+    if somebody and (d.news or d.report) is not None and d.answer is None and d.code is None:
         return told_again(d, person)  # "lunch is ready; say it to Bob"
     return speak_to(d, person, known_words(d))
 
