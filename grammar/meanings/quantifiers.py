@@ -203,7 +203,8 @@ def all_of(d: Discourse, part: Node) -> bool:
     said = d.noun_words(head.start, head.end)
     if isinstance(head, Leaf) and head.slot == "object" and said_as_named(d, head):
         return False  # "the chips"
-    if "superlative" in part.parts or singular(said, d.language) == said:
+    one = singular(said, d.language)
+    if "superlative" in part.parts or one == said or one in d.language.speech.get("bunches", ()):
         return False
     if any(each.means == "each_place" for each in inside(part)):
         return True  # "the cups in the meeting rooms"
