@@ -148,6 +148,8 @@ class Discourse:
     """The last question (`Survey`) that the speaker put themselves, and waits to have answered."""
     pending: Steps = field(default_factory=list)
     """Steps that a condition needs before it can be checked."""
+    awaited: Any = None
+    """The step that waited for somebody last (`grammar.meanings.in_time.Awaited`)."""
     came: Thing | None = None
     """Whichever of several has come who were waited for."""
     left: dict[Value, Value] = field(default_factory=dict)

@@ -55,12 +55,20 @@ def no_thing(plan: Plan, lexicon: Lexicon, language: Language) -> tuple[str, str
         stranger = step.method in IN_HAND or not thing.value.startswith(people)
         if len(words) > 1 and words[0] in titles and stranger:  # "take Mrs Jones to radiology"
             return "unknown_person", thing.value.title()
+        if step.method in IN_HAND and _is_somebody(thing.value, lexicon, language):
+            return "cannot_carry", thing.value  # "pick the visitor up in the lobby"
         if step.method == "give" and _treats(step, lexicon, language):
             return "no_medicine", thing.value
         for phrase, names in listed.items():
             if any(_headed(words, language.tokens_of(name), language) for name in names):
                 return str(phrase), thing.value
     return None
+
+
+def _is_somebody(name: str, lexicon: Lexicon, language: Language) -> bool:
+    """Whether something is a person by name, or as the language calls them."""
+    named = any(each.name == name for each in lexicon.people)
+    return named or name in language.lists.get("person_kind", {})
 
 
 def _treats(giving: Call | Ask, lexicon: Lexicon, language: Language) -> bool:

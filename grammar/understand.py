@@ -16,6 +16,7 @@ from typing import Final
 
 from grammar.accounts import in_manner, left_out, unheeded, unspoken
 from grammar.chart import CORRECTION, Chart, Node, Slot, TooMuch
+from grammar.company import in_company
 from grammar.discourse import Discourse
 from grammar.doubts import Ambiguous, NotUnderstood
 from grammar.freetext import Doubt, doubtful, words_for
@@ -163,7 +164,8 @@ class Reader:
         doubt = doubtful(tree, self.tokens, self.language)
         if doubt is not None:
             return self._doubted(doubt)
-        plan = charging_last(returning(without_unused(plan)))  # what came to nothing is lost, too
+        plan = without_unused(plan)  # what came to nothing is lost, too
+        plan = charging_last(returning(in_company(plan)))
         resolved = discourse.resolved
         lost = left_out(tree, self.tokens, plan, self.language, self.lexicon, resolved)
         lost += unspoken(tree, self.tokens, plan, self.language, resolved)

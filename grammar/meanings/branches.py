@@ -18,7 +18,6 @@ from grammar.doubts import NotUnderstood
 from grammar.meanings.absences import Addressed, addressed_before
 from grammar.meanings.answered import said_so
 from grammar.meanings.claims import (
-    TELL,
     claim_of,
     counted_first,
     found_claim,
@@ -43,7 +42,9 @@ from grammar.meanings.deliveries import (
 )
 from grammar.meanings.finding import not_found
 from grammar.meanings.holders import the_one_who_says_so
+from grammar.meanings.in_time import too_late
 from grammar.meanings.news import BACK, News
+from grammar.meanings.opposites import with_else
 from grammar.meanings.registry import meaning
 from grammar.meanings.searches import (
     Search,
@@ -86,7 +87,7 @@ LOOKING: Final = frozenset({"look_in", "look_on", "find", "go_find"})
 
 @meaning("if")
 def if_(d: Discourse, node: Node) -> Steps:
-    node = with_else(node)
+    node = with_else(d, node)
     handed_back = the_one_who_says_so(d, node)
     if handed_back is not None:
         return handed_back
@@ -102,6 +103,9 @@ def if_(d: Discourse, node: Node) -> Steps:
     met = missed_at_home(d, delivery, met)
     if not before_it and is_other_case(d, condition):
         return [as_said_now(d, node, condition, met)]
+    late = before_it or too_late(d, condition, met, lambda: d.build(node.parts["then"]))
+    if isinstance(late, If):
+        return [late]
     kept = addressed_before(d, met) if delivery is None and not before_it else None
     if kept is not None and met is not None:
         return absent(d, node, kept, met, lambda: d.build(node.parts["then"]))
@@ -216,44 +220,6 @@ def if_found_so(d: Discourse, node: Node, search: Search) -> Steps:
     otherwise = branch(d, node.parts["otherwise"], turned(met), claim)
     leave_off(d, after)
     return [If(search.found, tuple(then), tuple(otherwise))]
-
-
-def with_else(node: Node) -> Node:
-    """A condition whose other branch was read as the last clause of the first: "if you find it,
-    bring it, if not, tell me". After a question in between, it would be about the answer."""
-    chain: list[Node] = []
-    each: Leaf | Node | None = node.parts["then"]
-    while isinstance(each, Node) and each.means == "steps":
-        chain.append(each)
-        each = each.parts.get("rest")
-    if len(chain) < 2 or any(name.startswith("otherwise") for name in node.parts):
-        return node
-    *kept, last = chain
-    clause = unwrapped(last.parts["first"])
-    condition = unwrapped(clause.parts.get("condition")) if clause is not None else None
-    if clause is None or condition is None or clause.production.means not in ("if", TELL):
-        return node
-    denied = condition.means == "so" and condition.production.fixed.get("no")
-    asked = any(part.means.startswith("ask") for one in kept for part in inside(one.parts["first"]))
-    if not denied or asked:
-        return node
-    then: Node | None = None
-    for one in reversed(kept):
-        parts = {name: part for name, part in one.parts.items() if name != "rest"}
-        then = replace(one, parts=parts if then is None else {**parts, "rest": then})
-    said = {name: part for name, part in clause.parts.items() if name != "condition"}
-    other = replace(clause, parts=said) if clause.production.means == TELL else said.pop("then")
-    further = {name: part for name, part in said.items() if name.startswith("otherwise")}
-    if then is None or further:
-        return node
-    return replace(node, parts={**node.parts, "then": then, "otherwise": other})
-
-
-def unwrapped(part: Leaf | Node | None) -> Node | None:
-    """The node that a part stands for; None for a slot."""
-    while isinstance(part, Node) and part.production.means is None and len(part.parts) == 1:
-        (part,) = part.parts.values()
-    return part if isinstance(part, Node) else None
 
 
 def only_told(part: Leaf | Node | None) -> bool:

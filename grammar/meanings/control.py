@@ -12,6 +12,7 @@ from grammar.meanings.branches import in_branch
 from grammar.meanings.finding import go, not_found
 from grammar.meanings.found_places import if_such
 from grammar.meanings.going_on import in_round
+from grammar.meanings.in_time import note_waiting
 from grammar.meanings.inquiries import owed, wonder_told
 from grammar.meanings.lookouts import told_at_last, why, why_only
 from grammar.meanings.registry import meaning
@@ -81,6 +82,7 @@ def steps(d: Discourse, node: Node) -> Steps:
                 each = rest
                 continue
             d.done.extend(in_branch(d, first) or with_each_asked(d, first) or in_round(d, first))
+            note_waiting(d)
             said_on_tour(d, before, scene)
             new = d.done[before:]
             places = gone_to(d, first, new) or said_at_each(d, places, new)

@@ -45,7 +45,8 @@ def guide(d: Discourse, node: Node) -> Steps:
     if isinstance(room, Node) and any(each.means == "place_there" for each in inside(room)):
         there = d.build(room).place
     source: Where | None = d.get(node, "source")
-    if source is not None and source.place is not None:
+    in_turn = id(pronoun) in d.bound  # met there already
+    if source is not None and source.place is not None and not in_turn:
         thing = replace(thing, place=source.place, here=False)
     if thing.value == d.with_person:
         leave_out_fetching(d)

@@ -112,6 +112,8 @@ def distributed(d: Discourse, node: Node, make: Make) -> Steps:
     things = any(OVER[part.means] in (over_things, over_thing_list) for part in several)
     place = d.place
     d.taken_from = d.get(node, "from") if things and "from" in node.parts else outer
+    if "source" in node.parts and any(OVER[part.means] is over_people for part in several):
+        d.taken_from = d.get(node, "source")  # "take everybody from the lounge to the exit"
     d.place = place  # "there" is not where they are taken from
     steps = over(d, several, make)
     d.taken_from = outer
@@ -251,6 +253,8 @@ def over_people(d: Discourse, node: Node, person: Thing, one: One) -> Steps:
         steps = each_their_own(d, one)  # "bring everyone what they asked for"
         if steps is not None:
             return steps
+    if person.place is None and d.taken_from is not None:
+        person = replace(person, place=d.taken_from.place)
     group = person.group
     if isinstance(group, Items):
         return each_named(d, group, person, one)

@@ -28,6 +28,7 @@ from grammar.meanings.deliveries import (
     taken_back,
 )
 from grammar.meanings.finding import speak_to
+from grammar.meanings.in_time import too_late
 from grammar.meanings.news import go_back
 from grammar.meanings.persons import is_me
 from grammar.meanings.registry import meaning
@@ -66,6 +67,9 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
         if taken is not None:  # "bring me a coffee; if there is none, let me know"
             return [*before_it, *failing(d, node, taken, met)]
     claim = claim_of(d, node, condition, met)
+    late = before_it or too_late(d, condition, met, lambda: told_so(d, node, claim))
+    if isinstance(late, If):
+        return [late]
     if met is None and not before_it:
         as_before(d, condition)
     start = d.scene()

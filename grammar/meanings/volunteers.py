@@ -18,6 +18,7 @@ from grammar.meanings.asking import asked, remember_answer
 from grammar.meanings.descriptions import described
 from grammar.meanings.finding import go
 from grammar.meanings.found_places import first_of_round
+from grammar.meanings.opposites import with_else
 from grammar.meanings.options import options_of
 from grammar.meanings.persons import by_furniture, known_by_name
 from grammar.meanings.places import kind_places, only_taken_apart
@@ -142,9 +143,9 @@ def when_found(d: Discourse, node: Node) -> Steps:
         return waited_for(d, node)
     if search is not None and d.thing_last and d.thing is not None:
         d.thing = replace(d.thing, here=True, place=None)
-    from grammar.meanings.branches import if_found_so, with_else
+    from grammar.meanings.branches import if_found_so
 
-    node = with_else(node)
+    node = with_else(d, node)
     if search is not None and "otherwise" in node.parts:
         return if_found_so(d, node, search)
     start = d.scene()
