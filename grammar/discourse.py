@@ -150,6 +150,8 @@ class Discourse:
     """Steps that a condition needs before it can be checked."""
     awaited: Any = None
     """The step that waited for somebody last (`grammar.meanings.in_time.Awaited`)."""
+    announced: Any = None
+    """A guest who is expected (`grammar.meanings.strangers.Announced`)."""
     came: Thing | None = None
     """Whichever of several has come who were waited for."""
     left: dict[Value, Value] = field(default_factory=dict)
@@ -177,6 +179,8 @@ class Discourse:
     """The variable with the answer of somebody who, in this branch, is not there to give it."""
     delivery: Any = None
     """What was brought to somebody last (`grammar.meanings.deliveries.Delivery`)."""
+    destined: Any = None
+    """That of a thing that was only said to be for somebody."""
     meant_for: Any = None
     """Whom, or the place that, things are brought to where it is not said."""
     moments: Steps = field(default_factory=list)

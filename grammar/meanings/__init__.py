@@ -53,6 +53,7 @@ import grammar.meanings.sights
 import grammar.meanings.sources
 import grammar.meanings.speaking
 import grammar.meanings.stops
+import grammar.meanings.strangers
 import grammar.meanings.telling_if
 import grammar.meanings.there
 import grammar.meanings.things

@@ -174,6 +174,22 @@ def _alike(one: Thing, other: Thing) -> bool:
     return one.value == other.value or bool(one.noun and one.noun == other.noun)
 
 
+def whereto_told(d: Discourse, thing: Thing) -> Thing:
+    """ "The letter is for Bob. Take it to his office": what was only said to be for somebody is
+    brought as is said then, and not twice."""
+    delivery: Delivery | None = d.destined
+    if delivery is None or not thing.pronoun or thing.value != delivery.thing.value:
+        return thing
+    if not d.done or d.done[-1] is not delivery.steps[-1]:
+        return thing
+    del d.done[-len(delivery.steps) :]
+    d.set_scene(delivery.before)
+    d.destined = None
+    d.person = delivery.person
+    d.thing, d.thing_last = delivery.thing, True
+    return delivery.thing
+
+
 # --- a delivery whose end is decided then
 
 

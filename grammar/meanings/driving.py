@@ -14,6 +14,7 @@ from grammar.meanings.loops import for_each_of_them, looped
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
+from grammar.meanings.strangers import announced_one
 from grammar.meanings.reports import counted_alone, tell_speaker
 from grammar.meanings.searches import searched
 from grammar.meanings.waiting import wait_until
@@ -323,6 +324,9 @@ def wait_for(d: Discourse, node: Node) -> Steps:
     d.get(node, "from")  # "wait in Bob's office until he comes"
     thing = noun_of(d, node)
     timeout = d.get(node, "seconds")
+    announced = announced_one(d, node) if timeout is None else None
+    if announced is not None:
+        return announced
     steps = go(d, thing.place) if thing.place is not None else []
     if isinstance(thing.group, Items):  # "Alice or Bob"
         seen = tuple(Holds(Ask("sees", {"thing": name})) for name in thing.group.items)

@@ -9,6 +9,7 @@ from grammar.discourse import Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.carrying import deliver
 from grammar.meanings.deliveries import Delivery
+from grammar.meanings.finding import go
 from grammar.meanings.nouns import spoken_of, thing
 from grammar.meanings.places import own_place
 from grammar.meanings.registry import meaning
@@ -58,9 +59,17 @@ def swapped(d: Discourse, node: Node, first: Thing, second: Thing) -> Steps:
     if not isinstance(first.place, Text) or not isinstance(second.place, Text):
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("swap_where", what=words))
-    there = deliver(d, first, None, Where(second.place, second.furniture))
-    back = deliver(d, second, None, Where(first.place, first.furniture))
-    return [*there, *back]
+    its_place = Where(first.place, first.furniture)
+    other_place = Where(second.place, second.furniture)
+    if first.value == second.value:
+        # The robot could take back the one that it has just put there: one waits where it starts.
+        aside = deliver(d, first, None, Where(d.start()))
+        there = deliver(d, second, None, its_place)
+        back = go(d, d.start())
+        waiting = replace(first, place=None, furniture=None, here=True)
+        return [*aside, *there, *back, *deliver(d, waiting, None, other_place)]
+    there = deliver(d, first, None, other_place)
+    return [*there, *deliver(d, second, None, its_place)]
 
 
 @meaning("one_of_them_so")

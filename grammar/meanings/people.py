@@ -20,6 +20,7 @@ from grammar.meanings.persons import is_me
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.speaking import spoken
+from grammar.meanings.strangers import announced_one
 from grammar.meanings.things import given_last
 from grammar.meanings.waiting import awaited
 from grammar.naming import place_called
@@ -145,6 +146,9 @@ def fetch_person(d: Discourse, node: Node) -> Steps:
     source: Where | None = d.get(node, "source")
     if source is not None and source.place is not None:
         thing = replace(thing, place=source.place, here=False)
+    announced = announced_one(d, node, thing.place)
+    if announced is not None:
+        return announced
     also = led_before(d) if node.production.fixed.get("too") else None
     steps = meet(d, replace(thing, here=False)) or look_for(d, thing)
     if also is not None:

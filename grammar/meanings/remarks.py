@@ -145,6 +145,17 @@ def remark_where(d: Discourse, node: Node) -> Steps:
     return aside(d, node)
 
 
+@meaning("remark_lacking")
+def remark_lacking(d: Discourse, node: Node) -> Steps:
+    """ "there is no whiteboard in lecture hall 2": one that is brought then goes there."""
+    thing: Thing = d.get(node, "thing")
+    spot: Where = d.get(node, "where") or Where(d.get(node, "place"))
+    d.thing, d.thing_last = replace(thing, place=None, furniture=None), True
+    d.lacking = replace(thing, place=spot.place, furniture=spot.furniture)
+    d.place = spot.place
+    return aside(d, node)
+
+
 def mislaid(d: Discourse, part: Leaf | Node | None) -> Thing | None:
     """What "il" and "elle" speak of where somebody was said to wait or to look for something: "le
     docteur attend son dossier, il est à l'accueil"."""

@@ -10,14 +10,14 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import Discourse, Steps, Thing, Where
+from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.carrying import deliver
 from grammar.meanings.nouns import spoken_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.several_things import begun_before
 from grammar.meanings.sources import where_told
-from grammar.plan import Items
+from grammar.plan import Items, Text
 
 
 @dataclass(frozen=True)
@@ -34,6 +34,17 @@ def one_more(d: Discourse, node: Node) -> Thing:
     one = replace(spoken_of(d, node).single, here=False)
     spot: Where | None = d.get(node, "where")
     return one if spot is None else replace(one, place=spot.place, furniture=spot.furniture)
+
+
+@meaning("one_there")
+def one_there(d: Discourse, node: Node) -> Thing:
+    """ "the one in the lounge": another of what was spoken of, or somebody if that was no thing."""
+    if d.thing is not None and (d.thing_last or d.person is None):
+        return one_more(d, node)
+    spot: Where = d.get(node, "where")
+    d.person = Thing(Text(ANYONE), person=True, place=spot.place, furniture=spot.furniture)
+    d.thing_last = False
+    return d.person
 
 
 @meaning("several_of")

@@ -10,7 +10,7 @@ from grammar.doubts import NotUnderstood
 from grammar.freetext import words_for
 from grammar.meanings.carrying import deliver, pick_up, take_back_delivery
 from grammar.meanings.chosen import handed_already
-from grammar.meanings.deliveries import Delivery, meant_for
+from grammar.meanings.deliveries import Delivery, meant_for, whereto_told
 from grammar.meanings.descriptions import described
 from grammar.meanings.finding import (
     if_missing,
@@ -37,6 +37,7 @@ from grammar.meanings.reports import Report, found_out
 from grammar.meanings.sights import best_there, which_there
 from grammar.meanings.sources import all_there_are, told_where
 from grammar.meanings.speaking import sentence_form
+from grammar.meanings.strangers import announced_one
 from grammar.plan import Call, ForEach, Items, Recall, Step, Text, Value
 from grammar.slots import command_words
 from grammar.tidy import nodes
@@ -49,6 +50,9 @@ def find(d: Discourse, node: Node) -> Steps:
     if d.round.such is not None and isinstance(sought_for, Node) and sought_for.means == "thing_it":
         return []  # "I need an empty office. Go and find one": that is being done
     thing = noun_of(d, node)
+    announced = announced_one(d, node)
+    if announced is not None:
+        return announced
     if isinstance(thing.group, Items):
         who = Recall(d.variable("person"))
         d.at = d.with_person = None
@@ -135,7 +139,7 @@ def put(d: Discourse, node: Node) -> Steps:
     """ "put the cup on the table", "... in the kitchen", "... down"."""
     where = node.parts.get("where")
     on_it = where_gone_to(d, node)
-    thing: Thing = d.get(node, "thing") or thing_it(d, node)
+    thing: Thing = whereto_told(d, d.get(node, "thing") or thing_it(d, node))
     if thing.person and thing.known:  # "otherwise put it there", where only Bob was spoken of
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("cannot_do", what=words), gap=(node.start, node.end))
@@ -263,6 +267,7 @@ def bring(d: Discourse, node: Node) -> Steps:
     if means_who_is_met(d, node):
         return with_them(d, node)
     thing: Thing = d.get(node, "thing") or thing_it(d, node)  # "and deliver to Bob"
+    thing = whereto_told(d, thing)
     source: Where | None = d.get(node, "from")
     if source is not None:
         thing = replace(thing, place=source.place, furniture=source.furniture)
@@ -305,7 +310,9 @@ def bring(d: Discourse, node: Node) -> Steps:
         steps = deliver(d, thing, person, spot)
         d.brought = handing_over(steps) if person is not None or spot is not None else ()
         return steps
-    return deliver(d, thing, person, spot)
+    steps = deliver(d, thing, person, spot)
+    d.destined = d.delivery if node.production.fixed.get("destined") else None
+    return steps
 
 
 def handing_over(steps: Steps) -> tuple[Step, ...]:
@@ -427,6 +434,19 @@ def statement(d: Discourse, node: Node) -> Steps:
     said = sentence_form(d.words(node.start, node.end))
     d.report, d.report_step = Report("only", Text(said), about_here=False), None
     return []
+
+
+@meaning("handed")
+def handed(d: Discourse, node: Node) -> Steps:
+    """ "here is Bob's letter": it is where the speaker is, whosever it is."""
+    thing: Thing = d.get(node, "thing")
+    thing = replace(thing, place=None, furniture=None, here=d.at is None)
+    if "person_ref" not in node.parts:
+        d.thing, d.thing_last = thing, True
+        return []
+    steps = deliver(d, thing, d.get(node, "person_ref"), None)
+    d.destined = d.delivery
+    return steps
 
 
 @meaning("scan")

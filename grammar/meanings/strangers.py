@@ -1,0 +1,71 @@
+"""Guests whom nobody here knows: announced by a name that says nothing to the robot, so that whoever
+comes is asked for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from grammar.chart import Node
+from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
+from grammar.meanings.finding import go
+from grammar.meanings.registry import meaning
+from grammar.meanings.remarks import aside
+from grammar.plan import Call, Compare, Items, Recall, RepeatUntil, Text, Value
+
+
+@dataclass(frozen=True)
+class Announced:
+    """A guest of whom it was said that they come, and where to."""
+
+    name: str
+    place: Value | None
+
+
+@meaning("meet_stranger")
+def meet_stranger(d: Discourse, node: Node) -> Steps:
+    """ "meet Mr Keller at the elevator": whoever comes there is asked whether they are."""
+    spot: Where | None = d.get(node, "from")
+    return asked_for(d, called(d, node), None if spot is None else spot.place)
+
+
+@meaning("stranger_comes")
+def stranger_comes(d: Discourse, node: Node) -> Steps:
+    """ "Mr Keller is coming to the reception": waited for there when they are to be met."""
+    spot: Where | None = d.get(node, "from")
+    place = None if spot is None else spot.place
+    d.announced = Announced(called(d, node), place)
+    d.person = Thing(Text(ANYONE), person=True, first=True, place=place)
+    d.thing_last = False
+    if place is not None:
+        d.place = place
+    return aside(d, node)
+
+
+def announced_one(d: Discourse, node: Node, place: Value | None = None) -> Steps | None:
+    """How somebody is met who was announced, if a command to meet "them" is about that one."""
+    guest: Announced | None = d.announced
+    part = node.parts.get("person_ref", node.parts.get("thing"))
+    them = isinstance(part, Node) and part.means in ("person_pronoun", "thing_it")
+    if guest is None or not them or d.person is None or not d.person.first:
+        return None
+    d.announced = None
+    return asked_for(d, guest.name, place or guest.place)
+
+
+def asked_for(d: Discourse, name: str, place: Value | None) -> Steps:
+    """Whoever comes to a place, one after the other, is asked until one is who was expected."""
+    going = go(d, place) if place is not None else []
+    yes, no = Text(d.language.phrase("yes")), Text(d.language.phrase("no"))
+    answer = d.variable("answer")
+    question = Text(d.language.phrase("are_you", name=name))
+    asking = Call("ask", {"question": question, "options": Items((yes, no))}, save_as=answer)
+    d.person = d.visitor = Thing(Text(ANYONE), person=True, here=True)
+    d.with_person, d.thing_last = d.person.value, False
+    wait = Call("wait_for", {"thing": d.person.value})
+    return [*going, RepeatUntil(Compare(Recall(answer), "==", yes), (wait, asking))]
+
+
+def called(d: Discourse, node: Node) -> str:
+    """The name that somebody is announced by."""
+    part = node.parts["name"]
+    return d.words(part.start, part.end).title()
