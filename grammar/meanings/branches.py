@@ -13,7 +13,7 @@ from typing import Final
 from msgspec.structs import replace as structs_replace
 
 from grammar.chart import Leaf, Node, what_it_means
-from grammar.discourse import Branched, Claim, Discourse, Meeting, Steps
+from grammar.discourse import ANYONE, Branched, Claim, Discourse, Meeting, Steps
 from grammar.doubts import NotUnderstood
 from grammar.meanings.absences import Addressed, addressed_before
 from grammar.meanings.answered import said_so
@@ -101,7 +101,7 @@ def if_(d: Discourse, node: Node) -> Steps:
     if node.production.fixed.get("unless"):
         condition, met = negated(condition), turned(met)
     met = missed_at_home(d, delivery, met)
-    if not before_it and is_other_case(d, condition):
+    if not before_it and is_other_case(d, condition, met):
         return [as_said_now(d, node, condition, met)]
     late = before_it or too_late(d, condition, met, lambda: d.build(node.parts["then"]))
     if isinstance(late, If):
@@ -164,7 +164,9 @@ def if_(d: Discourse, node: Node) -> Steps:
         if looked is not None and delivery is not None and delivery.person is not None:
             d.done.pop()
             missing = not_found(d, delivery.person)
-            return [If(looked, (If(condition, tuple(then), tuple(otherwise)),), (missing,))]
+            inner = If(condition, tuple(then), tuple(otherwise))
+            same = seen_as_found(looked, inner) if met is not None else None
+            return [same or If(looked, (inner,), (missing,))]
     counted, condition = counted_first(condition, [*then, *otherwise])
     whole = If(condition, tuple(then), tuple(otherwise))
     merged = [whole] if further else either_way(d, whole, looks_on=looks_on(node.parts["then"]))
@@ -178,13 +180,18 @@ def if_(d: Discourse, node: Node) -> Steps:
     return [*before_it, *counted, whole]
 
 
-def is_other_case(d: Discourse, condition: Condition) -> bool:
-    """Whether a condition is the case of the one before of which nothing was said yet."""
+def is_other_case(d: Discourse, condition: Condition, met: Meeting | None) -> bool:
+    """Whether a condition is the case of the one before of which nothing was said yet: "if she is
+    in, give it to her. If nobody is in, ..."."""
     before = d.branched
     last = d.done[-1] if d.done else None
-    if before is None or not before.assumed or last is not before.step:
+    if before is None or last is not before.step or not isinstance(last, If):
         return False
-    return isinstance(last, If) and condition == negated(last.condition)
+    if before.assumed and condition == negated(last.condition):
+        return True
+    nobody = met is not None and not met.holds and met.thing.text == ANYONE
+    hers = before.met is not None and before.met.holds and before.met.thing.known
+    return nobody and hers and not last.otherwise
 
 
 def as_said_now(d: Discourse, node: Node, condition: Condition, met: Meeting | None) -> If:
@@ -197,6 +204,20 @@ def as_said_now(d: Discourse, node: Node, condition: Condition, met: Meeting | N
     first = d.done.pop()
     assert isinstance(first, If)
     return If(first.condition, first.then, tuple(otherwise))
+
+
+def seen_as_found(looked: Condition, step: If) -> If | None:
+    """A condition that only asks once more whether somebody is there who was just looked for: "take
+    it to Alice. If she is in, give it to her, otherwise ..."."""
+    condition, turned_round = step.condition, False
+    if isinstance(condition, Not):
+        condition, turned_round = condition.condition, True
+    match condition:
+        case Holds(value=Ask(method="sees", arguments={"thing": who})):
+            if all(each.arguments["thing"] == who for each in searches(looked)):
+                then, otherwise = step.then, step.otherwise
+                return If(looked, *((otherwise, then) if turned_round else (then, otherwise)))
+    return None
 
 
 def denies(d: Discourse, condition: Condition) -> bool:

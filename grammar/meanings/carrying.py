@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.deliveries import Delivery
@@ -80,15 +81,31 @@ def take_back_delivery(d: Discourse, thing: Thing) -> None:
         del d.done[-len(brought) :]
         d.brought, d.holding, d.at = (), thing.value, thing.place
         return
+    if d.delivered != thing.value:
+        return
     handed = Call("give", {"thing": thing.value})
-    at = max((at for at, step in enumerate(d.done) if step == handed), default=0)
-    if d.delivered == thing.value and at:
-        last = at == len(d.done) - 1
-        del d.done[at - 1 : at + 1]
+    for steps in (d.done, *d.around[-1:]):  # before a "when", too
+        at = max((at for at, step in enumerate(steps) if step == handed), default=0)
+        if not at:
+            continue
+        last = steps is d.done and at == len(steps) - 1
+        del steps[at - 1 : at + 1]
         d.delivered = None
         d.holding = thing.value
         if last:  # but "get the box, then go to Henry and give it to him": he is where it is now
             d.at = d.at_pick_up
+        return
+
+
+def the_same(d: Discourse, node: Node, thing: Thing) -> Thing:
+    """ "get the key and wait for Bob; when he comes, give him the key": the one spoken of."""
+    part = node.parts.get("thing")
+    definite = isinstance(part, Node) and d.tokens[part.start].norm in d.language.speech.get(
+        "definite", ()
+    )
+    if not definite or thing.value != d.delivered or thing.place is not None or thing.several:
+        return thing
+    return replace(thing, pronoun=True)
 
 
 def _is_given(step: Step, thing: Thing) -> bool:

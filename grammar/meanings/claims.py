@@ -127,6 +127,8 @@ def meet_there(d: Discourse, met: Meeting | None) -> None:
         if met.holds and not thing.known:
             d.visitor = thing
     else:
+        if met.holds and thing.plural:  # "if there are cups, bring them here"
+            thing = replace(thing, every=True)
         d.thing, d.thing_last = thing, True
 
 

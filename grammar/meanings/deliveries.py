@@ -250,7 +250,10 @@ def kept_in_hand(d: Discourse) -> Steps | None:
     if delivery is None or not delivery.steps or delivery.spot is not None:
         return None
     at = next((at for at, step in enumerate(d.done) if step is delivery.steps[-1]), None)
-    if at is None or not only_asks(d.done[at + 1 :]):
+    if at is None:
+        return None
+    unsaid = delivery.person is None and leaves_things(d.done[at + 1 :])
+    if not unsaid and not only_asks(d.done[at + 1 :]):
         return None
     first = at
     if delivery.receiver is None and at and d.done[at - 1] == Call("goto", {"place": d.start()}):
@@ -266,8 +269,15 @@ def kept_in_hand(d: Discourse) -> Steps | None:
 def only_asks(steps: Steps) -> bool:
     """Whether some steps go to somebody to ask them something, and leave things where they are."""
     calls = [each for each in nodes(tuple(steps)) if isinstance(each, Call)]
-    asks = any(each.method == "ask" for each in calls)
-    return asks and all(each.method in ("ask", "find", "goto", "say") for each in calls)
+    return leaves_things(steps) and any(each.method == "ask" for each in calls)
+
+
+def leaves_things(steps: Steps) -> bool:
+    """Whether some steps only go somewhere, wait and speak."""
+    calls = [each for each in nodes(tuple(steps)) if isinstance(each, Call)]
+    return bool(calls) and all(
+        each.method in ("ask", "find", "goto", "say", "wait_for") for each in calls
+    )
 
 
 def missed_at_home(d: Discourse, delivery: Delivery | None, met: Meeting | None) -> Meeting | None:

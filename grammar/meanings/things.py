@@ -8,7 +8,7 @@ from grammar.chart import Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.freetext import words_for
-from grammar.meanings.carrying import deliver, pick_up, take_back_delivery
+from grammar.meanings.carrying import deliver, pick_up, take_back_delivery, the_same
 from grammar.meanings.chosen import handed_already
 from grammar.meanings.deliveries import Delivery, meant_for, whereto_told
 from grammar.meanings.descriptions import described
@@ -267,7 +267,7 @@ def bring(d: Discourse, node: Node) -> Steps:
     if means_who_is_met(d, node):
         return with_them(d, node)
     thing: Thing = d.get(node, "thing") or thing_it(d, node)  # "and deliver to Bob"
-    thing = whereto_told(d, thing)
+    thing = whereto_told(d, the_same(d, node, thing))
     source: Where | None = d.get(node, "from")
     if source is not None:
         thing = replace(thing, place=source.place, furniture=source.furniture)
