@@ -181,6 +181,8 @@ class Discourse:
     """What was brought to somebody last (`grammar.meanings.deliveries.Delivery`)."""
     destined: Any = None
     """That of a thing that was only said to be for somebody."""
+    so_many: Step | None = None
+    """The step that brings as many as somebody has answered."""
     meant_for: Any = None
     """Whom, or the place that, things are brought to where it is not said."""
     moments: Steps = field(default_factory=list)

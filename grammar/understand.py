@@ -38,6 +38,7 @@ from grammar.refusals import (
 from grammar.requests import Request
 from grammar.slips import fillers_by_first, mended, perfects, spellings
 from grammar.slots import Slots, command_words
+from grammar.so_many import with_numbers
 from grammar.speech import speech
 from grammar.tidy import Unbound, charging_last, is_one_of_each, returning, scoped, without_unused
 from grammar.tokens import COMMA, Token, tokenise
@@ -165,7 +166,7 @@ class Reader:
         if doubt is not None:
             return self._doubted(doubt)
         plan = without_unused(plan)  # what came to nothing is lost, too
-        plan = charging_last(returning(in_company(plan)))
+        plan = charging_last(returning(with_numbers(in_company(plan))))
         resolved = discourse.resolved
         lost = left_out(tree, self.tokens, plan, self.language, self.lexicon, resolved)
         lost += unspoken(tree, self.tokens, plan, self.language, resolved)

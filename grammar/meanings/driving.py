@@ -14,9 +14,9 @@ from grammar.meanings.loops import for_each_of_them, looped
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
-from grammar.meanings.strangers import announced_one
 from grammar.meanings.reports import counted_alone, tell_speaker
 from grammar.meanings.searches import searched
+from grammar.meanings.strangers import announced_one
 from grammar.meanings.waiting import wait_until
 from grammar.meanings.whereabouts import looked_further
 from grammar.plan import (

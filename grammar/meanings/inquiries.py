@@ -18,6 +18,7 @@ from grammar.meanings.reports import tell_speaker
 from grammar.meanings.surveys import Survey, each_asked, in_loop
 from grammar.plan import Call, Recall, Repeat, Text, Value
 from grammar.tidy import mentions, nodes
+from grammar.wordforms import head_word, singular
 
 
 @meaning("ask_topic")
@@ -85,7 +86,38 @@ def bring_many(d: Discourse, node: Node) -> Steps:
         person = Thing(survey.who, known=True, person=True)
     d.at = d.with_person = None
     fetching = deliver(d, replace(thing, pronoun=False), person, d.get(node, "where"))
-    return [Repeat(Recall(d.answer), tuple(fetching))]
+    d.so_many = Repeat(Recall(d.answer), tuple(fetching))
+    return [d.so_many]
+
+
+def as_many_as_answered(d: Discourse, node: Node) -> Steps | None:
+    """ "ask David how many chairs he needs and bring them to him": so many; None if "them" are no
+    such things. "Get them from the lounge and bring them to him" is one errand."""
+    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    part, asked_of = node.parts.get("thing"), d.thing
+    if survey is None or asked_of is None or not isinstance(part, Node) or not d.is_plural(part):
+        return None
+    question = survey.call.arguments["question"]
+    if (
+        part.means not in ("thing_it", "person_pronoun")
+        or survey.call.save_as != d.answer
+        or not d.answer
+    ):
+        return None
+    words = d.language.tokens_of(question.value) if isinstance(question, Text) else ()
+    number = any(
+        tuple(words[: len(sign)]) == sign
+        for sign in map(d.language.tokens_of, d.language.speech.get("asks_number", ()))
+    )
+    if not number or head_word(asked_of.text, d.language) not in {
+        singular(word, d.language) for word in words
+    }:
+        return None
+    if d.done and d.done[-1] is d.so_many:
+        person: Thing | None = d.get(node, "person_ref")
+        return [] if person is not None and person.value == survey.who else None
+    rest = {name: each for name, each in node.parts.items() if name != "thing"}
+    return bring_many(d, replace(node, parts=rest))
 
 
 @meaning("thing_answered")

@@ -14,6 +14,7 @@ from grammar.meanings.deliveries import inside
 from grammar.meanings.finding import look_for, meet, named, speak_to, where_sent
 from grammar.meanings.genders import means_thing
 from grammar.meanings.hosts import place_of_named
+from grammar.meanings.inquiries import as_many_as_answered
 from grammar.meanings.leading import lead
 from grammar.meanings.news import BACK
 from grammar.meanings.persons import is_me
@@ -213,8 +214,17 @@ def leads_people_only(d: Discourse, node: Node) -> bool:
 def carry_it(d: Discourse, node: Node) -> Steps:
     """ "take them to the kitchen", where "they" are cups."""
     assert d.thing is not None
+    names = (("person_ref", "thing"), ("source", "from"), ("spot", "where"))
+    parts = {new: node.parts[old] for old, new in names if old in node.parts}
+    so_many = as_many_as_answered(d, replace(node, parts=parts))
+    if so_many is not None:
+        return so_many
     spot: Where = d.get(node, "spot") or Where(d.get(node, "place"))
-    return deliver(d, replace(d.thing, pronoun=True), None, spot)
+    source: Where | None = d.get(node, "source")
+    thing = replace(d.thing, pronoun=True)
+    if source is not None:
+        thing = replace(thing, place=source.place, furniture=source.furniture)
+    return deliver(d, thing, None, spot)
 
 
 def brought_here(d: Discourse, person: Thing) -> Steps:

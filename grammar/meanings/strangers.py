@@ -1,5 +1,5 @@
-"""Guests whom nobody here knows: announced by a name that says nothing to the robot, so that whoever
-comes is asked for it."""
+"""Guests whom nobody here knows: their name says nothing to the robot, so that whoever comes is
+asked for it."""
 
 from __future__ import annotations
 

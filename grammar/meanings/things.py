@@ -21,6 +21,7 @@ from grammar.meanings.finding import (
     where_sent,
 )
 from grammar.meanings.holders import take_from_holder
+from grammar.meanings.inquiries import as_many_as_answered
 from grammar.meanings.nouns import thing_it
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import (
@@ -138,6 +139,8 @@ def fetch_from(d: Discourse, node: Node) -> Steps:
 def put(d: Discourse, node: Node) -> Steps:
     """ "put the cup on the table", "... in the kitchen", "... down"."""
     where = node.parts.get("where")
+    if (so_many := as_many_as_answered(d, node)) is not None:
+        return so_many
     on_it = where_gone_to(d, node)
     thing: Thing = whereto_told(d, d.get(node, "thing") or thing_it(d, node))
     if thing.person and thing.known:  # "otherwise put it there", where only Bob was spoken of
@@ -266,6 +269,8 @@ def bring(d: Discourse, node: Node) -> Steps:
     """Fetch a thing and hand it to a person, or put it down at a spot."""
     if means_who_is_met(d, node):
         return with_them(d, node)
+    if (so_many := as_many_as_answered(d, node)) is not None:
+        return so_many
     thing: Thing = d.get(node, "thing") or thing_it(d, node)  # "and deliver to Bob"
     thing = whereto_told(d, the_same(d, node, thing))
     source: Where | None = d.get(node, "from")

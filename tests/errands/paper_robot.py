@@ -14,6 +14,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from robot_api.capabilities.matching import match_answer
+
 START = "start"
 """Where the command is given: where the operator stands."""
 OPERATOR = "operator"
@@ -242,7 +244,7 @@ class PaperRobot:
         for option in sorted(options, key=len, reverse=True):
             if re.search(rf"\b{re.escape(option.lower())}\b", said):
                 return option
-        return list(options)[-1]
+        return match_answer(answer, options) or list(options)[-1]
 
     def _one(self, person: str | None) -> str:
         here = self._people_here(person or "person")
