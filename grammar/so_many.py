@@ -10,8 +10,8 @@ import msgspec
 from grammar.plan import Call, Items, Node, Plan, Recall, Repeat, Text
 from grammar.tidy import nodes
 
-MOST: Final = 12
-"""Nobody has a robot carry more than these, one by one."""
+MOST: Final = 19
+"""Up to this number there are as many options as a question may have; nobody has more carried."""
 NUMBERS: Final = Items(tuple(Text(str(number)) for number in range(MOST + 1)))
 
 

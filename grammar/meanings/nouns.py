@@ -35,6 +35,8 @@ def thing(d: Discourse, node: Node) -> Thing:
         if known and "adjectives" in node.parts and is_short_for(d, words, name):
             one, known = words, False  # "apple juice" is no orange juice
         many = words not in (one, name) or one != name
+        if known:  # it may only be called otherwise, as "Flasche" is a bottle
+            many = words != name and singular(words, d.language) != words
         one = instead_of_one(d, node, one)
         if not known and node.end == head.end and is_strange_name(d, node.start, node.end):
             raise unknown_person(d, d.words(node.start, node.end), node)
