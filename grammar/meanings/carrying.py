@@ -41,12 +41,21 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
     for_somebody = d.at_people or sought_somebody  # "if Bob is in the lobby, bring him a cup"
     lacking = d.missing is not None and d.missing.value == thing.value  # "if there is none, ..."
     nearby = d.at is not None and not (for_somebody or lacking) and thing.place is None
-    nearby = nearby and not isinstance(thing.value, Recall)  # what somebody asked for is anywhere
+    nearby = nearby and not wished_for(d, thing)  # what somebody asked for is anywhere
     is_here = thing.here or nearby or (d.at is not None and thing.place == d.at)
     steps: Steps = [] if looked or is_here else look_for(d, thing)
     d.holding = thing.value
     d.thing, d.thing_last = thing, True
     return [*steps, Call("grab", {"thing": sought(d, thing)})]
+
+
+def wished_for(d: Discourse, thing: Thing) -> bool:
+    """Whether somebody was asked for it, or whether they want it: "if she needs a chair, bring one"."""
+    if isinstance(thing.value, Recall):
+        return True
+    question = d.surveys[-1].call.arguments["question"] if d.surveys else None
+    words = question.value.lower() if isinstance(question, Text) else ""
+    return bool(thing.text) and f" {thing.text.lower()}" in words
 
 
 def where_seen(d: Discourse, thing: Thing) -> Thing:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
-from grammar.chart import Node
+from grammar.chart import Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where, as_value
 from grammar.doubts import Ambiguous, NotUnderstood
 from grammar.meanings.carrying import deliver
@@ -59,7 +59,8 @@ def guide(d: Discourse, node: Node) -> Steps:
         spot = Where(named_one)  # "ask whether they want to see Bob or Clara and take them there"
     if spot.place is None:
         raise NotUnderstood(d.language.phrase("guide_needs_place"))
-    if "place" in node.parts and spot.place == d.at and d.done:
+    to_me = "place" in node.parts and what_it_means(node.parts["place"]) == "place_here"
+    if "place" in node.parts and not to_me and spot.place == d.at and d.done:
         # "ask the visitors whom they want to see and take them there": no place was spoken of
         raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
     further: list[Value] = d.get(node, "place_list") or []

@@ -90,6 +90,8 @@ def seen_here(d: Discourse, node: Node) -> Report | Steps:
     if node.end - node.start == 1 and asked_yet(d) and d.report is None:
         return polled(d, "answers", None).words
     place = described(d, "", node)
+    if "at_place" in node.parts:  # "describe the lobby"
+        place = replace(place, place=d.get(node, "at_place"))
     if place.furniture:
         return things_on(d, place)
     if place.place is None and isinstance(d.report_asked, Report) and d.report_asked.looked:
@@ -259,8 +261,8 @@ def _spot_words(d: Discourse, thing: Thing) -> str:
 def whether_seen(d: Discourse, node: Node) -> Report | Steps:
     """ "is there anybody in the waiting room?", "has Bob got a cup on his desk?"."""
     holder: Thing | None = d.get(node, "holder")  # whose desk "his desk" is
-    there: Value | None = d.get(node, "at_place")
     thing: Thing = d.get(node, "thing") or d.get(node, "person_ref")
+    there: Value | None = d.get(node, "at_place")  # "whether Bob has come back to his office"
     more = described(d, thing.text, node)
     if not thing.known:  # "whether the woman is lying down"
         thing = replace(thing, value=more.value)
