@@ -50,7 +50,7 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
 
 
 def wished_for(d: Discourse, thing: Thing) -> bool:
-    """Whether somebody was asked for it, or whether they want it: "if she needs a chair, bring one"."""
+    """Whether somebody was asked for it, or if they want it: "if she needs a chair, bring one"."""
     if isinstance(thing.value, Recall):
         return True
     question = d.surveys[-1].call.arguments["question"] if d.surveys else None
