@@ -19,14 +19,15 @@ from grammar.chart import TooMuch
 from grammar.edits import Sentence
 from grammar.language import Language
 from grammar.lexicon import Lexicon
-from grammar.pieces import Piece, is_pieces, leading, leaves, pieces_at
-from grammar.tokens import COMMA
+from grammar.pieces import Piece, is_pieces, leading, leaves, pieces_at, words_listed
 from grammar.understand import Reader
 from grammar.understanding import Context, Understanding
 
 MOST_REPAIRS: Final = 3
 """Times that somebody puts themselves right in one sentence."""
 MOST_TRIED: Final = 6
+MOST_WORDS: Final = 6
+"""Words that take something back at once: "oh no sorry i meant"."""
 
 
 def understood(
@@ -52,38 +53,44 @@ def understood(
 
 def taken_back(reader: Reader) -> Iterator[tuple[int, int]]:
     """Where words take back what stands before them, with the marks around them."""
-    tokens = reader.tokens
-    words = [token.norm for token in tokens]
-    at = 1
+    tokens, at = reader.tokens, 1
     while at < len(tokens):
         parted = tokens[at - 1].kind == "mark"
-        terms = _terms(reader.language, parted)
-        length = max((_length(words[at:], each) for each in terms), default=0)
-        start, end = at - parted, at + length
-        while end < len(tokens) and tokens[end].kind == "mark":
-            end += 1
-        if length and start and end < len(tokens) and not _said_aloud(reader, start, end):
+        end = 0 if tokens[at].kind == "mark" else _end_of_term(reader, at, parted)
+        start = at - parted
+        if end and start and end < len(tokens) and not _said_aloud(reader, start, end):
             yield start, end
-        at = max(end, at + 1) if length else at + 1
+        at = max(end, at + 1)
 
 
-def _length(words: list[str], term: tuple[str, ...]) -> int:
-    """How many tokens a term takes at the beginning of others, commas in it included: "wait, no"; 0
-    if it is not there."""
-    at = 0
-    for word in term:
-        at += at > 0 and words[at : at + 1] == [COMMA]
-        if words[at : at + 1] != [word]:
-            return 0
-        at += 1
-    return at
+def _end_of_term(reader: Reader, at: int, parted: bool) -> int:
+    """Where words that take something back end, with the marks in them and behind: "no, sorry,"; 0
+    if there are none."""
+    ends: dict[tuple[str, ...], int] = {(): at}
+    said: tuple[str, ...] = ()
+    for place, token in enumerate(reader.tokens[at:], at):
+        if token.kind == "mark":
+            ends[said] = place + 1
+        elif len(said) < MOST_WORDS:
+            said = (*said, token.norm)
+            ends[said] = place + 1
+        else:
+            break
+    found = [end for term, end in ends.items() if term in _terms(reader.language, "anywhere")]
+    if parted:
+        found += [end for term, end in ends.items() if term in _terms(reader.language, "parted")]
+        found += [
+            end
+            for term, end in ends.items()
+            if term in _terms(reader.language, "marked") and reader.tokens[end - 1].kind == "mark"
+        ]
+    return max(found, default=0)
 
 
 @functools.cache
-def _terms(language: Language, parted: bool) -> frozenset[tuple[str, ...]]:
-    """Words that take something back; some do so only behind a comma."""
-    data = language.speech.get("taking_back", {})
-    listed = [*data.get("anywhere", ()), *(data.get("parted", ()) if parted else ())]
+def _terms(language: Language, where: str) -> frozenset[tuple[str, ...]]:
+    """Words that take something back "anywhere", "parted" by a comma, or "marked" on both sides."""
+    listed = language.speech.get("taking_back", {}).get(where, ())
     return frozenset(map(language.tokens_of, listed))
 
 
@@ -115,13 +122,16 @@ def _first_mark(reader: Reader) -> int:
 def _in_its_place(before: Reader, behind: Reader) -> Iterator[str]:
     """The sentence with its last part before the words replaced by the first one behind them."""
     for new in _first_pieces(behind):
-        lead = leading(behind, new.start)
-        for old in _last_pieces(before):
-            if old.rule != new.rule:
-                continue
+        lead, whole = leading(behind, new.start), _has_article(behind, new)
+        for old in sorted(
+            (old for old in _last_pieces(before) if old.rule == new.rule),
+            key=lambda old: whole and not _has_article(before, old),
+        ):
             old_lead = leading(before, old.start)
+            if lead and not old_lead:
+                continue  # "to the pharmacy" is no lab, but "to the blood lab" is its like
             first = old.start - (old_lead if lead else 0)
-            if not lead and _has_article(before, old) and not _has_article(behind, new):
+            if not lead and _has_article(before, old) and not whole:
                 first += 1  # "the blue, no, red cup": the article stays
             kept = before.text[: before.tokens[first].start]
             said, rest = behind.words(0, new.end), behind.text[behind.tokens[new.end - 1].end :]
@@ -131,6 +141,12 @@ def _in_its_place(before: Reader, behind: Reader) -> Iterator[str]:
             yield f"{kept}{said}{rest.lstrip(' ,') if rest.startswith(',') else rest}"
             if rest.startswith(","):
                 yield f"{kept}{said} {rest.lstrip(' ,')}"
+
+
+def _is_like_it(parts: Reader) -> bool:
+    """Whether it is another of what was spoken of: "the red one"."""
+    likes = {norm for norms in words_listed(parts.language, "counted_words") for norm in norms}
+    return parts.last_word > 1 and parts.tokens[parts.last_word - 1].norm in likes
 
 
 def _first_pieces(behind: Reader) -> list[Piece]:
@@ -168,13 +184,17 @@ def _as_a_change(
     end = _first_mark(behind)
     change = behind.words(0, end)
     parts = Reader(change, behind.lexicon, behind.language, context)
-    if not parts.tokens or not is_pieces(parts):
+    if not parts.tokens or not (is_pieces(parts) or _is_like_it(parts)):
         return None
     rest = behind.text[behind.tokens[end - 1].end :]
     first = conversation.understood(before.text + rest, before.lexicon, before.language, context)
     if first.plan is None:
         return None
-    changed = conversation.understood(
-        f"{words.strip(' ,.')} {change}", before.lexicon, before.language, first.context
-    )
-    return changed if changed.plan is not None else None
+    plainest = next(iter(before.language.speech["taking_back"]["parted"]))
+    for lead in (words.strip(" ,."), plainest):
+        changed = conversation.understood(
+            f"{lead} {change}", before.lexicon, before.language, first.context
+        )
+        if changed.plan is not None:
+            return changed
+    return None

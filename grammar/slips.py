@@ -19,7 +19,8 @@ from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.names import names_of
 from grammar.refusals import signs
-from grammar.tokens import Token
+from grammar.tokens import Token, tokenise
+from grammar.wordforms import singular
 
 SHORTEST_JOINED: Final = 4
 """Letters of two words that a space is missing between."""
@@ -27,8 +28,46 @@ LONG_ENOUGH: Final = 5
 """Letters of a word that others may be run into: "laccueil", but "lait" is milk."""
 VOWELS: Final = frozenset("aeiouy")
 """What a word may begin with that another is elided before."""
+SHORTEST_SWAPPED: Final = 3
+"""Letters of a function word that may have two of them swapped: "teh"."""
 SHORTEST_CORRECTED: Final = 4
 """Letters of a word that may be misspelt."""
+
+
+def swapped_back(text: str, language: Language, known: Collection[str]) -> tuple[str, int]:
+    """A text without the words that are a known one with two letters swapped, and how many there
+    were: "taht her pateint is waiting". No word gets longer, so that everything stays where it is;
+    what is to be spoken is put right, too. Only where the language lists what is no slip."""
+    real = language.speech.get("no_swaps")
+    if real is None:
+        return text, 0
+    slips = 0
+    for token in tokenise(text, language.spelling):
+        word = text[token.start : token.end]
+        if token.kind != "word" or not word.islower() or len(word) < SHORTEST_SWAPPED:
+            continue
+        if word in real or token.value is not None or is_known(word, language, known):
+            continue
+        meant = {
+            each
+            for each in swaps(word)
+            if is_known(each, language, language.closed if len(word) == SHORTEST_SWAPPED else known)
+        }
+        if len(meant) == 1:
+            text = f"{text[: token.start]}{meant.pop()}{text[token.end :]}"
+            slips += 1
+    return text, slips
+
+
+def swaps(word: str) -> set[str]:
+    """A word with each two neighbouring letters swapped."""
+    return {word[:at] + word[at + 1] + word[at] + word[at + 2 :] for at in range(len(word) - 1)} - {
+        word
+    }
+
+
+def is_known(word: str, language: Language, known: Collection[str]) -> bool:
+    return word in known or word in signs(language) or singular(word, language) in known
 
 
 def mended(
@@ -173,8 +212,7 @@ def spellings(
 def misspelt_little(word: str, language: Language, lexicon: Lexicon) -> tuple[str, ...]:
     """Function words that a short one is with two letters swapped ("yuo"), or of three letters
     those, or words of names, with one left out ("frm", "rom")."""
-    swapped = {word[:at] + word[at + 1] + word[at] + word[at + 2 :] for at in range(len(word) - 1)}
-    near = [each for each in sorted(language.closed) if each in swapped]
+    near = [each for each in sorted(language.closed) if each in swaps(word)]
     if len(word) == SHORTEST_CORRECTED - 1:
         near += [
             each

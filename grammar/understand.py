@@ -36,7 +36,7 @@ from grammar.refusals import (
     why_not,
 )
 from grammar.requests import Request
-from grammar.slips import fillers_by_first, mended, perfects, spellings
+from grammar.slips import fillers_by_first, mended, perfects, spellings, swapped_back
 from grammar.slots import Slots, command_words
 from grammar.so_many import with_numbers
 from grammar.speech import speech
@@ -76,14 +76,14 @@ class Reader:
     """Reads one sentence."""
 
     def __init__(self, text: str, lexicon: Lexicon, language: Language, context: Context) -> None:
-        self.text = text
         self.lexicon = lexicon
         self.language = language
         self.context = context
         self.names: Names = names_of(language, lexicon)
         known = language.words | self.names.words | language.closed
         commands = command_words(language)
-        self.tokens = mended(tokenise(text, language.spelling), language, known, commands)
+        self.text, self.slips = swapped_back(text, language, known)
+        self.tokens = mended(tokenise(self.text, language.spelling), language, known, commands)
         self.corrections = spellings(self.tokens, language, lexicon)
         self.skips = self._skips()
         self.forms = dict(perfects(self.tokens, language, commands))
@@ -203,7 +203,7 @@ class Reader:
         )
 
     def _confidence(self, tree: Node, discourse: Discourse) -> float:
-        doubts = 0.15 * len(tree.corrections) + 0.1 * len(discourse.assumptions)
+        doubts = 0.15 * (len(tree.corrections) + self.slips) + 0.1 * len(discourse.assumptions)
         return round(max(0.1, 1.0 - doubts), 2)
 
     def is_little(self, positions: range) -> bool:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 from grammar.chart import Node
-from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
+from grammar.discourse import ANYONE, START, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
-from grammar.meanings.deliveries import Delivery
+from grammar.meanings.deliveries import Delivery, for_them, ordered_now
 from grammar.meanings.finding import go, look_for, meet, where_sent
 from grammar.meanings.holders import from_whoever_has_it
 from grammar.meanings.persons import is_me
@@ -15,7 +16,7 @@ from grammar.meanings.places import sought
 from grammar.meanings.searches import search_of
 from grammar.meanings.sources import where_told
 from grammar.meanings.surveys import Survey, note
-from grammar.plan import Call, Items, Recall, Step, Text, Value
+from grammar.plan import Ask, Call, Holds, If, Items, Recall, Step, Text, Value
 
 
 def pick_up(d: Discourse, thing: Thing) -> Steps:
@@ -41,7 +42,8 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
     for_somebody = d.at_people or sought_somebody  # "if Bob is in the lobby, bring him a cup"
     lacking = d.missing is not None and d.missing.value == thing.value  # "if there is none, ..."
     nearby = d.at is not None and not (for_somebody or lacking) and thing.place is None
-    nearby = nearby and not wished_for(d, thing)  # what somebody asked for is anywhere
+    # What somebody asked for is anywhere, and so is what is to be brought after coming back.
+    nearby = nearby and not wished_for(d, thing) and d.at != Recall(START)
     is_here = thing.here or nearby or (d.at is not None and thing.place == d.at)
     steps: Steps = [] if looked or is_here else look_for(d, thing)
     d.holding = thing.value
@@ -123,13 +125,46 @@ def _is_given(step: Step, thing: Thing) -> bool:
 
 def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None) -> Steps:
     """Pick a thing up, go where it is to be, and put it down or hand it over."""
+    need = ordered_now(d, thing, person)
+    if need is not None:
+        thing = replace(need.thing if thing.pronoun else thing, place=thing.place, pronoun=False)
+        person, spot = for_them(need, spot) if person is None else (person, spot)
     scene = d.scene()
     if from_whoever_has_it(d, thing, lambda: _delivered(d, thing, person, spot)):
         return []
     thing = where_told(d, thing)
+    told = told_where_it_is(d, thing)
+    if told is not None:
+        return [carried_from_there(d, told, thing, lambda: _delivered(d, thing, person, spot))]
     steps = _delivered(d, thing, person, spot)
     d.delivery = Delivery(thing, person, spot, tuple(steps), scene)
     return steps
+
+
+def told_where_it_is(d: Discourse, thing: Thing) -> If | None:
+    """The last step, if it looks for a thing, comes back and tells where it is."""
+    match d.done[-1] if d.done else None:
+        case If(condition=Holds(value=Ask(method="find", arguments=sought))) as told:
+            same = thing.pronoun and sought.get("thing") == thing.value
+            return told if same and _way_back(told) is not None else None
+        case _:
+            return None
+
+
+def _way_back(told: If) -> int | None:
+    """Where among the steps the robot leaves what it has found."""
+    back = Call("goto", {"place": Recall(START)})
+    return next((at for at, step in enumerate(told.then) if step == back), None)
+
+
+def carried_from_there(d: Discourse, told: If, thing: Thing, make: Callable[[], Steps]) -> If:
+    """ "tell me where the stapler is and bring it to me": it is taken where it is found."""
+    d.done.pop()
+    d.holding = thing.value
+    d.went(d.start())
+    at = _way_back(told)
+    taking = Call("grab", {"thing": thing.value})
+    return If(told.condition, (*told.then[:at], taking, *told.then[at:], *make()), told.otherwise)
 
 
 def _delivered(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None) -> Steps:

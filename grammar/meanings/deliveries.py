@@ -32,6 +32,8 @@ class Delivery:
     steps: tuple[Step, ...]
     before: dict[str, Any]
     """The scene in which it began."""
+    needed: bool = False
+    """Whether it was only said that somebody needs it."""
 
     @property
     def receiver(self) -> Thing | None:
@@ -55,6 +57,52 @@ def delivered_last(d: Discourse) -> Delivery | None:
     if delivery is None or not delivery.steps or last is not delivery.steps[-1]:
         return None
     return delivery
+
+
+def ordered_now(d: Discourse, thing: Thing, person: Thing | None) -> Delivery | None:
+    """What was only said to be needed, taken out of the steps, for now it is said what to do: "Bob
+    needs bandages. Go to the lab and take him a bandage from there"."""
+    need: Delivery | None = d.delivery
+    if need is None or not is_needed(d, thing):
+        return None
+    receiver = need.receiver
+    same = is_me(person) if receiver is None else person is None or person.value == receiver.value
+    if person is not None and not same:
+        return None
+    gone = places_gone_to(d)
+    end = len(d.done) - len(gone)
+    start = end - len(need.steps)
+    if not need.steps or d.done[start:end] != list(need.steps):
+        return None
+    del d.done[start:end]
+    d.set_scene(need.before)
+    for place in gone:
+        d.went(place)
+    return need
+
+
+def places_gone_to(d: Discourse) -> list[Value]:
+    """The places that the last steps go to, one after the other, with nothing done there."""
+    visited: list[Value] = []
+    for step in reversed(d.done):
+        if not (isinstance(step, Call) and step.method == "goto" and "place" in step.arguments):
+            break
+        visited.insert(0, step.arguments["place"])
+    return visited
+
+
+def is_needed(d: Discourse, thing: Thing) -> bool:
+    """Whether somebody was said to need such a thing."""
+    need: Delivery | None = d.delivery
+    return need is not None and need.needed and (need.thing.pronoun or _alike(thing, need.thing))
+
+
+def for_them(need: Delivery, spot: Where | None) -> tuple[Thing | None, Where | None]:
+    """Whom what is needed is for, who is where it is to be brought."""
+    receiver = need.receiver
+    if receiver is None or spot is None:
+        return receiver, spot
+    return (None, spot) if spot.furniture else (replace(receiver, place=spot.place), None)
 
 
 def lacks(delivery: Delivery | None, met: Meeting | None) -> bool:
@@ -171,7 +219,7 @@ def who_asked_for(d: Discourse, thing: Thing) -> Thing | None:
 
 
 def _alike(one: Thing, other: Thing) -> bool:
-    return one.value == other.value or bool(one.noun and one.noun == other.noun)
+    return _same(one, other) or bool(one.noun and one.noun == other.noun)
 
 
 def whereto_told(d: Discourse, thing: Thing) -> Thing:

@@ -59,6 +59,9 @@ def ask(d: Discourse, node: Node) -> Steps:
         person = d.build(question.parts["asked_one"])  # "find out what Bob wants"
     if person is None:
         person = just_visited(d) or all_meant(d, node)
+    nobody = person is None and d.with_person is None and d.at is None and not d.in_loop
+    if nobody and node.production.fixed.get("of_those_there"):
+        raise NotUnderstood(d.language.phrase("no_question"))
     if person is not None and person.coming:
         going = go(d, person.place) if person.place is not None else []
         waiting = Call("wait_for", {"thing": person.value})

@@ -10,7 +10,13 @@ from grammar.doubts import NotUnderstood
 from grammar.freetext import words_for
 from grammar.meanings.carrying import deliver, pick_up, take_back_delivery, the_same
 from grammar.meanings.chosen import handed_already
-from grammar.meanings.deliveries import Delivery, meant_for, whereto_told
+from grammar.meanings.deliveries import (
+    Delivery,
+    is_needed,
+    meant_for,
+    places_gone_to,
+    whereto_told,
+)
 from grammar.meanings.descriptions import described
 from grammar.meanings.finding import (
     if_missing,
@@ -63,7 +69,9 @@ def find(d: Discourse, node: Node) -> Steps:
     if d.found_already:
         return []
     visited = places_gone_to(d) if thing.place is None else []
-    if len(visited) > 1:  # "go to the lobby and then to the lounge and look for it"
+    if len(visited) > 1 and all(
+        isinstance(each, Text) for each in visited
+    ):  # "go to the lobby and then to the lounge and look for it"
         del d.done[-len(visited) :]
         return look_for(d, replace(thing, place=Items(tuple(visited))))
     missed = d.missing is not None and (d.missing.value, d.missing.place) == (thing.value, d.at)
@@ -71,16 +79,6 @@ def find(d: Discourse, node: Node) -> Steps:
     if thing.place is None and d.at is not None and not everywhere:
         thing = replace(thing, place=d.at)  # "go to the kitchen and find the cup"
     return look_for(d, thing)
-
-
-def places_gone_to(d: Discourse) -> list[Value]:
-    """The places that the last steps go to, one after the other, with nothing done there."""
-    visited: list[Value] = []
-    for step in reversed(d.done):
-        if not (isinstance(step, Call) and step.method == "goto" and "place" in step.arguments):
-            break
-        visited.insert(0, step.arguments["place"])
-    return visited if all(isinstance(each, Text) for each in visited) else []
 
 
 def find_several(d: Discourse, node: Node, thing: Thing) -> Steps:
@@ -107,6 +105,8 @@ def grab(d: Discourse, node: Node) -> Steps:
     thing = noun_of(d, node)
     if isinstance(d.meant_for, Delivery) and not thing.pronoun:  # "if there is no tea, get coffee"
         return deliver(d, thing, d.meant_for.person, d.meant_for.spot)
+    if is_needed(d, thing) and (thing.place is not None or d.at is not None):
+        return brought_to_whoever_needs_it(d, thing)
     if thing.place is not None and thing.place != d.at:
         fetched = node.production.fixed.get("fetched")
         return deliver(d, thing, None, None) if fetched else pick_up(d, thing)
@@ -311,12 +311,19 @@ def bring(d: Discourse, node: Node) -> Steps:
             return []  # "Alice needs the cup, bring it to her"
     spot: Where | None = d.get(node, "where")
     if person is None and spot is None and node.production.fixed.get("open"):
-        person, spot = meant_for(d, thing)
-        steps = deliver(d, thing, person, spot)
-        d.brought = handing_over(steps) if person is not None or spot is not None else ()
-        return steps
+        return brought_to_whoever_needs_it(d, thing)
     steps = deliver(d, thing, person, spot)
     d.destined = d.delivery if node.production.fixed.get("destined") else None
+    if node.production.fixed.get("why") and isinstance(d.delivery, Delivery):
+        d.delivery = replace(d.delivery, needed=True)
+    return steps
+
+
+def brought_to_whoever_needs_it(d: Discourse, thing: Thing) -> Steps:
+    """Bring something without a word to whom."""
+    person, spot = meant_for(d, thing)
+    steps = deliver(d, thing, person, spot)
+    d.brought = handing_over(steps) if person is not None or spot is not None else ()
     return steps
 
 
