@@ -4,9 +4,10 @@ If so, ask him when. Tell me what he said": yes and when, or no.
 
 from __future__ import annotations
 
-from grammar.discourse import Discourse
+from grammar.discourse import Discourse, Steps
 from grammar.meanings.surveys import Survey, asked_so_far, in_line, in_loop, note
 from grammar.plan import Call, Recall, Remember, Sentence, Text, Value
+from grammar.tidy import mentions
 
 
 def said_in_all(d: Discourse) -> Value:
@@ -48,3 +49,32 @@ def _noted(d: Discourse, first: Survey) -> Value:
 
 def _answer(call: Call) -> Recall:
     return Recall(str(call.save_as))
+
+
+def said_one_by_one(d: Discourse) -> Steps:
+    """What the one who was asked several questions has answered to each, with the question; nothing
+    if that was only one, or if something was done with the first answers."""
+    surely = in_line(d)
+    last = surely[-1] if surely else None
+    if last is None or last.call.save_as != d.answer or in_loop(d, last.call):
+        return []
+    theirs = [
+        each
+        for each in surely
+        if each.who == last.who
+        and each.call.save_as is not None
+        and not in_loop(d, each.call)
+        and not mentions(tuple(d.done), Recall(each.call.save_as))
+    ]
+    if len(theirs) < 2 or len({each.call.save_as for each in theirs}) < len(theirs):
+        return []
+    return [_with_question(each) for each in theirs]
+
+
+def _with_question(survey: Survey) -> Call:
+    """An answer behind its question."""
+    question = survey.call.arguments["question"]
+    answer = Recall(str(survey.call.save_as))
+    first = Text(f"{question.value} ") if isinstance(question, Text) else question
+    parts: tuple[Value, ...] = (first, answer, Text("."))
+    return Call("say", {"text": Sentence(parts)})

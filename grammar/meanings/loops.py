@@ -280,6 +280,8 @@ def each_who_comes(d: Discourse, make: Callable[[], Steps], at_once: bool = Fals
         and body[0] == Call("goto", {"place": person.place})
     ):
         going, body = body[:1], body[1:]  # "greet the people in the lobby"
+    if at_once and not person.plural and person.text != ANYONE:
+        return body  # "ask the visitor every half hour": the same one
     once = [step for step in body if isinstance(step, Call) and step.method in WITH_ONE]
     if not once or len(once) != len(body):
         return [*going, *body]

@@ -202,8 +202,12 @@ def places_asked_for(d: Discourse, question: Node) -> Value | None:
         return None
     words = d.norms(part.start, part.end)
     last = singular(words[-1], d.language)
+    any_place = last in d.language.words_called("place_nouns")
     for kind, places in d.lexicon.place_kinds.items():
         said = d.language.tokens_of(kind)
+        numbered = any(d.language.tokens_of(each.name)[: len(said)] == said for each in places)
+        if any_place and len(words) == len(said) + 1 and not numbered:
+            continue  # "which room": no house calls only its meeting rooms so
         if tuple(words[-len(said) :]) == said and len(places) <= MOST_OPTIONS:
             first = d.norms(part.end - len(said) - 1, part.end - len(said))[0]  # "meeting" room
             called = [each for each in places if first in d.language.tokens_of(each.name)]

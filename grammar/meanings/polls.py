@@ -17,7 +17,7 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.answers import Said, Wanted, is_about, wanted, yes
-from grammar.meanings.follow_ups import said_in_all
+from grammar.meanings.follow_ups import said_in_all, said_one_by_one
 from grammar.meanings.news import Told, last_found
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import (
@@ -344,6 +344,10 @@ def answer_of(d: Discourse, node: Node) -> Told:
     said = said_in(d, node)
     if _of_several(d, node, person):
         return polled(d, "answers" if said is None else "who", said)
+    part = node.parts.get("person_ref")
+    if said is None and part is not None and part.start > node.start:  # "what they said"
+        if each_said := said_one_by_one(d):
+            return Told(each_said, [])
     if said is None and (of_whom := said_by(d, node.start, node.end)) is not None:
         return Told(of_whom, [])
     of_one = person is not None and person.known and in_loop(d, survey.call)

@@ -14,6 +14,7 @@ from grammar.meanings.news import in_round
 from grammar.meanings.nouns import thing_it
 from grammar.meanings.places import kind_places, sought
 from grammar.meanings.registry import meaning
+from grammar.meanings.there import just_checked
 from grammar.plan import (
     Ask,
     Both,
@@ -103,10 +104,25 @@ def trait_holds(d: Discourse, node: Node) -> Condition:
         d.went(place)
         d.pending.append(Call("goto", {"place": place}))
     trait: Trait = d.get(node, "place_trait")
+    checked = checked_just_now(d, trait) if place is None else None
+    if checked is not None:
+        return checked
     d.pending += trait.first
     if trait.thing is not None and in_round(d):
         d.met = Meeting(trait.thing, holds=not trait.denied)
     return trait.condition
+
+
+def checked_just_now(d: Discourse, trait: Trait) -> Condition | None:
+    """ "check if anybody is in the hall. If it is empty, ...": what the step before has looked at."""
+    if d.report is None:
+        return None
+    about: Thing | None = d.report.thing
+    known = just_checked(d, trait.thing or Thing(Text(ANYONE), person=True))
+    if known is None or about is None:
+        return None
+    d.met = Meeting(about, holds=not trait.denied)
+    return Not(known) if trait.denied else known
 
 
 @meaning("for_each_place_such")

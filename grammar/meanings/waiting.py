@@ -18,7 +18,7 @@ from grammar.meanings.claims import claim_of, meet_there
 from grammar.meanings.conditions import condition_of, negated
 from grammar.meanings.deliveries import hands_it_over, inside
 from grammar.meanings.finding import speak_to
-from grammar.meanings.news import Told, go_back, in_round
+from grammar.meanings.news import BACK, Told, go_back, in_round
 from grammar.meanings.other_answers import other_answer
 from grammar.meanings.persons import is_me, kind_in_plural
 from grammar.meanings.polls import told_as_asked
@@ -321,6 +321,7 @@ def tell_when(d: Discourse, node: Node) -> Steps:
         asker: Thing = d.get(node, "person_ref")
         back = go_back(d, []) if is_me(asker) else []
         return [*back, *asked.words] if is_me(asker) else speak_to(d, asker, asked.words)
+    wait_before_going_back(d, node)
     part = node.parts.get("person_ref")
     if part is None or part.start < node.parts["condition"].start:
         d.get(node, "person_ref")  # who is named first is spoken of as "she" then
@@ -338,6 +339,18 @@ def tell_when(d: Discourse, node: Node) -> Steps:
     if node.production.fixed.get("always"):
         return each_time(before_it, condition, told)
     return [*waiting, *told]
+
+
+def wait_before_going_back(d: Discourse, node: Node) -> None:
+    """ "watch the mail room and come back and let me know when somebody comes": it is there that
+    they are waited for, and then gone back."""
+    if not d.done or d.done[-1] != BACK or node.parts["condition"].start < node.start + 2:
+        return
+    d.done.pop()
+    if d.place is None or d.place == BACK.arguments["place"]:
+        d.at = None  # the robot has not left yet
+    else:
+        d.went(d.place)
 
 
 def at_least(condition: Condition) -> Condition:
