@@ -27,6 +27,8 @@ _HOLDS: Final = {
 BRANCHES: Final = ("otherwise", "otherwise_not", "otherwise_denied", "then")
 """The parts of a condition that are steps, the last one first."""
 CONDITIONAL: Final = frozenset({"if", "tell_condition"})
+FETCHING: Final = frozenset({"fetch_person", "find", "grab", "fetch_from"})
+"""Clauses that only get somebody or something."""
 FOUND: Final = frozenset({"when_found"})
 """Clauses that are conditions on a search before."""
 
@@ -84,6 +86,12 @@ def done_first(chain: Node) -> Node:
     each: Leaf | Node | None = chain
     while isinstance(each, Node):
         last = itself(_node(each.parts["first"]))
+        if fetched_late(before, last):
+            rest = replace(each, parts={**each.parts, "first": _node(last.parts["then"])})
+            for step in reversed(before):
+                rest = replace(step, parts={**step.parts, "rest": rest})
+            late = replace(last, parts={**last.parts, "then": rest}, start=chain.start)
+            return replace(chain, parts={"first": late}, end=late.end)
         if last.production.means == "once_done" and "later" in last.parts and before:
             prior = {name: part for name, part in last.parts.items() if name != "later"}
             rest = replace(each, parts={**each.parts, "first": last.parts["later"]})
@@ -93,6 +101,17 @@ def done_first(chain: Node) -> Node:
         before.append(each)
         each = each.parts.get("rest") if each.production.fixed.get("joint") == "and" else None
     return chain
+
+
+def fetched_late(before: list[Node], last: Node) -> bool:
+    """Whether a time is said of somebody or something that is fetched first: "get Clara and take
+    her to the hall at two" has nobody fetched now who then waits until two."""
+    if last.production.means != "delayed" or not before or "rest" in last.parts:
+        return False
+    if last.parts["delay"].start < last.parts["then"].start:
+        return False
+    fetching = (itself(_node(step.parts["first"])).production.means for step in before)
+    return all(means in FETCHING for means in fetching)
 
 
 def _asks(part: Leaf | Node) -> bool:

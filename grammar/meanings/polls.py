@@ -345,9 +345,9 @@ def answer_of(d: Discourse, node: Node) -> Told:
     if _of_several(d, node, person):
         return polled(d, "answers" if said is None else "who", said)
     part = node.parts.get("person_ref")
-    if said is None and part is not None and part.start > node.start:  # "what they said"
-        if each_said := said_one_by_one(d):
-            return Told(each_said, [])
+    whatever = said is None and part is not None and part.start > node.start  # "what they said"
+    if whatever and (each_said := said_one_by_one(d)):
+        return Told(each_said, [])
     if said is None and (of_whom := said_by(d, node.start, node.end)) is not None:
         return Told(of_whom, [])
     of_one = person is not None and person.known and in_loop(d, survey.call)

@@ -114,7 +114,7 @@ def trait_holds(d: Discourse, node: Node) -> Condition:
 
 
 def checked_just_now(d: Discourse, trait: Trait) -> Condition | None:
-    """ "check if anybody is in the hall. If it is empty, ...": what the step before has looked at."""
+    """ "check if anybody is in the hall. If it is empty, ...": what the step before looked at."""
     if d.report is None:
         return None
     about: Thing | None = d.report.thing
