@@ -32,6 +32,7 @@ from grammar.plan import (
     Try,
     Value,
 )
+from grammar.tidy import nodes
 
 
 @meaning("and")
@@ -101,6 +102,10 @@ def named_before(d: Discourse, node: Node, name: str) -> None:
 
 @meaning("battery_is")
 def battery_is(d: Discourse, node: Node) -> Condition:
+    last = d.done[-1] if d.done else None
+    if d.report_open and last is not None and Ask("battery") in nodes(last):
+        d.done.pop()  # "check your battery. If ...": nobody is told
+        d.report_open = False
     return Compare(Ask("battery"), d.get(node, "operator", "=="), as_value(d.get(node, "percent")))
 
 

@@ -46,7 +46,7 @@ from grammar.meanings.several_things import (
     over_things,
 )
 from grammar.meanings.sources import keep_fetching, sourced
-from grammar.meanings.surveys import each_asked, uses_answer
+from grammar.meanings.surveys import Survey, each_asked, uses_answer
 from grammar.meanings.volunteers import over_willing
 from grammar.plan import (
     Ask,
@@ -62,10 +62,11 @@ from grammar.plan import (
     Recall,
     Repeat,
     Step,
+    Text,
     Value,
 )
 from grammar.tidy import nodes
-from grammar.wordforms import singular
+from grammar.wordforms import head_word, singular
 
 LIST_PARTS: Final = frozenset({"more_names", "either_names", "more_things"})
 """Rules for the rest of a list, which is a part of the whole."""
@@ -370,8 +371,31 @@ def each_their_own(d: Discourse, one: One) -> Steps | None:
     steps = one(asked)
     if uses_answer(d, steps):
         return steps
-    d.set_scene(scene)
-    return None
+    wished = if_wished(d, steps)
+    if wished is None:
+        d.set_scene(scene)
+    return wished
+
+
+def if_wished(d: Discourse, steps: Steps) -> Steps | None:
+    """ "ask the people whether they would like tea and bring it to them": to those who would."""
+    survey: Survey = d.surveys[-1]
+    question = survey.call.arguments["question"]
+    agree = d.language.phrase("yes")
+    if agree not in survey.options or not isinstance(question, Text) or not survey.call.save_as:
+        return None
+    words = set(d.language.tokens_of(question.value))
+    brought = [
+        head_word(each.arguments["thing"].value, d.language)
+        for each in nodes(tuple(steps))
+        if isinstance(each, Call)
+        and each.method == "grab"
+        and isinstance(each.arguments["thing"], Text)
+    ]
+    wishes = set(d.language.speech.get("wishes", ()))
+    if not brought or not wishes & words or any(each not in words for each in brought):
+        return None
+    return [If(Compare(Recall(survey.call.save_as), "==", Text(agree)), tuple(steps))]
 
 
 def over_those_who(d: Discourse, node: Node, person: Thing, one: One) -> Steps:

@@ -83,6 +83,9 @@ def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
         again = just_branched(d, no=True)  # "if you find it, bring it. If it is not there, ..."
         if again is not None:
             return again
+    other = other_case_of(d, node)
+    if other is not None:
+        return other
     if isinstance(thing.group, Items):
         result = _each_of_them(d, node, thing.group.items, search)
     else:
@@ -96,6 +99,17 @@ def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
             plain = {name: part for name, part in node.parts.items() if name != "state"}
             result = Both((is_there(d, noun_of(d, replace(node, parts=plain)), search), result))
     return result
+
+
+def other_case_of(d: Discourse, node: Node) -> Condition | None:
+    """ "see if Bob is in. If not, tell the visitor so. If he is there, ...": he is Bob."""
+    before, part = d.branched, node.parts.get("person_ref")
+    if before is None or before.met is None or not isinstance(part, Node):
+        return None
+    who, gender = before.met.thing, d.gender(part.start, part.end)
+    if part.means != "person_pronoun" or gender is None or not (who.person and who.known):
+        return None
+    return just_branched(d, no="no" in node.production.fixed) if d.may_have(who, gender) else None
 
 
 def host_of_visit(d: Discourse, who: Thing) -> Thing | None:
