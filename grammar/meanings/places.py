@@ -318,7 +318,8 @@ def extraposed(d: Discourse, part: Leaf | Node | None) -> tuple[Where, Where] | 
         how = next((stands[word] for word in words if word in stands), "")
         source = Where(home_of(d, beside), beside, preposition=how)
     furniture = piece_called(d, d.get(spot, "furniture"))
-    homes = {each.inside for each in d.lexicon.furniture if each.name == furniture and each.inside}
+    named = (each for each in d.lexicon.furniture if furniture in (each.name, each.kind))
+    homes = {each.inside for each in named if each.inside}  # of the kitchen table, too
     if not isinstance(source.place, Text) or not homes or source.place.value in homes:
         return None
     return Where(home_of(d, furniture), furniture), source
