@@ -270,7 +270,9 @@ def come_back(d: Discourse, node: Node) -> Steps:
 def and_back(d: Discourse, node: Node) -> Steps:
     """ "take Henry to the pharmacy and back": whoever was guided there is guided back, too."""
     last = d.done[-1] if d.done else None
-    if isinstance(last, Call) and last.method == "guide":
+    if not isinstance(last, Call) or last.method in ("call", "ask", "say"):
+        raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
+    if last.method == "guide":
         start = d.start()
         d.came_back()
         return [Call("guide", {**last.arguments, "place": start})]
