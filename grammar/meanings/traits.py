@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing, Where
@@ -121,7 +121,8 @@ def checked_just_now(d: Discourse, trait: Trait) -> Condition | None:
     known = just_checked(d, trait.thing or Thing(Text(ANYONE), person=True))
     if known is None or about is None:
         return None
-    d.met = Meeting(about, holds=not trait.denied)
+    # Those who are in a room may be several, so that "her" is somebody else.
+    d.met = Meeting(replace(about, plural=about.person or about.plural), holds=not trait.denied)
     return Not(known) if trait.denied else known
 
 
