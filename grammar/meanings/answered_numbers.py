@@ -43,3 +43,10 @@ def _answered(d: Discourse, survey: Survey, telling: list[str]) -> bool:
     yes_no = d.language.phrase("yes") in survey.options
     chosen = yes_no or any(names_option(d, telling, each) for each in survey.options)
     return chosen and is_about(d, survey, telling)
+
+
+def of_answers(d: Discourse, node: Node) -> None:
+    """Of those who were asked, only a number is told: "ask who wants tea and tell me how many"."""
+    yes_no = {d.language.phrase("yes"), d.language.phrase("no")}
+    if node.production.fixed.get("many") and d.answer is not None and d.surveys:
+        d.polled_for = "many" if set(d.surveys[-1].options) == yes_no else "each"

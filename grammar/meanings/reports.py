@@ -13,6 +13,7 @@ from grammar.discourse import START, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings import news, polls
 from grammar.meanings.absences import undelivered
+from grammar.meanings.answered_numbers import of_answers
 from grammar.meanings.arrivals import arrival, arrival_told
 from grammar.meanings.finding import is_here, speak_to
 from grammar.meanings.follow_ups import said_in_all
@@ -184,6 +185,10 @@ def found_out(d: Discourse, found: Report, person: Thing | None, *, back: bool) 
         d.after_round = (None, "each")
         return steps
     far = person is not None and not is_here(d, person) and found.about_here
+    if far and seen_here and news.in_round(d) and person is not None and person.known:
+        steps += told(d, found, None)
+        d.after_round = (person, "each")  # they are told when all places have been seen
+        return steps
     if far and found.value is not None and not isinstance(found.value, Recall):
         name = d.variable(found.name)
         steps.append(Remember(name, found.value))  # found out here, told there
@@ -205,13 +210,14 @@ def not_yet_back(d: Discourse, found: Report) -> None:
 
 def told(d: Discourse, found: Report, person: Thing | None) -> Steps:
     """Say it."""
-    saying = _saying(d, found)
+    saying = saying_of(d, found)
     d.report, d.report_step = found, saying
     d.answer = d.news = d.counted = d.checked = None
     return speak_to(d, person, [saying])
 
 
-def _saying(d: Discourse, found: Report) -> Call | If:
+def saying_of(d: Discourse, found: Report) -> Call | If:
+    """What tells a report."""
     words = dict(found.words)
     if found.otherwise is not None:
         assert found.value is not None
@@ -270,13 +276,6 @@ def tell_that(d: Discourse, node: Node) -> Steps:
     return told_again(d, person)
 
 
-def of_answers(d: Discourse, node: Node) -> None:
-    """Of those who were asked, only a number is told: "ask who wants tea and tell me how many"."""
-    yes_no = {d.language.phrase("yes"), d.language.phrase("no")}
-    if node.production.fixed.get("many") and d.answer is not None and d.surveys:
-        d.polled_for = "many" if set(d.surveys[-1].options) == yes_no else "each"
-
-
 def looks_around(d: Discourse) -> bool:
     """Whether the robot is where it was sent to look, and has told nothing of it: "look at the desk
     and tell Bob what you saw"."""
@@ -312,6 +311,7 @@ def told_again(d: Discourse, person: Thing | None) -> Steps:
 def retold(d: Discourse, person: Thing | None) -> Steps:
     """Tell the last report to somebody else, or somewhere else."""
     found: Report = d.report
+    d.report_counts = d.report_counts and (person is None or is_me(person))
     at = next((at for at, step in enumerate(d.done) if step is d.report_step), None)
     if at is not None and not isinstance(found.value, Recall) and found.value is not None:
         name = d.variable(found.name)
@@ -322,6 +322,10 @@ def retold(d: Discourse, person: Thing | None) -> Steps:
         if d.done and d.done[-1] == Call("goto", {"place": Recall(START)}):
             d.done.pop()
             d.at = found.place
+    elif at is not None and d.report_open and not (person is None or is_me(person)):
+        del d.done[at]  # nobody else was to be told on the way to them
+        if at and d.done[at - 1] == news.BACK:
+            del d.done[at - 1]
     return told(d, found, person)
 
 
@@ -333,6 +337,11 @@ def report_told(d: Discourse, node: Node) -> news.Told:
 
 
 def told_report(d: Discourse, found: Report) -> news.Told:
+    from grammar.meanings.rounds import found_on_round
+
+    of_round = found_on_round(d, found)
+    if of_round is not None:
+        return of_round
     first: Steps = []
     if found.place is not None and found.place != d.at:
         first.append(Call("goto", {"place": found.place}))
@@ -341,7 +350,7 @@ def told_report(d: Discourse, found: Report) -> news.Told:
         name = d.variable(found.name)
         first.append(Remember(name, found.value))
         found = replace(found, value=Recall(name))
-    return news.Told([_saying(d, found)], first)
+    return news.Told([saying_of(d, found)], first)
 
 
 @meaning("found_told")
@@ -376,7 +385,7 @@ def _report_again(d: Discourse) -> news.Told:
     elif at == len(d.done) - 1:
         d.done.pop()
         not_back_yet(d)
-    return news.Told([_saying(d, found)], [])
+    return news.Told([saying_of(d, found)], [])
 
 
 def summed_at_end(d: Discourse) -> Steps:
@@ -415,7 +424,7 @@ def summed_or_said(d: Discourse, found: Report) -> news.Told:
 
     if found.name == "count" and last_round(d) is not None:
         return summed_up(d, "each")
-    return news.Told([_saying(d, found)], [])
+    return news.Told([saying_of(d, found)], [])
 
 
 def not_back_yet(d: Discourse) -> None:
@@ -430,6 +439,7 @@ def tell_me_that(d: Discourse, node: Node) -> Steps:
     """ "and tell me": what was found out just before, brought back to the speaker."""
     search = news.searched_last(d, node, "person_ref")
     of_answers(d, node)
+    d.report_open = False
     if search is not None and search.person:
         return news.where_it_is(d, search, None)  # "find Alice and inform me"
     return coming_back(d, node, tell_speaker(d))

@@ -18,12 +18,14 @@ from grammar.meanings.gone_round import (
     places_of,
     round_of,
     round_of_visits,
+    visits_alone,
 )
 from grammar.meanings.news import News, Told, go_back, last_found, take_back
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import kind_places, sought
 from grammar.meanings.polls import ASKED_WHERE, asked_there, polled
 from grammar.meanings.registry import meaning
+from grammar.meanings.reports import Report, saying_of
 from grammar.meanings.sights import told_where
 from grammar.meanings.surveys import asked_yet, note, replacing
 from grammar.meanings.traits import Trait
@@ -142,6 +144,26 @@ def told_after_round(d: Discourse, loop: ForEach) -> Steps:
     if person is None or is_me(person):
         return [*steps, *go_back(d, steps), *words]
     return [*steps, *speak_to(d, person, words)]
+
+
+def found_on_round(d: Discourse, found: Report) -> Told | None:
+    """ "go round the labs and tell me if anybody is there": found out at each place of a round that
+    does nothing else, and told behind it; None after other steps, and of what is elsewhere."""
+    loop = visits_alone(d)
+    seen = isinstance(found.value, Ask) and found.about_here and found.place is None
+    if loop is None or not seen or found.before:
+        return None
+    saying = saying_of(d, found)
+    d.report, d.report_step = found, saying
+    loop = replace(loop, steps=(*loop.steps, saying))
+    d.done.pop()
+    if found.name == "count":
+        d.done.append(loop)
+        return summed_up(d, "each")
+    words, steps = _lines(d, loop)
+    d.report = None
+    d.done += steps
+    return Told(words, [])
 
 
 def _lines(d: Discourse, loop: ForEach) -> tuple[Steps, Steps]:
