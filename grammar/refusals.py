@@ -116,7 +116,7 @@ def _headed(words: tuple[str, ...], name: tuple[str, ...], language: Language) -
 def why_not(tokens: Sequence[Token], language: Language, names: Set[str]) -> str:
     """The phrase for a sentence of which nothing was understood: why it is none of its business.
     Words of names say nothing about that: who goes to the blood lab gives no blood."""
-    said = [token.norm for token in tokens]
+    said = _without_harmless([token.norm for token in tokens], language)
     words = {word for word in said if word not in names}
     for sign, phrase in _signs(language, "refusals").items():
         if phrase in language.speech.get("refused_as_asked", ()):
@@ -128,6 +128,15 @@ def why_not(tokens: Sequence[Token], language: Language, names: Set[str]) -> str
         if found:
             return phrase
     return "not_understood_at_all"
+
+
+def _without_harmless(said: list[str], language: Language) -> list[str]:
+    """Words without things that are only called so: a fire extinguisher is no fire."""
+    for phrase in map(language.tokens_of, language.speech.get("harmless", ())):
+        for at in range(len(said) - len(phrase), -1, -1):
+            if tuple(said[at : at + len(phrase)]) == phrase:
+                del said[at : at + len(phrase)]
+    return said
 
 
 def is_half(tokens: Sequence[Token], language: Language, names: Set[str]) -> bool:

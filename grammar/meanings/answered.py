@@ -345,6 +345,10 @@ def unanswered(d: Discourse, node: Node) -> Condition:
     survey: Survey | None = d.surveys[-1] if d.surveys else None
     if survey is None or survey.call.save_as is None:
         raise NotUnderstood(d.language.phrase("no_question"))
+    said = set(d.norms(node.start, node.end))
+    nothing = next((each for each in survey.options if each.lower() in said), None)
+    if nothing is not None:  # "tea, coffee or nothing; if she says nothing, ..."
+        return survey.said(nothing)
     name = survey.call.save_as
     if not any(each is survey.call for each in nodes(tuple(d.done))):
         words = d.words(node.start, node.end)

@@ -17,6 +17,45 @@ MOST_PLACES: Final = 40
 
 def options_of(d: Discourse, node: Node) -> tuple[str, ...]:
     """The answers that a question offers: its choices, or yes and no."""
+    return _with_nouns(d, node, _offered(d, node))
+
+
+def _with_nouns(d: Discourse, node: Node, options: tuple[str, ...]) -> tuple[str, ...]:
+    """Choices with the noun that is said of another one or before them: "the red pen or the blue
+    one", "the red or the blue pen", "which pen: the red one or the blue one"."""
+    ones = d.language.words_called("one_words")
+    words = [option.split() for option in options]
+    stands_for = [len(each) > 1 and d.language.tokens_of(each[-1])[0] in ones for each in words]
+    named = [
+        each[-1] for each, one in zip(words, stands_for, strict=True) if len(each) > 1 and not one
+    ]
+    asked = node.parts.get("wh")
+    noun = asked.parts.get("noun") if isinstance(asked, Node) else None
+    if noun is not None:
+        named.append(d.words(noun.start, noun.end))
+    if len(options) < 2 or not named:
+        return options
+    completed: list[str] = []
+    for each, one in zip(words, stands_for, strict=True):
+        if one:
+            each = [*each[:-1], named[0]]
+        elif len(each) == 1 and len(named) == len(options) - 1 and _is_attribute(d, each[0]):
+            each = [*each, named[-1]]
+        completed.append(" ".join(each))
+    return tuple(completed)
+
+
+def _is_attribute(d: Discourse, word: str) -> bool:
+    """Whether a word says how a thing looks: "red", "small"."""
+    from grammar.names import names_of
+
+    tries = names_of(d.language, d.lexicon).tries
+    known = (tries[each] for each in ("attribute", "colour") if each in tries)
+    branches = [trie.branches.get(word.lower()) for trie in known]
+    return any(branch is not None and bool(branch.values) for branch in branches)
+
+
+def _offered(d: Discourse, node: Node) -> tuple[str, ...]:
     fixed = node.production.fixed
     listed = node.parts.get("options")
     if listed is not None:
