@@ -78,9 +78,9 @@ def in_round(d: Discourse, clause: Node) -> Steps:
         return in_company(d, first, d.build(clause))
     d.done.pop()
     means = first.production.means
-    if means == "tell_condition" and "otherwise" not in first.parts:
-        d.round.lookout = None
-        return told_behind(d, loop, first)
+    told_only = told_if_so(first)
+    if told_only is not None:
+        return told_behind(d, loop, told_only)
     here = Recall(loop.variable)
     outer, d.done = d.done, list(loop.steps)
     d.at = d.place = d.round.here = here
@@ -196,7 +196,11 @@ def told_behind(d: Discourse, loop: ForEach, clause: Node) -> Steps:
     outer, d.done = d.done, list(loop.steps)
     d.at = d.place = here
     d.met = None
+    lookout, d.round.lookout = d.round.lookout, None
+    d.round.stop = None if lookout is None else lookout.trait
+    in_loop, d.in_loop = d.in_loop, True
     before, condition = condition_of(d, clause)
+    d.in_loop, d.round.stop = in_loop, None
     of_any = any(each.means == "trait_holds" for each in inside(clause.parts["condition"]))
     claim = None if of_any else claim_of(d, clause, condition, d.met)
     inner, d.done = d.done, outer
@@ -207,6 +211,45 @@ def told_behind(d: Discourse, loop: ForEach, clause: Node) -> Steps:
     if person is None or is_me(person):
         return [loop, *go_back(d, [loop]), *words]
     return [loop, *speak_to(d, person, words)]
+
+
+def told_if_so(first: Node) -> Node | None:
+    """A clause that only tells somebody where something is so: "if there is none, tell me", "if you
+    find one without it, let me know which"; None if more is done there."""
+    if first.means == "tell_condition":
+        return None if "otherwise" in first.parts else first
+    then = first.parts.get("then")
+    if first.means != "if" or not isinstance(then, Node) or len(first.parts) > 2:
+        return None
+    told = first_clause(then)
+    listed = any(each.means == "lookout_told" for each in inside(told))
+    if told.means != "news" or (told.start, told.end) != (then.start, then.end) or not listed:
+        return None
+    parts = {"condition": first.parts["condition"]}
+    if "whom" in told.parts:
+        parts["person_ref"] = told.parts["whom"]
+    return dataclasses.replace(first, parts=parts)
+
+
+def told_last(body: Node) -> tuple[Node | None, Node] | None:
+    """What is done at each place of a round, and what is told if something is so there, which is
+    told when all have been seen: "go to every lab and if there is no fan, tell me"."""
+    if body.production.means is None and len(body.parts) == 1:
+        ((name, only),) = body.parts.items()
+        found = told_last(only) if isinstance(only, Node) else None
+        if found is None or found[0] is None:
+            return found
+        return dataclasses.replace(body, parts={name: found[0]}), found[1]
+    if body.means != "steps":
+        return (None, body) if told_if_so(body) is not None else None
+    first, rest = body.parts["first"], body.parts.get("rest")
+    last = first if rest is None else rest
+    found = told_last(last) if isinstance(last, Node) else None
+    if found is None or rest is None:
+        return found
+    kept, told = found
+    parts = {"first": first} if kept is None else {**body.parts, "rest": kept}
+    return dataclasses.replace(body, parts=parts), told
 
 
 def noted_of(

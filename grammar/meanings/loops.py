@@ -15,7 +15,7 @@ from grammar.meanings.claims import meet_there
 from grammar.meanings.conditions import FULL_HOUR, condition_of
 from grammar.meanings.deliveries import first_clause
 from grammar.meanings.finding import go, look_for, not_found, noun_of
-from grammar.meanings.going_on import about_places, brought_behind, in_round
+from grammar.meanings.going_on import about_places, brought_behind, in_round, told_last
 from grammar.meanings.gone_round import of_those, same_round
 from grammar.meanings.news import BACK
 from grammar.meanings.places import kind_places
@@ -315,6 +315,12 @@ def for_each_place(d: Discourse, node: Node) -> Steps:
         told = told_on_return(body)
         after: Steps = in_round(d, told) if told is not None else d.build(body)
         return after
+    told_at_last = told_last(body) if goes and isinstance(body, Node) else None
+    if told_at_last is not None:
+        kept, telling = told_at_last
+        d.done += each_place(d, items, kept, goes)
+        behind: Steps = in_round(d, telling)
+        return behind
     return each_place(d, items, body, goes)
 
 

@@ -339,8 +339,7 @@ def report_told(d: Discourse, node: Node) -> news.Told:
 def told_report(d: Discourse, found: Report) -> news.Told:
     from grammar.meanings.rounds import found_on_round
 
-    of_round = found_on_round(d, found)
-    if of_round is not None:
+    if (of_round := found_on_round(d, found)) is not None:
         return of_round
     first: Steps = []
     if found.place is not None and found.place != d.at:
