@@ -12,6 +12,8 @@ from grammar.wordforms import singular
 def means_thing(d: Discourse, part: Leaf | Node) -> bool:
     """Whether a pronoun that may stand for things and for people stands for the thing that was
     spoken of: by its gender ("la": not Bob), else if that was spoken of last."""
+    if isinstance(part, Node) and part.means == "person_first":  # "the first one you find"
+        return d.thing is not None and d.thing_last and "kind_of_person" not in part.parts
     word = d.norms(part.start, part.end)[-1]
     if d.thing is None or word not in d.language.speech.get("things_too", ()):
         return False

@@ -357,6 +357,8 @@ def turn_to_you(
             pieces.append(original if not pieces else "\b" + original)
         elif before in ("'", "’") and whole:  # "s'asseoir": "vous asseoir"
             pieces.append(original)
+        elif not before and original.startswith("'"):  # "the children's ward"
+            pieces.append("\b" + original)
         elif before in ("'", "’", "-"):  # "d'aide", "rendez-vous"
             pieces.append("\b" + before + original)
         else:

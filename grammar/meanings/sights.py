@@ -25,7 +25,8 @@ from grammar.wordforms import plural, singular
 def names_here(d: Discourse, node: Node) -> Report | Steps:
     """ "who is in the lobby?", "the name of the person in the kitchen"; "their names", behind a
     condition on what they were asked, of those who said so."""
-    if d.depth > 1 and d.said is not None and asked_yet(d) and names_whom(d, node):
+    of_who_said_so = d.depth > 1 and d.said is not None or d.polled_for == "who"
+    if of_who_said_so and asked_yet(d) and names_whom(d, node):
         return polled(d, "who", None).words
     person: Thing | None = d.get(node, "person_ref")
     if person is not None and person.coming:  # whoever will come: not who is here now
