@@ -25,7 +25,7 @@ from grammar.wordforms import plural, singular
 def names_here(d: Discourse, node: Node) -> Report | Steps:
     """ "who is in the lobby?", "the name of the person in the kitchen"; "their names", behind a
     condition on what they were asked, of those who said so."""
-    of_who_said_so = d.depth > 1 and d.said is not None or d.polled_for == "who"
+    of_who_said_so = (d.depth > 1 and d.said is not None) or d.polled_for == "who"
     if of_who_said_so and asked_yet(d) and names_whom(d, node):
         return polled(d, "who", None).words
     person: Thing | None = d.get(node, "person_ref")
