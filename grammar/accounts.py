@@ -72,6 +72,7 @@ def left_out(
             if token.kind != "word" or token.norm in silent:
                 continue
             forms = {_plain(token.norm), _plain(str(base_forms.get(token.norm, token.norm)))}
+            forms.add(_without_marks(token.norm, language))
             if not _alike(forms, known):
                 missing.append(token.norm)
     return missing
@@ -165,6 +166,13 @@ def _plain(word: str) -> str:
     """A word without accents and capitals."""
     letters = unicodedata.normalize("NFD", word)
     return "".join(each for each in letters if not unicodedata.combining(each)).lower()
+
+
+def _without_marks(word: str, language: Language) -> str:
+    """A word as if it had no marks on its letters: "glaeser" are of one kind with "Glas"."""
+    for letter, written in language.spelling.letters.items():
+        word = word.replace(written, _plain(letter))
+    return word
 
 
 def _alike(words: Set[str], known: Set[str]) -> bool:

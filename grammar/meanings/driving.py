@@ -77,8 +77,10 @@ def bare_way(node: Node) -> bool:
 
 def just_led(d: Discourse) -> bool:
     """Whether the step before, in its branch too, leads somebody somewhere: "take her to room 1 if
-    it is Alice, and to room 2 if it is Bob"."""
-    last: Step | None = next((steps[-1] for steps in (d.done, *d.around[-1:]) if steps), None)
+    it is Alice, and to room 2 if it is Bob"; whatever is said there on a tour."""
+    before = next((steps for steps in (d.done, *d.around[-1:]) if steps), [])
+    silent = (each for each in reversed(before) if getattr(each, "method", "") != "say")
+    last: Step | None = next(silent, None)
     while isinstance(last, If) and last.then:
         last = last.then[-1]
     return isinstance(last, Call) and last.method == "guide"

@@ -109,17 +109,25 @@ def distributed(d: Discourse, node: Node, make: Make) -> Steps:
     if hands_one_of_several(d, node):
         begun_before(d)
     several = one_each(d, several)
-    outer = d.taken_from
+    within_source = {id(part) for part in inside(node.parts.get("from"))}
+    sources = [part for part in several if id(part) in within_source]  # "out of all offices"
+    several = [part for part in several if id(part) not in within_source]
+    steps = over(d, sources, lambda: taken_from_there(d, node, several, make))
+    if node.means in FETCHES:
+        keep_fetching(d, node, make, steps, scene, known)
+    return steps
+
+
+def taken_from_there(d: Discourse, node: Node, several: list[Node], make: Make) -> Steps:
+    """The steps of a command for several things, of which is said where they are taken from."""
+    outer, place = d.taken_from, d.place
     things = any(OVER[part.means] in (over_things, over_thing_list) for part in several)
-    place = d.place
     d.taken_from = d.get(node, "from") if things and "from" in node.parts else outer
     if "source" in node.parts and any(OVER[part.means] is over_people for part in several):
         d.taken_from = d.get(node, "source")  # "take everybody from the lounge to the exit"
     d.place = place  # "there" is not where they are taken from
     steps = over(d, several, make)
     d.taken_from = outer
-    if node.means in FETCHES:
-        keep_fetching(d, node, make, steps, scene, known)
     return steps
 
 
@@ -191,13 +199,13 @@ def speaks_of_several(d: Discourse, node: Node, part: Node) -> bool:
         return False
     if part.means == "thing":
         told = {*part.parts, *part.production.fixed}
-        return bool(told & {"number", "every"}) or (node.means in HANDED and all_of(d, part))
+        return bool(told & {"number", "every"}) or (node.means in HANDED and all_of(d, node, part))
     if part.means == "thing_it":
         return d.thing is not None and d.thing.several and d.is_plural(part)
     return True
 
 
-def all_of(d: Discourse, part: Node) -> bool:
+def all_of(d: Discourse, node: Node, part: Node) -> bool:
     """Whether it speaks of all there are: "the boxes in the supply room", "go round the offices and
     bring the cups to the kitchen"."""
     head = part.parts.get("head")
@@ -209,7 +217,7 @@ def all_of(d: Discourse, part: Node) -> bool:
     one = singular(said, d.language)
     if "superlative" in part.parts or one == said or one in d.language.speech.get("bunches", ()):
         return False
-    if any(each.means == "each_place" for each in inside(part)):
+    if "from" in node.parts or any(each.means == "each_place" for each in inside(part)):
         return True  # "the cups in the meeting rooms"
     before = d.thing, d.thing_last
     thing: Thing = d.build(part)
