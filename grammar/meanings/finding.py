@@ -218,16 +218,24 @@ def if_found(d: Discourse, who: Value, steps: Steps) -> Steps:
 def if_met(d: Discourse, person: Thing, steps: Steps) -> Steps:
     """Steps with somebody who was looked for just before, if they were found: "tell Bob that lunch
     is ready and ask him ..."."""
+    met = met_just_before(d, person)
+    if met is None:
+        return steps
+    d.done.pop()
+    return [If(met.condition, (*met.then, *steps), met.otherwise)]
+
+
+def met_just_before(d: Discourse, person: Thing) -> If | None:
+    """The last step, if it does something with somebody where they are found."""
     last = d.done[-1] if d.done else None
     if person.value != d.with_person or not isinstance(last, If):
-        return steps
+        return None
     condition, then, otherwise = last.condition, last.then, last.otherwise
     if isinstance(condition, Not) and not otherwise:  # looked for in several places
         condition, then, otherwise = condition.condition, (), then
     if not _is_search(condition) or otherwise != (not_found(d, person),):
-        return steps
-    d.done.pop()
-    return [If(condition, (*then, *steps), otherwise)]
+        return None
+    return If(condition, then, otherwise)
 
 
 def _is_search(condition: Condition) -> bool:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Thing
-from grammar.meanings.finding import visits_only
+from grammar.meanings.finding import met_just_before, visits_only
 from grammar.meanings.persons import known_by_name
 from grammar.plan import ForEach, Items, Text
 from grammar.wordforms import singular
@@ -42,6 +42,18 @@ def just_visited(d: Discourse) -> Thing | None:
     if d.done and d.done[-1] is last:
         return None
     return Thing(Text(ANYONE), person=True, plural=True, known=True, group=last.items)
+
+
+def spoken_of(d: Discourse) -> Thing | None:
+    """Whoever was met just before, or is said to be where the robot is to go: "greet the man in the
+    lobby and ask ...", "somebody is waving in the kitchen, go and ask ..."."""
+    person: Thing | None = d.person
+    if person is None or person.plural or person.count or person.group is not None or d.in_loop:
+        return None
+    if d.with_person == person.value:
+        return person if met_just_before(d, person) is not None else None
+    elsewhere = person.place is not None and not person.here
+    return person if elsewhere and not d.done and d.with_person is None else None
 
 
 def several_of_a_kind(d: Discourse, node: Node, person: Thing | None) -> Thing | None:
