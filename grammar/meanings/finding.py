@@ -177,8 +177,8 @@ def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
         return [*going, Repeat(Number(person.count), (meeting, *steps))]
     if person is not None and isinstance(person.group, Items):
         return each_of(d, person.group, steps)
-    if person is None:
-        return steps
+    if person is None:  # "greet the visitor and say that lunch is ready"
+        return steps if d.person is None or d.in_loop else if_met(d, d.person, steps)
     if person.first:
         return [*meet(d, person), *steps]
     person = where_sent(d, person)
