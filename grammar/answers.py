@@ -54,15 +54,15 @@ class _Reply:
 
     def answer(self) -> Answer | None:
         choices = self.question.choices
-        if self.is_one_of("none_of_them") or self.is_one_of("refuse"):
+        if self.is_one_of("answered_none") or self.is_one_of("refuse"):
             return Answer(dropped=True)
         if self.is_one_of("unsure"):
             return Answer(again=self.question.question)
         if len(choices) == 1 and self.is_one_of("agree"):
             return self._with(choices[0])
-        if self.is_one_of("any_of_them") and choices:
+        if self.is_one_of("answered_any") and choices:
             return self._with(choices[0])
-        if self.is_one_of("all_of_them") and choices:
+        if self.is_one_of("answered_all") and choices:
             return self._with_all(choices)
         number = self._ordinal()
         if number is not None and self.question.asked:

@@ -217,6 +217,9 @@ def _merge(data: dict[str, Any], key: str, value: Any, path: Path) -> None:
             old = data[key].get(rule)
             data[key][rule] = entries if old is None else [*_entries(old), *_entries(entries)]
     elif isinstance(value, dict):
+        twice = next(iter(value.keys() & data[key].keys()), None)
+        if twice is not None:  # the second would silently take the place of the first
+            raise RuleError(f"{path.name} gives {twice!r} in {key!r}, which another file has given")
         data[key].update(value)
     elif isinstance(value, list):
         data[key] = [*data[key], *value]

@@ -67,6 +67,18 @@ def test_two_files_with_one_name_are_not_loaded(
         load_language("xx")
 
 
+def test_a_list_that_two_files_give_is_not_loaded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ward = tmp_path / "xx"
+    ward.mkdir()
+    (ward / "driving.yaml").write_text("speech:\n  all: [both]\n")
+    (ward / "people.yaml").write_text("speech:\n  all: [everybody]\n")
+    monkeypatch.setattr(language_module, "_FOLDER", tmp_path)
+    with pytest.raises(RuleError, match=r"people.yaml gives 'all' in 'speech'"):
+        load_language("xx")
+
+
 def test_a_name_that_a_file_has_twice_is_told_with_its_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
