@@ -55,36 +55,34 @@ def test_a_rule_that_is_said_to_be_extended_is(language: str) -> None:
     assert [rule for rule in re.findall(r"\w+", extended[1]) if files_with[rule] < 2] == []
 
 
-def test_two_files_with_one_name_are_not_loaded(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(
+    ("driving", "people", "told"),
+    [
+        (
+            'rules:\n  way: "to the ward"\n',
+            'rules:\n  way: "by the lift"\n',
+            r"people.yaml and driving.yaml both have a rule 'way'",
+        ),
+        (
+            "speech:\n  all: [both]\n",
+            "speech:\n  all: [everybody]\n",
+            r"people.yaml gives 'all' in 'speech'",
+        ),
+        (
+            'rules:\n  way: "to the ward"\n  way: "by the lift"\n',
+            "rules: {}\n",
+            r"driving.yaml: 'way' stands twice in line 2",
+        ),
+    ],
+    ids=["a rule in two files", "a list in two files", "a rule twice in one file"],
+)
+def test_what_is_named_twice_is_not_loaded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, driving: str, people: str, told: str
 ) -> None:
-    ward = tmp_path / "xx"
-    ward.mkdir()
-    (ward / "driving.yaml").write_text('rules:\n  way: "to the ward"\n')
-    (ward / "people.yaml").write_text('rules:\n  way: "by the lift"\n')
+    folder = tmp_path / "xx"
+    folder.mkdir()
+    (folder / "driving.yaml").write_text(driving)
+    (folder / "people.yaml").write_text(people)
     monkeypatch.setattr(language_module, "_FOLDER", tmp_path)
-    with pytest.raises(RuleError, match=r"people.yaml and driving.yaml both have a rule 'way'"):
-        load_language("xx")
-
-
-def test_a_list_that_two_files_give_is_not_loaded(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    ward = tmp_path / "xx"
-    ward.mkdir()
-    (ward / "driving.yaml").write_text("speech:\n  all: [both]\n")
-    (ward / "people.yaml").write_text("speech:\n  all: [everybody]\n")
-    monkeypatch.setattr(language_module, "_FOLDER", tmp_path)
-    with pytest.raises(RuleError, match=r"people.yaml gives 'all' in 'speech'"):
-        load_language("xx")
-
-
-def test_a_name_that_a_file_has_twice_is_told_with_its_line(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    ward = tmp_path / "xx"
-    ward.mkdir()
-    (ward / "driving.yaml").write_text('rules:\n  way: "to the ward"\n  way: "by the lift"\n')
-    monkeypatch.setattr(language_module, "_FOLDER", tmp_path)
-    with pytest.raises(RuleError, match=r"driving.yaml: 'way' stands twice in line 2"):
+    with pytest.raises(RuleError, match=told):
         load_language("xx")
