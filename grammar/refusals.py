@@ -1,5 +1,5 @@
-"""What the robot must not or cannot do, by the words that give it away: `refusals`, `forbidden`
-and `no_things` in a language's data."""
+"""What the robot must not or cannot do, by the words that give it away: `refusals`, `forbidden`,
+`no_things` and `not_said` in a language's data."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from robot_api.methods import METHODS
 ENDING: Final = 2
 """Letters by which a plural is longer."""
 IN_HAND: Final = frozenset({"grab", "give", "put"})
+SPOKEN: Final = frozenset({"say", "ask", "show"})
 SEEN: Final = frozenset({"find", "sees", "count", "wait_for", "describe"})
 
 
@@ -57,6 +58,8 @@ def no_thing(plan: Plan, lexicon: Lexicon, language: Language) -> tuple[str, str
             return "unknown_person", thing.value.title()
         if step.method in IN_HAND and _is_somebody(thing.value, lexicon, language):
             return "cannot_carry", thing.value  # "pick the visitor up in the lobby"
+        if step.method in IN_HAND and _is_dangerous(words, language):
+            return "no_harm", thing.value
         if step.method == "give" and _treats(step, lexicon, language):
             return "no_medicine", thing.value
         for phrase, names in listed.items():
@@ -65,10 +68,34 @@ def no_thing(plan: Plan, lexicon: Lexicon, language: Language) -> tuple[str, str
     return None
 
 
+def not_said(plan: Plan, lexicon: Lexicon, language: Language) -> str | None:
+    """The phrase for a plan that says or asks what a robot among patients must not: a threat, an
+    insult, a diagnosis, a question for a password. What the world lets it answer, it may say."""
+    answers = {each.answer for each in lexicon.questions}
+    signs_of = _signs(language, "not_said")
+    for step in nodes(plan.steps):
+        if not isinstance(step, Call | Ask) or step.method not in SPOKEN:
+            continue
+        for text in nodes(step.arguments):
+            if not isinstance(text, Text) or text.value in answers:
+                continue
+            words = language.tokens_of(text.value)
+            for sign, phrase in signs_of.items():
+                if any(words[at : at + len(sign)] == sign for at in range(len(words))):
+                    return phrase
+    return None
+
+
 def _is_somebody(name: str, lexicon: Lexicon, language: Language) -> bool:
     """Whether something is a person by name, or as the language calls them."""
     named = any(each.name == name for each in lexicon.people)
     return named or name in language.lists.get("person_kind", {})
+
+
+def _is_dangerous(words: Sequence[str], language: Language) -> bool:
+    """Whether a thing is dangerous or holds something that is: "a bottle of acid"."""
+    dangers = [language.tokens_of(each) for each in language.speech.get("dangerous", ())]
+    return any(_begins(words[at:], danger) for at in range(len(words)) for danger in dangers)
 
 
 def _treats(giving: Call | Ask, lexicon: Lexicon, language: Language) -> bool:
@@ -107,9 +134,14 @@ def _headed(words: tuple[str, ...], name: tuple[str, ...], language: Language) -
     ends = language.closed | set(language.speech.get("beside", ()))
     head = next((at for at, word in enumerate(words) if at and word in ends), len(words))
     first = 0 if language.speech.get("head_first") else max(0, head - len(name))
-    return len(words) >= first + len(name) and all(
+    return _begins(words[first:], name)
+
+
+def _begins(words: Sequence[str], name: tuple[str, ...]) -> bool:
+    """Whether words begin with a name, in the plural or not."""
+    return len(words) >= len(name) and all(
         word.startswith(each) and len(word) - len(each) <= ENDING
-        for word, each in zip(words[first:], name, strict=False)
+        for word, each in zip(words, name, strict=False)
     )
 
 

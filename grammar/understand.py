@@ -31,6 +31,7 @@ from grammar.refusals import (
     forbidden,
     is_half,
     no_thing,
+    not_said,
     out_of_range,
     strange,
     why_not,
@@ -179,6 +180,9 @@ class Reader:
             phrase, thing = impossible
             message = self.language.phrase(phrase, thing=thing, name=thing)
             return replace(rejected(self.text, message, self.context), unclear=thing)
+        hurtful = not_said(plan, self.lexicon, self.language)
+        if hurtful is not None:
+            return rejected(self.text, self.language.phrase(hurtful), self.context)
         beyond = out_of_range(plan, self.language)
         if beyond is not None:
             return rejected(self.text, beyond, self.context)
