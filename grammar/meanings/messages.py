@@ -15,6 +15,7 @@ from grammar.discourse import Discourse, Steps, Thing, capital
 from grammar.meanings.finding import go, speak_to
 from grammar.meanings.genders import gender_of_thing
 from grammar.meanings.news import back_to_speaker
+from grammar.meanings.options import people_named
 from grammar.meanings.persons import is_me, person_me
 from grammar.meanings.questions import base_form, turn_to_you
 from grammar.meanings.references import answers_in
@@ -55,6 +56,7 @@ def say_that(d: Discourse, node: Node) -> Steps:
     more = node.parts.get("more")  # "that the doctor is here and that she can come in"
     if more is not None:
         text, end = f"{text} {told_to(d, more, person)}", more.end
+    d.named.extend(people_named(d, part.start, end))
     saying = Call("say", {"text": answers_in(d, text, part.start, end)})
     if is_me(person):
         return [*back_to_speaker(d), saying]

@@ -272,11 +272,20 @@ def place_at_end(d: Discourse, start: int, end: int) -> str | None:
 
 def places_named(d: Discourse, start: int, end: int) -> list[str]:
     """The places that are spoken of by their names among some words."""
+    return _named(d, "place", start, end)
+
+
+def people_named(d: Discourse, start: int, end: int) -> list[str]:
+    """The people who are spoken of by their names among some words."""
+    return _named(d, "person", start, end)
+
+
+def _named(d: Discourse, kind: str, start: int, end: int) -> list[str]:
     from grammar.names import names_of
 
     known: list[str] = []
     for at in range(start, end):
-        branch = names_of(d.language, d.lexicon).tries.get("place")
+        branch = names_of(d.language, d.lexicon).tries.get(kind)
         for token in d.tokens[at:end]:
             branch = branch.branches.get(token.norm) if branch else None
             if branch and branch.values:

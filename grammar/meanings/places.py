@@ -63,7 +63,9 @@ def place_own(d: Discourse, node: Node) -> Value:
     kind = d.get(node, "kind")
     said: Thing | None = d.get(node, "owner")
     who = said or d.person or d.one_called(node.start, node.end)
-    if who is not None and not who.known and who.group is None:  # a visitor has none
+    another = who is not None and not said and not d.may_be(who, node.start, node.end)
+    if who is not None and ((not who.known and who.group is None) or another):
+        # a visitor has none; and Bob is no "her"
         who = d.one_called(node.start, node.end) or who
     if who is None and (host := owner_of(d)) is not None:
         who = Thing(host, known=True, person=True)

@@ -19,6 +19,7 @@ from grammar.meanings.options import (
     names_people,
     numbers_offered,
     options_of,
+    people_named,
     place_at_end,
     places_asked_for,
     places_named,
@@ -102,6 +103,8 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
     spoken_of = places_named(d, question.start, question.end)
     if len(spoken_of) == 1 and d.place != Recall(name):
         d.place = Text(spoken_of[0])  # "ask whether they want to see the lab; take them there"
+    # "ask Bob whether Alice is in; if so, tell her ..."
+    d.named.extend(people_named(d, question.start, question.end))
     if whom.many and "each" in question.production.fixed:
         d.polled_for = "who"
     if node.production.fixed.get("vote"):
