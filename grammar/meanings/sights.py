@@ -10,14 +10,14 @@ from grammar.doubts import NotUnderstood
 from grammar.meanings import news
 from grammar.meanings.answered_numbers import number_answered
 from grammar.meanings.descriptions import described
-from grammar.meanings.finding import found, in_state, is_here, not_found
+from grammar.meanings.finding import found, in_state, is_here, not_found, whether_found
 from grammar.meanings.places import place_called_after, sought
 from grammar.meanings.polls import polled, told_as_asked
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report, told_report
 from grammar.meanings.surveys import asked_yet, in_loop
 from grammar.naming import person_called, place_called, some, the
-from grammar.plan import Ask, Call, Holds, If, Recall, Remember, Text, Value
+from grammar.plan import Ask, Call, Holds, If, Items, Recall, Remember, Text, Value
 from grammar.wordforms import plural, singular
 
 
@@ -278,6 +278,8 @@ def whether_seen(d: Discourse, node: Node) -> Report | Steps:
         thing = replace(thing, value=more.value)
     if holder is not None and thing.place is None:  # what somebody has is where they work
         thing = replace(thing, place=place_called_after(d, holder.text, node.parts["holder"]))
+    if isinstance(thing.place, Items):  # "in the lobby or in the kitchen"
+        return located(d, thing)
     named = named_some(d, thing)
     return Report(
         "yes_seen",
@@ -327,15 +329,8 @@ def located(d: Discourse, thing: Thing) -> Steps:
     """Look for something or somebody, come back and say where it is."""
     if d.done and d.done[-1] == found(d, thing):
         d.done.pop()  # "find the cup and tell me where it is"
-    called = d.called(thing.text)
-    known = (
-        person_called(called, d.language)
-        if thing.known and thing.person
-        else the(called, d.language)
-    )
-    arguments: dict[str, Value] = {"thing": sought(d, thing)}
-    if thing.place is not None:
-        arguments["place"] = thing.place
+    anyone = thing.person and (thing.known or thing.text == ANYONE)
+    known = named_some(d, thing) if anyone else the(d.called(thing.text), d.language)
     name = d.variable("place")
     start = d.start()
     back = Call("goto", {"place": start})
@@ -343,7 +338,7 @@ def located(d: Discourse, thing: Thing) -> Steps:
     d.went(start)
     return [
         If(
-            Holds(Ask("find", arguments)),
+            whether_found(d, thing),
             (Remember(name, Ask("location")), back, told),
             (back, not_found(d, thing)),
         )
