@@ -272,8 +272,12 @@ def answer_counts(d: Discourse, node: Node) -> Condition:
 @meaning("answers_many")
 def answers_many(d: Discourse, node: Node) -> Condition:
     """ "if both say yes", "if more than half of them agree", "if nobody wants any"."""
+    return so_many_said(d, node, d.get(node, "said"))
+
+
+def so_many_said(d: Discourse, node: Node, said: Said | None) -> Condition:
+    """Whether as many as a condition says gave an answer."""
     surveys = polled_before(d)
-    said: Said | None = d.get(node, "said")
     answer = d.said = yes(d) if said is None else wanted_answer(d, surveys[-1], said)
     how = node.production.fixed.get("how")
     not_all = bool(node.production.fixed.get("no"))

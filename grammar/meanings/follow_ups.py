@@ -54,21 +54,34 @@ def _answer(call: Call) -> Recall:
 def said_one_by_one(d: Discourse) -> Steps:
     """What the one who was asked several questions has answered to each, with the question; nothing
     if that was only one, or if something was done with the first answers."""
+    untold = _untold(d)
+    theirs = [each for each in untold if each.who == untold[-1].who]
+    return [_with_question(each) for each in theirs] if len(theirs) > 1 else []
+
+
+def asked_one_after_the_other(d: Discourse) -> bool:
+    """Whether several were asked in turn, each something else, and nothing was done yet with what
+    they said: "ask Alice what time suits her, and Bob whether he comes, too, and tell me"."""
+    people = [each.who for each in _untold(d)]
+    return len(set(people)) > 1 and None not in people
+
+
+def _untold(d: Discourse) -> list[Survey]:
+    """The questions up to the last one that were asked in any case, each once, and that nothing was
+    done with."""
     surely = in_line(d)
     last = surely[-1] if surely else None
     if last is None or last.call.save_as != d.answer or in_loop(d, last.call):
         return []
-    theirs = [
+    untold = [
         each
         for each in surely
-        if each.who == last.who
-        and each.call.save_as is not None
+        if each.call.save_as is not None
         and not in_loop(d, each.call)
         and not mentions(tuple(d.done), Recall(each.call.save_as))
     ]
-    if len(theirs) < 2 or len({each.call.save_as for each in theirs}) < len(theirs):
-        return []
-    return [_with_question(each) for each in theirs]
+    names = {each.call.save_as for each in untold}
+    return untold if last in untold and len(names) == len(untold) else []
 
 
 def _with_question(survey: Survey) -> Call:

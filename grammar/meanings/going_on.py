@@ -10,10 +10,12 @@ from msgspec.structs import replace
 
 from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Steps, Thing
+from grammar.meanings.alternatives import CONDITIONAL
 from grammar.meanings.claims import claim_of
 from grammar.meanings.conditions import condition_of
 from grammar.meanings.deliveries import first_clause, hands_it_over, inside
 from grammar.meanings.finding import speak_to
+from grammar.meanings.found_once import found_once, says
 from grammar.meanings.gone_round import goes_to
 from grammar.meanings.lookouts import ABOUT_IT, looks_out
 from grammar.meanings.news import BACK, News, go_back
@@ -101,7 +103,7 @@ def in_round(d: Discourse, clause: Node) -> Steps:
         d.done.append(loop)
         told: Steps = d.build(behind)
         return told
-    return brought_behind(d, loop)
+    return found_once(d, loop, first) or brought_behind(d, loop)
 
 
 def alone(clause: Node, first: Node) -> bool:
@@ -184,10 +186,9 @@ def fetches_it(d: Discourse, first: Node) -> bool:
 
 def about_all(d: Discourse, first: Node) -> bool:
     """ "if there is none anywhere": whether a clause speaks of all the places together."""
-    words = d.language.speech.get("anywhere", ())
-    return first.production.means == "if" and any(
-        norm in words for norm in d.norms(first.start, first.end)
-    )
+    said = f" {' '.join(d.norms(first.start, first.end))} "
+    anywhere = d.language.speech.get("anywhere", ())
+    return first.production.means in CONDITIONAL and any(f" {each} " in said for each in anywhere)
 
 
 def told_behind(d: Discourse, loop: ForEach, clause: Node) -> Steps:
@@ -215,9 +216,12 @@ def told_behind(d: Discourse, loop: ForEach, clause: Node) -> Steps:
 
 def told_if_so(first: Node) -> Node | None:
     """A clause that only tells somebody where something is so: "if there is none, tell me", "if you
-    find one without it, let me know which"; None if more is done there."""
+    find one without it, let me know which"; None if more is done there, or if it is so nowhere."""
+    if first.production.means in CONDITIONAL and says(first, "none"):
+        return None
     if first.means == "tell_condition":
-        return None if "otherwise" in first.parts else first
+        alternative = any(name.startswith("otherwise") for name in first.parts)
+        return None if alternative else first
     then = first.parts.get("then")
     if first.means != "if" or not isinstance(then, Node) or len(first.parts) > 2:
         return None

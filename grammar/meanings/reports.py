@@ -16,7 +16,7 @@ from grammar.meanings.absences import undelivered
 from grammar.meanings.answered_numbers import of_answers
 from grammar.meanings.arrivals import arrival, arrival_told
 from grammar.meanings.finding import is_here, speak_to
-from grammar.meanings.follow_ups import said_in_all
+from grammar.meanings.follow_ups import asked_one_after_the_other, said_in_all, said_one_by_one
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import is_of, sought
 from grammar.meanings.registry import meaning
@@ -248,7 +248,9 @@ def known_words(d: Discourse) -> Steps:
     if d.answer is not None:
         if d.surveys and (in_loop(d, d.surveys[-1].call) or several_asked(d)):
             return polls.polled(d, d.polled_for or "answers", None).words
-        return [Call("say", {"text": said_in_all(d)})]
+        if asked_one_after_the_other(d):
+            return polls.polled(d, "answers", None).words
+        return said_one_by_one(d) or [Call("say", {"text": said_in_all(d)})]
     if d.code is not None:
         return [d.say("code_is", value=Recall(d.code))]
     if (come := arrival(d)) is not None:

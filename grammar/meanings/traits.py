@@ -7,13 +7,17 @@ from dataclasses import dataclass, replace
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
-from grammar.meanings.answered import about_answer
+from grammar.meanings.answered import about_answer, so_many_said
+from grammar.meanings.answers import Said
 from grammar.meanings.carrying import deliver
+from grammar.meanings.conditions import negated
 from grammar.meanings.gone_round import round_of
 from grammar.meanings.news import in_round
 from grammar.meanings.nouns import thing_it
 from grammar.meanings.places import kind_places, sought
 from grammar.meanings.registry import meaning
+from grammar.meanings.searches import just_looked_for
+from grammar.meanings.surveys import asked_yet
 from grammar.meanings.there import just_checked
 from grammar.plan import (
     Ask,
@@ -91,11 +95,16 @@ def trait_asked(d: Discourse, node: Node) -> Trait:
 
 @meaning("trait_holds")
 def trait_holds(d: Discourse, node: Node) -> Condition:
-    """ "if the kitchen is empty", "if it has no stapler": found out there."""
+    """ "if the kitchen is empty", "if it has no stapler": found out there; "if none of them is
+    empty": on the whole round (`grammar.meanings.found_once`)."""
     place: Value | None = d.get(node, "trait_place")
-    asked_for = about_answer(d, node) if place is None else None
+    none = node.production.fixed.get("of_round") == "none"
+    asked_for = about_answer(d, node) if place is None and not none else None
     if asked_for is not None:  # "ask him whether he has a pain. If he has a pain, ..."
         return asked_for
+    if none and asked_yet(d) and not in_round(d):
+        part = node.parts["place_trait"]
+        return so_many_said(d, node, Said(part.start, part.end))
     if place is None and d.at is None and d.place is None:  # "if she has a minute"
         words = d.words(node.start, node.end)
         gap = (node.start, node.end)
@@ -107,10 +116,13 @@ def trait_holds(d: Discourse, node: Node) -> Condition:
     checked = checked_just_now(d, trait) if place is None else None
     if checked is not None:
         return checked
+    if place is None and trait.thing is not None and (looked := just_looked_for(d, trait.thing)):
+        d.met = Meeting(trait.thing, holds=not trait.denied, sought=True)
+        return Not(looked) if trait.denied else looked
     d.pending += trait.first
     if trait.thing is not None and in_round(d):
         d.met = Meeting(trait.thing, holds=not trait.denied)
-    return trait.condition
+    return negated(trait.condition) if none else trait.condition
 
 
 def checked_just_now(d: Discourse, trait: Trait) -> Condition | None:
