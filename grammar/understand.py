@@ -15,6 +15,7 @@ from dataclasses import replace
 from typing import Final
 
 from grammar.accounts import in_manner, left_out, unheeded, unspoken
+from grammar.bringing_back import told_when_all_are_asked
 from grammar.chart import CORRECTION, Chart, Node, Slot, TooMuch
 from grammar.company import in_company
 from grammar.discourse import Discourse
@@ -161,6 +162,7 @@ class Reader:
             )
         except Unbound:
             return rejected(self.text, self.language.phrase("too_complicated"), self.context)
+        plan = told_when_all_are_asked(plan, discourse)
         if not is_one_of_each(plan):
             return rejected(self.text, self.language.phrase("too_complicated"), self.context)
         doubt = doubtful(tree, self.tokens, self.language)

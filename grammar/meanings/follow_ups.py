@@ -5,7 +5,7 @@ If so, ask him when. Tell me what he said": yes and when, or no.
 from __future__ import annotations
 
 from grammar.discourse import Discourse, Steps
-from grammar.meanings.surveys import Survey, asked_so_far, in_line, in_loop, note
+from grammar.meanings.surveys import Survey, asked_so_far, in_line, in_loop, is_in, note
 from grammar.plan import Call, Recall, Remember, Sentence, Text, Value
 from grammar.tidy import mentions
 
@@ -68,8 +68,8 @@ def asked_one_after_the_other(d: Discourse) -> bool:
 
 def _untold(d: Discourse) -> list[Survey]:
     """The questions up to the last one that were asked in any case, each once, and that nothing was
-    done with."""
-    surely = in_line(d)
+    done with; in a branch, only those asked there: the others may be what it hangs on."""
+    surely = [each for each in in_line(d) if any(is_in(step, each.call) for step in d.done)]
     last = surely[-1] if surely else None
     if last is None or last.call.save_as != d.answer or in_loop(d, last.call):
         return []

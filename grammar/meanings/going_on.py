@@ -22,6 +22,7 @@ from grammar.meanings.news import BACK, News, go_back
 from grammar.meanings.news import in_round as in_a_round
 from grammar.meanings.persons import is_me
 from grammar.meanings.rounds import told_after_round
+from grammar.meanings.surveys import Survey, is_in
 from grammar.meanings.there import counts_answers
 from grammar.plan import (
     Ask,
@@ -42,6 +43,7 @@ from grammar.plan import (
     Text,
     Value,
 )
+from grammar.tidy import nodes
 
 SEEN: Final = frozenset(
     {"names_here", "whether_seen", "counted_info", "seen_here", "kind_seen", "looks_of"}
@@ -62,6 +64,8 @@ STAYS_OUTSIDE: Final = frozenset(
     }
 )
 """Clauses that do not belong to a round in the sentence before."""
+ANSWERED: Final = frozenset({"so", "answered"})
+"""Conditions on an answer."""
 OF_THE_ROUND: Final = frozenset({"is_seen", "is_found", "so", "answered", "trait_holds", "counted"})
 """Conditions on what is found at each place."""
 
@@ -309,6 +313,21 @@ def depends_on_stop(d: Discourse, first: Node) -> bool:
     return bool(about & OF_THE_ROUND) and not named
 
 
+def on_answer_of_each(d: Discourse, first: Node) -> bool:
+    """Whether a condition is on what each of those has answered who are at a place of a round: "if
+    they say yes" is then said of them in turn, and not of the place."""
+    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    about = {each.production.means for each in inside(first.parts["condition"])}
+    if survey is None or survey.call.save_as != d.answer or not about & ANSWERED:
+        return False
+    return any(
+        isinstance(each, ForEach)
+        and Recall(each.variable) == survey.who
+        and is_in(each, survey.call)
+        for each in nodes(tuple(d.done))
+    )
+
+
 def goes_on(d: Discourse, loop: ForEach, first: Node) -> bool:
     """Whether a clause belongs to the round before it."""
     if not (loop.steps and goes_to(loop.steps[0], loop.variable)):
@@ -316,7 +335,7 @@ def goes_on(d: Discourse, loop: ForEach, first: Node) -> bool:
     if first.production.means == "for_each_of_them":
         return True  # "go to all wards. In each of them, ..."
     if conditional(first):
-        return depends_on_stop(d, first)
+        return depends_on_stop(d, first) and not on_answer_of_each(d, first)
     if len(loop.steps) > 1 or first.production.means in STAYS_OUTSIDE:
         return False
     if d.round.lookout is not None and any(each.means == "thing_it" for each in inside(first)):

@@ -7,7 +7,7 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Thing
 from grammar.meanings.answered import people_asked
 from grammar.meanings.answers import Wanted, wanted
-from grammar.meanings.deliveries import inside
+from grammar.meanings.deliveries import first_clause, inside
 from grammar.meanings.polls import counted
 from grammar.meanings.surveys import Survey, in_loop, of_one_question
 from grammar.plan import Compare, Condition, Number, Recall, Text
@@ -20,11 +20,11 @@ def in_their_turn(d: Discourse, node: Node, condition: Condition) -> Condition:
     survey: Survey | None = d.surveys[-1] if d.surveys else None
     if survey is None or not isinstance(survey.who, Recall) or d.in_loop:
         return condition
-    if not in_loop(d, survey.call) or survey.where is not None:
+    if not in_loop(d, survey.call) or survey.who == survey.where:
         return condition
     if not mentions((condition,), Recall(str(survey.call.save_as))):
         return condition
-    if told_to_others(d, node):
+    if told_to_others(d, node) and not asks_on(node):
         return of_all(d, condition)
     d.person = Thing(survey.who, known=True, person=True, here=True)
     d.with_person = survey.who
@@ -46,10 +46,18 @@ def of_whoever_says_so(d: Discourse, node: Node) -> Condition | None:
         return None
     then = node.parts["then"]
     them = d.language.words_called("plural_pronouns") & set(d.norms(then.start, then.end))
-    if not them or told_to_others(d, node):
+    if not asks_on(node) and (not them or told_to_others(d, node)):
         return None
     d.met = None
     return wanted(d, survey, d.get(condition, "said")).given(survey)
+
+
+def asks_on(node: Node) -> bool:
+    """Whether what hangs on the answer is one more question, for whoever gave it: "if somebody has
+    one, ask whether I may borrow it"."""
+    then = node.parts["then"]
+    asking = first_clause(then) if isinstance(then, Node) else None
+    return asking is not None and asking.means == "ask" and "person_ref" not in asking.parts
 
 
 def told_to_others(d: Discourse, node: Node) -> bool:
