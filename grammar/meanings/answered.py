@@ -220,7 +220,7 @@ def said_so(d: Discourse, no: bool, there_is_none: bool = False) -> Condition:
         person = d.person if not d.thing_last else None
         if person is not None or d.thing is not None:
             found_now = person or d.thing or Thing(Text(ANYONE))
-            d.met = Meeting(found_now, holds=not no, sought=True)
+            d.met = Meeting(found_now, holds=not no, sought=not in_round(d))
         return Not(looked) if no else looked
     delivery = delivered_last(d)
     if delivery is not None and no and (d.answer is None or there_is_none):

@@ -117,7 +117,7 @@ def trait_holds(d: Discourse, node: Node) -> Condition:
     if checked is not None:
         return checked
     if place is None and trait.thing is not None and (looked := just_looked_for(d, trait.thing)):
-        d.met = Meeting(trait.thing, holds=not trait.denied, sought=True)
+        d.met = Meeting(trait.thing, holds=not trait.denied, sought=not in_round(d))
         return Not(looked) if trait.denied else looked
     d.pending += trait.first
     if trait.thing is not None and in_round(d):
