@@ -19,9 +19,11 @@ from grammar.discourse import Discourse
 from grammar.edits import Edit, Sentence, same_word
 from grammar.language import Language
 from grammar.lexicon import Lexicon
-from grammar.pieces import is_pieces, leaves
+from grammar.listed import RULES, Row, rows_of
+from grammar.pieces import Piece, is_pieces, leading, leaves, pieces_of
 from grammar.plan import Call, Plan, Text, calls
 from grammar.requests import Request
+from grammar.told_apart import one_told_apart, thing_alone, with_other_look
 from grammar.understand import Reader
 from grammar.understanding import Context, Understanding, rejected
 
@@ -230,6 +232,8 @@ class _Turn:
                 return self._added(edit.new)
             case "add" if not self._commands(edit.new):
                 return self._first_read(self._same(edit.new))
+            case "reverse":
+                return self._first_read(self._reversed())
             case "again":
                 return self._again(edit)
             case "same":
@@ -258,8 +262,15 @@ class _Turn:
     def _corrected(self, said: str) -> Iterator[str | None]:
         """ "no, the pharmacy": the sentence with this in the place of what it corrects."""
         before, new = self._before(), self._reader(said, Context())
-        yield before.with_other_look(new)
+        yield with_other_look(before, new)
+        told = one_told_apart(before, new)
+        if told is not None:
+            yield from before.corrected(told)
+            return
         yield from before.corrected(new)
+        for part in (before.without_repeated(new), thing_alone(before, new)):
+            if part is not None and part is not new:  # "no, bring the red cup", "no, ask Clara"
+                yield from before.corrected(part)
         if self._commands(said):
             yield before.with_clause(new)
             if not is_pieces(new):  # "only the kitchen" stands for a part, not for all
@@ -274,6 +285,7 @@ class _Turn:
         """ "tea instead of coffee"."""
         before = self._before()
         old, new = self._reader(edit.old, Context()), self._reader(edit.new, Context())
+        yield before.swapped(old, before.without_repeated(new))
         yield before.swapped(old, new)
         yield from before.corrected(new)
 
@@ -283,16 +295,42 @@ class _Turn:
         if self._commands(said):
             yield f"{said.rstrip(' .!')}. {old}"
             return
+        listed = self._row_for(said)
+        if listed is not None and listed[0].begins_it:
+            row, named, piece = listed
+            yield row.with_one(named, piece, first=True)
+            return
         before, new = self._before(), self._reader(said, Context())
         for start, end in before.siblings()[0] if before.siblings() else []:
             clause = Sentence(self._reader(before.reader.words(start, end), self.base))
             for variant in clause.corrected(new):
                 yield f"{variant.rstrip(' .!')}. {old}"
 
+    def _reversed(self) -> Iterator[str | None]:
+        """ "the other way round"."""
+        before = self._before()
+        rows = rows_of(before.reader, before.tree)
+        if len(rows) == 1:
+            yield rows[0].reversed()
+        elif not rows and before.siblings():
+            clauses = [before.reader.words(*each) for each in before.siblings()[0]]
+            yield ". ".join(reversed(clauses)) if len(clauses) > 1 else None
+
+    def _row_for(self, said: str) -> tuple[Row, Reader, Piece] | None:
+        """The only row of names that a name goes with: "add the pharmacy"."""
+        before, new = self._before(), self._reader(said, Context())
+        pieces = next((row for row in pieces_of(new) if len(row) == 1), [])
+        kind = RULES.get(pieces[0].rule) if pieces else None
+        rows = [row for row in rows_of(before.reader, before.tree) if row.kind == kind]
+        return (rows[0], new, pieces[0]) if len(rows) == 1 else None
+
     def _added(self, said: str) -> Understanding | None:
         """ "and then wave": at the end of the command before."""
         whole = self._joined(self.text)
         separate = self._separate(said)
+        elsewhere = self._there_too(said, whole)
+        if elsewhere is not None:
+            return elsewhere
         if self._commands(said):
             alone = self._reader(said, self.context).understand()
             more = len(calls(alone.plan)) if alone.plan is not None else 1
@@ -308,11 +346,29 @@ class _Turn:
         before, new = self._before(), self._reader(said, Context())
         if result is not None and not self._swallowed(whole) and not before.spoken_earlier(new):
             return result
+        listed = self._row_for(said)
+        if listed is not None:
+            row, named, piece = listed
+            return self._first_read([row.with_one(named, piece)])
         new = before.without_repeated(new)
-        like = self._first_read(self._separate(variant) for variant in before.corrected(new))
+        last = before.last_of_its_like()
+        like = self._first_read(self._separate(variant) for variant in last.corrected(new))
         if like is None and is_pieces(new):
             return None  # "and in Clara's" is nothing to say, whatever was to be said
         return like or result or self._read(separate, self.base)
+
+    def _there_too(self, said: str, whole: str) -> Understanding | None:
+        """ "and in the kitchen", after "ask everyone in the lobby ...": not only to go there."""
+        before, new = self._before(), self._reader(said, Context())
+        if self.context.plan is None or not is_pieces(new):
+            return None
+        done = calls(self.context.plan)
+        result = self._read(whole, self.base)
+        more = calls(result.plan)[len(done) :] if result is not None and result.plan else []
+        if not more or done[-1].method == "goto" or any(each.method != "goto" for each in more):
+            return None
+        like = before.last_of_its_like().corrected(before.without_repeated(new))
+        return self._first_read(self._separate(variant) for variant in like)
 
     def _again(self, edit: Edit) -> Understanding | None:
         said = edit.new
@@ -332,7 +388,8 @@ class _Turn:
         before = self._before()
         new = before.without_repeated(self._reader(said, Context()))
         done = self.context.carried_out
-        for variant in before.corrected(new):
+        like = before if done else before.last_of_its_like()
+        for variant in like.corrected(new):
             yield variant if done else self._separate(variant)
         yield self._going_on(self._separate(self.text))
         if self._goes_on(new):
@@ -356,6 +413,11 @@ class _Turn:
         before, what = self._before(), self._reader(said, Context())
         words = what.content(0, what.last_word)
         if not words:
+            return
+        rows = rows_of(before.reader, before.tree)
+        members = [(row, member) for row in rows for member in row.about(words)]
+        if members:
+            yield from (row.without(member) for row, member in members)
             return
         for piece in before.pieces():
             if _has(before.reader.content(piece.start, piece.end), words):
@@ -409,6 +471,14 @@ class _Turn:
             return None
         before, new = self._before(), self._reader(self.text, Context())
         joined = self._joined(self.text)
+        if not self.context.carried_out:  # "the blue one", "the one in the lobby"
+            told = one_told_apart(before, new)
+            if told is not None:
+                return self._first_read(before.corrected(told))
+            placed = leading(new, 1) > 0  # "aus der Küche"
+            look = None if placed else with_other_look(before, new, instead=True)
+            if look is not None:
+                return self._read(look, self.base)
         if not self.context.carried_out and self._goes_on(new):
             texts = [self._going_on(text) for text in (joined, self._separate(self.text))]
             variants = [*before.corrected(new)]

@@ -6,7 +6,6 @@ have said at once, and it is understood as such, with all that hangs together in
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
@@ -49,13 +48,12 @@ EditKind = Literal[
     "only",
     "first",
     "add",
+    "reverse",
     "again",
     "same",
     "manner",
 ]
 
-MOST_ENDING: Final = 3
-"""Letters that an adjective may be longer than another of its forms."""
 SAME_LETTERS: Final = 4
 """With how many letters two words must begin alike to be forms of one: "waving" and "wave"."""
 
@@ -165,7 +163,8 @@ class Sentence:
             visit(self.tree, None)
         return found
 
-    def _world(self) -> tuple[Lexicon, Language, Context]:
+    def world(self) -> tuple[Lexicon, Language, Context]:
+        """What its words are understood by."""
         return self.reader.lexicon, self.reader.language, self.reader.context
 
     # --- changed
@@ -202,7 +201,7 @@ class Sentence:
         at = 0
         while at < new.last_word and new.tokens[at].norm in known:
             at += 1
-            rest = type(new)(new.words(at, new.last_word), *self._world())
+            rest = type(new)(new.words(at, new.last_word), *self.world())
             if rest.tokens and is_pieces(rest):
                 return rest
         return new
@@ -273,58 +272,29 @@ class Sentence:
                 best, best_score = old, score
         return best
 
-    def with_other_look(self, new: Reader, *, instead: bool = False) -> str | None:
-        """ "no, the red one": the last thing with another word for how it looks. `instead`: only
-        if there is a word for that already."""
-        language, lexicon = self.reader.language, self.reader.lexicon
-        counted = {word for (word,) in words_listed(language, "counted_words")}
-        words = [token for token in new.tokens[new.lead : new.last_word] if token.kind == "word"]
-        with_one = bool(words) and words[-1].norm in counted
-        words = words[:-1] if with_one else words
-        thing = next((each for each in reversed(self.pieces()) if each.rule == "thing"), None)
-        if not words or thing is None or thing.means in PRONOUNS:
-            return None
-        if not with_one and not all(_is_look(word.norm, language, lexicon) for word in words):
-            return None
-        look = new.text[words[0].start : words[-1].end]
-        first = thing.start
-        while first < thing.end and self.reader.is_little(range(first, first + 1)):
-            first += 1
-        head = first
-        while head < thing.end and _is_look(self.tokens[head].norm, language, lexicon):
-            head += 1
-        if head == thing.end:
-            return None
-        if first < head:  # there is a look already
-            return self.with_words(first, head, look)
-        after = head + 1
-        while after < thing.end and _is_look(self.tokens[after].norm, language, lexicon):
-            after += 1
-        if after > head + 1:  # or behind the noun
-            return self.with_words(head + 1, after, look)
-        if instead:
-            return None
-        noun = self.reader.words(head, head + 1)
-        first_noun = language.speech.get("adjectives_first") or "adjectives_first" not in (
-            language.speech
-        )
-        return self.with_words(head, head + 1, f"{look} {noun}" if first_noun else f"{noun} {look}")
-
     def with_clause(self, new: Reader) -> str | None:
         """The sentence with a whole clause in the place of the last one that does the like."""
         other = Sentence(new)
         doing = other.first_meaning()
         for row in reversed(self.siblings()):
             for start, end in reversed(row):
-                part = Sentence(type(new)(self.reader.words(start, end), *self._world()))
+                part = Sentence(type(new)(self.reader.words(start, end), *self.world()))
                 if doing and part.first_meaning() == doing:
                     return self.with_words(start, end, new.words(0, new.last_word))
         return None
 
+    def last_of_its_like(self) -> Sentence:
+        """The last clause, if it does what all do: "tell Clara that ... Tell Bob that ..."; else
+        the whole."""
+        row = self.siblings()[0] if self.siblings() else []
+        if len(row) < 2 or not self.all_do_the_like(row):
+            return self
+        return Sentence(type(self.reader)(self.reader.words(*row[-1]), *self.world()))
+
     def all_do_the_like(self, clauses: list[tuple[int, int]]) -> bool:
         """Whether each of some clauses means the same but for the names in it."""
         meant = {
-            Sentence(type(self.reader)(self.reader.words(*each), *self._world())).first_meaning()
+            Sentence(type(self.reader)(self.reader.words(*each), *self.world())).first_meaning()
             for each in clauses
         }
         return len(meant) == 1 and "" not in meant
@@ -431,27 +401,6 @@ class Sentence:
 
     def _tail(self, end: int) -> int:
         return self.tokens[end - 1].end
-
-
-def _is_look(word: str, language: Language, lexicon: Lexicon) -> bool:
-    """Whether a word says how something looks: "red", "rote", "verte"."""
-    return any(
-        word[:3] == look[:3]
-        and abs(len(word) - len(look)) <= MOST_ENDING
-        and word.startswith(look[: len(word) - MOST_ENDING])  # "assiette" is not "assis"
-        for look in _looks(language, lexicon)
-    )
-
-
-@functools.lru_cache(maxsize=16)
-def _looks(language: Language, lexicon: Lexicon) -> frozenset[str]:
-    known = {word for name in lexicon.objects for word in name.attributes}
-    looks: dict[str, str] = language.speech.get("looks", {})
-    told = (look.partition("⟨")[0].split()[-1:] for look in looks.values() if look)
-    said = {word for words in told for text in words for word in language.tokens_of(text)}
-    listed = language.lists.get("superlative", {}).values()
-    said |= {word for ways in listed for way in ways for word in way}
-    return frozenset({each for each in said if len(each) > 2} | (known if not looks else set()))
 
 
 def same_word(one: str, other: str) -> bool:

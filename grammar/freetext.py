@@ -236,6 +236,10 @@ class Judge:
         if not spoken and STOP in self.norms(start, end):  # a question ends where its sentence does
             stop = start + self.norms(start, end).index(STOP)
             return doubt(min(stop + 1, end - 1), "not_understood")
+        for at in range(start + 1, end - 1):  # "lunch is ready. And everyone in the lobby"
+            begun = self.tokens[at].norm == STOP and self.tokens[at + 1].norm in self.joins
+            if begun and not self.is_clause(at + 2, end):
+                return doubt(at + 1, "said_or_done")
         last = self.tokens[end - 1].norm
         if last in self.joins | self.words.goes_on:
             return doubt(end - 1, "not_understood")  # "..., except"

@@ -40,6 +40,7 @@ FINDING_OUT: Final = frozenset({"ask", "sees", "find", "count", "people", "objec
 WHERE_AND_WHOM: Final = frozenset({"person", "place"})
 """Parameters of these that the round itself fills in."""
 EVERYWHERE: Final = Ask("places")
+PRESENT: Final = Ask("people")
 
 
 class Doubt(Enum):
@@ -143,12 +144,17 @@ def _rows(steps: tuple[Step, ...]) -> list[tuple[Step, ...]]:
 
 def _repeats(steps: tuple[Step, ...]) -> bool:
     done: list[tuple[object, frozenset[str]]] = []
+    here: Value | None = None
     for step in steps:
+        if isinstance(step, Call) and step.method == "goto":
+            here = step.arguments.get("place")
         if isinstance(step, ForEach):
             asked = _questions(step)
-            if any(asked & before and step.items in (items, EVERYWHERE) for items, before in done):
+            # whoever is in the lobby is not whoever is in the kitchen
+            among = (step.items, here) if step.items == PRESENT else step.items
+            if any(asked & before and among in (those, EVERYWHERE) for those, before in done):
                 return True
-            done.append((step.items, asked))
+            done.append((among, asked))
         elif _changes_something(step):
             done.clear()
     return False

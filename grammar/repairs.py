@@ -20,6 +20,7 @@ from grammar.edits import Sentence
 from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.pieces import Piece, is_pieces, leading, leaves, pieces_at, words_listed
+from grammar.told_apart import with_other_look
 from grammar.understand import Reader
 from grammar.understanding import Context, Understanding
 
@@ -109,7 +110,7 @@ def _with_other_look(before: Reader, behind: Reader) -> Iterator[str]:
     """The sentence with its last thing looking otherwise: "the blue cup, no, the red one"."""
     end = _first_mark(behind)
     look = Reader(behind.words(0, end), behind.lexicon, behind.language, behind.context)
-    fixed = Sentence(before).with_other_look(look, instead=True) if look.tokens else None
+    fixed = with_other_look(Sentence(before), look, instead=True) if look.tokens else None
     if fixed is not None:
         yield fixed.rstrip(" ,") + behind.text[behind.tokens[end - 1].end :]
 

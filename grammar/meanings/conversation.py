@@ -69,6 +69,12 @@ def edit_add(d: Discourse, node: Node) -> Edit:
     return edit(d, node, "add")
 
 
+@meaning("edit_reverse")
+def edit_reverse(d: Discourse, node: Node) -> Edit:
+    """ "the other way round": the last of several first."""
+    return edit(d, node, "reverse")
+
+
 @meaning("edit_again")
 def edit_again(d: Discourse, node: Node) -> Edit:
     """ "again", "once more in the kitchen"."""
