@@ -23,7 +23,7 @@ from grammar.tidy import nodes
 from grammar.tokens import Token
 
 NAMES: Final = frozenset({"noun", "object", "person", "stranger", "place", "furniture"})
-TEXTS: Final = frozenset({"text", "word", "verb", "quote"})
+TEXTS: Final = frozenset({"text", "remark", "word", "verb", "quote"})
 FREE: Final = frozenset({"text"})
 NO_PART: Final = frozenset(
     {"corrected", "place_corrected", "statement", "refused"}

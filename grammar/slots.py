@@ -210,7 +210,8 @@ class Slots:
     def _zu_infinitive(self, at: int) -> list[Match]:
         """A verb with "zu" inside: "anzurufen"; its value is the verb without it."""
         particles = self.language.speech.get("clause", {}).get("particles", ())
-        word = self.tokens[at].norm if at < len(self.tokens) else ""
+        token = self.tokens[at] if at < len(self.tokens) else None
+        word = (token.spelled or token.norm) if token is not None else ""
         for particle in particles:
             if word.startswith(f"{particle}zu") and word.endswith("n"):
                 rest = word[len(particle) + 2 :]

@@ -152,6 +152,11 @@ def _add_word(tokens: list[Token], raw: str, start: int, spelling: Spelling) -> 
                 _add_word(tokens, raw[: -len(ending)], start, spelling)
                 tokens.extend(Token(part, cut, end) for part in meaning.split())
                 return
+        cut = word.index("'") + 1
+        if word[cut:] in spelling.contractions:  # "qu'aujourd'hui"
+            tokens.append(_word(word[: cut - 1], start, start + cut - 1, spelling))
+            _add_word(tokens, raw[cut:], start + cut, spelling)
+            return
         for piece in re.finditer(r"[^'’`]+", raw):
             tokens.append(
                 _word(plain(piece.group()), start + piece.start(), start + piece.end(), spelling)

@@ -87,6 +87,19 @@ def _joined(
     return text
 
 
+def asked_of_you(d: Discourse, clause: str) -> str:
+    """A clause that ends with an infinitive, as it is asked of somebody: "in die Küche kommen" ->
+    "kommen Sie in die Küche". Unchanged in languages without `imperative` in their data, and where
+    there are several verbs."""
+    rules = d.language.speech.get("imperative")
+    words = clause.split()
+    if rules is None or not words or set(words) & set(rules["joins"]):
+        return clause
+    verb, particle = parted(d, words[-1])
+    verb = rules["irregular"].get(verb, verb)
+    return _written([verb, rules["you"], *words[:-1], *([particle] if particle else [])])
+
+
 def parted(d: Discourse, verb: str) -> tuple[str, str]:
     """A verb without its particle, and the particle: "mitkommt" -> "kommt", "mit"."""
     rules = d.language.speech.get("clause")

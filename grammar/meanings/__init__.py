@@ -12,6 +12,7 @@ import grammar.meanings.amounts
 import grammar.meanings.answered
 import grammar.meanings.answered_numbers
 import grammar.meanings.answers
+import grammar.meanings.asked_to_do
 import grammar.meanings.asking_until
 import grammar.meanings.best_places
 import grammar.meanings.body

@@ -329,11 +329,13 @@ def leaves_things(steps: Steps) -> bool:
 
 
 def missed_at_home(d: Discourse, delivery: Delivery | None, met: Meeting | None) -> Meeting | None:
-    """ "if his office is empty": who is to get something is not there."""
+    """ "if his office is empty", "if nobody is there": who is to get something is not there."""
     receiver = None if delivery is None else delivery.receiver
     if receiver is None or met is None or met.holds or met.thing.text != ANYONE:
         return met
     home = own_place(d, receiver)
+    if met.thing.place is None:
+        return replace(met, thing=receiver)
     if home is None or met.thing.place != home:
         return met
     return replace(met, thing=replace(receiver, place=home))

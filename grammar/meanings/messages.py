@@ -209,7 +209,8 @@ def turned(d: Discourse, start: int, end: int, person: Thing | None) -> dict[int
     last = next((at for at in range(start, end) if d.tokens[at].norm in data["ends"]), end)
     for at in range(start, last):
         word = d.tokens[at].norm
-        if word not in data["you"]:
+        is_verb = word in data.get("verbs_too", ()) and at + 1 == last
+        if word not in data["you"] or is_verb:
             continue
         owned = word in data["possessives"] and at + 1 < last and d.tokens[at + 1].capital
         other = None if person.me else d.one_before(person, at)

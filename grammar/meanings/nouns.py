@@ -7,6 +7,7 @@ from dataclasses import replace
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Thing, Where
 from grammar.doubts import NotUnderstood
+from grammar.meanings.deliveries import delivered_last
 from grammar.meanings.descriptions import described
 from grammar.meanings.genders import means_receiver, means_thing
 from grammar.meanings.persons import person_kind, person_pronoun, unknown_person
@@ -18,6 +19,7 @@ from grammar.meanings.places import (
 )
 from grammar.meanings.registry import meaning
 from grammar.plan import Text
+from grammar.tokens import Token
 from grammar.wordforms import head_word, singular
 
 
@@ -65,14 +67,29 @@ def is_short_for(d: Discourse, words: str, name: str) -> bool:
 
 def is_strange_name(d: Discourse, start: int, end: int) -> bool:
     """Whether words are written as a name is: "Zorro", not at the beginning of the sentence."""
-    if start == 0 or d.language.speech.get("capital_nouns"):
+    if start == 0:
         return False
     tokens = d.tokens[start:end]
+    if d.language.speech.get("capital_nouns"):
+        return len(tokens) == 1 and is_bare_name(d, tokens[0])
     after_stop = d.tokens[start - 1].kind == "mark"
     return not after_stop and all(
         token.kind == "word" and token.capital and token.norm not in d.language.words
         for token in tokens
     )
+
+
+def is_bare_name(d: Discourse, token: Token) -> bool:
+    """Whether a word without an article is a name where all nouns have capitals: a first name, or
+    one that ends as few nouns do that stand so ("Zorro", but not "Kaffee" or "Decken")."""
+    first_names = d.language.speech.get("given_names", {}).values()
+    if any(token.norm in names for names in first_names):
+        return True
+    data = d.language.speech.get("bare_names", {})
+    nouns = tuple(data.get("nouns", ()))
+    word = token.spelled or token.norm
+    ends_so = word.endswith(tuple(data.get("endings", ())))
+    return token.capital and ends_so and word not in d.language.words and not word.endswith(nouns)
 
 
 def instead_of_one(d: Discourse, node: Node, noun: str) -> str:
@@ -190,12 +207,16 @@ def thing_opening(d: Discourse, node: Node) -> Thing:
 @meaning("one_of_them")
 def one_of_them(d: Discourse, node: Node) -> Thing:
     """ "keiner", "einer": none or one of what was spoken of last, or of all people; but of "the
-    folder" there are no several."""
+    folder" there are no several, unless it was brought to the speaker, who is surely there. Words
+    for nobody ("keiner") are no others that can only be about things ("keine", "keins")."""
     articles = d.language.speech.get("articles", ())
     said = d.thing.text.split()[-1].lower() if d.thing is not None and d.thing.text else ""
     named = [at for at in range(1, node.start) if d.words(at, at + 1).lower() == said]
     the_one = bool(named) and d.tokens[named[-1] - 1].norm in articles
-    if d.thing is not None and d.thing_last and not the_one:
+    delivery = delivered_last(d)
+    to_speaker = delivery is not None and delivery.spot is None and delivery.receiver is None
+    no_person = to_speaker or bool(node.production.fixed.get("of_things"))
+    if d.thing is not None and d.thing_last and (no_person or not the_one):
         return replace(d.thing, pronoun=True)
     return person_kind(d, node)
 

@@ -26,10 +26,9 @@ from grammar.meanings.options import (
     without_little_words,
 )
 from grammar.meanings.persons import is_me
-from grammar.meanings.references import answers_in, nouns_of
+from grammar.meanings.references import nouns_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import tell_speaker
-from grammar.meanings.requested import Request
 from grammar.meanings.whom_asked import all_meant, just_visited, several_of_a_kind, spoken_of
 from grammar.naming import some, the
 from grammar.plan import (
@@ -393,49 +392,6 @@ def base_form(d: Discourse, verb: str) -> str:
         if low.endswith(ending):
             return verb[: len(verb) - len(ending)] + str(base)
     return verb
-
-
-@meaning("ask_to")
-def ask_to(d: Discourse, node: Node) -> Steps:
-    """ "ask them to wait" -> "Please wait."."""
-    part = node.parts.get("text")
-    # Whoever else is spoken of is not the one who is asked: "sie soll ihn mir bringen".
-    person: Thing | None = d.get(node, "person_ref")
-    d.message = node
-    kinds = ("to_you_asked", "to_you_who", "to_you")
-    you = next(each for each in kinds if each in d.language.speech)
-    text = turn_to_you(d, part.start, part.end, you, person) if part is not None else ""
-    if part is not None and (how := manner_after(d, part.end)):  # "ask them to speak quietly"
-        text = f"{text} {how}"
-    if "wished" in node.parts:  # "qu'elle vienne ici"
-        text = f"{d.get(node, 'wished')} {text}".strip()
-    verb = node.parts.get("verb")
-    if verb is not None:  # "hier zu warten": the verb stands last
-        last = verb.value if isinstance(verb, Leaf) and verb.value else None
-        text = f"{text} {last or turn_to_you(d, verb.start, verb.end)}".strip()
-    if "why" in node.parts:
-        text += d.words(node.parts["why"].start, node.parts["why"].end)
-    without = d.language.speech.get("please_without", ())
-    text = " ".join(word for word in text.split() if word not in without)
-    first = node.parts.get("text") or node
-    words = answers_in(d, text, first.start, first.end)
-    request = d.sentence(str(node.production.fixed.get("phrase", "please_do")), what=words)
-    saying = Call("say", {"text": request})
-    steps = speak_to(d, person, [saying])
-    if "phrase" not in node.production.fixed and isinstance(words, Text):
-        d.request = Request(saying, words.value, person)
-    return steps
-
-
-def manner_after(d: Discourse, at: int) -> str:
-    """Words for how loud something is to be done that were passed over behind a text, as a part of
-    it."""
-    for way in d.language.speech.get("volumes", ()):
-        words = d.language.tokens_of(way)
-        if tuple(d.norms(at, min(at + len(words), len(d.tokens)))) == tuple(words):
-            d.resolved.update(range(at, at + len(words)))
-            return d.words(at, at + len(words))
-    return ""
 
 
 @meaning("ask_in")

@@ -279,6 +279,8 @@ def places_told(d: Discourse, node: Node) -> Told:
     if d.round.such is not None and not named and last_round(d) is not None:
         return Told([d.say("it_is_there", place=Recall(d.round.such))], [])
     trait_part = node.parts["place_trait"]
+    tell = str(node.production.fixed.get("tell", "which"))
+    of_them = "many" if tell == "many" else "who"
     if (
         not named
         and isinstance(trait_part, Node)
@@ -286,14 +288,13 @@ def places_told(d: Discourse, node: Node) -> Told:
         and asked_yet(d)
     ):
         # "ask them whether they want coffee and tell me how many of them want coffee"
-        return polled(d, "many" if node.production.fixed.get("tell") == "many" else "who", None)
-    tell = str(node.production.fixed.get("tell", "which"))
+        return polled(d, of_them, None)
     if tell in ASKED_WHERE and asked_there(d, trait_part):
         return polled(d, ASKED_WHERE[tell], Said(trait_part.start, trait_part.end))
     of_people = tell == "all" or last_round(d) is None
     if not named and of_people and asked_yet(d):
         # "ask them whether they have a key and tell me which ones have none"
-        return polled(d, "who", Said(trait_part.start, trait_part.end))
+        return polled(d, of_them, Said(trait_part.start, trait_part.end))
     if d.news is not None:  # what was checked on the round is told only as is said now
         take_back(d, d.news)
     d.round.lookout = None

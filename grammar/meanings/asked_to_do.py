@@ -1,0 +1,79 @@
+"""Asking people to do something: "ask them to wait" becomes "Please wait."."""
+
+from __future__ import annotations
+
+from grammar.chart import Leaf, Node
+from grammar.discourse import Discourse, Steps, Thing
+from grammar.meanings.finding import speak_to
+from grammar.meanings.questions import turn_to_you
+from grammar.meanings.references import answers_in
+from grammar.meanings.registry import meaning
+from grammar.meanings.requested import Request
+from grammar.plan import Call, Text
+from grammar.wordorder import asked_of_you
+
+
+@meaning("ask_to")
+def ask_to(d: Discourse, node: Node) -> Steps:
+    """ "ask them to wait" -> "Please wait."."""
+    part = node.parts.get("text")
+    # Whoever else is spoken of is not the one who is asked: "sie soll ihn mir bringen".
+    person: Thing | None = d.get(node, "person_ref")
+    d.message = node
+    kinds = ("to_you_asked", "to_you_who", "to_you")
+    you = next(each for each in kinds if each in d.language.speech)
+    text = turn_to_you(d, part.start, part.end, you, person) if part is not None else ""
+    if "wished" in node.parts:  # "qu'elle vienne ici"
+        text = f"{d.get(node, 'wished')} {text}".strip()
+    verb = node.parts.get("verb")
+    how = manner_within(d, node, verb)  # "ask them to speak quietly"
+    text = f"{text} {how}".strip()
+    if verb is not None:  # "hier zu warten": the verb stands last
+        text = f"{text} {_infinitive(d, verb)}".strip()
+    without = d.language.speech.get("please_without", ())
+    text = " ".join(word for word in text.split() if word not in without)
+    direct = text if verb is None else asked_of_you(d, text)
+    also = node.parts.get("also_verb")
+    if also is not None:  # "in die Küche zu kommen und dort zu warten"
+        more = node.parts.get("also_text")
+        second = turn_to_you(d, more.start, more.end, you, person) if more is not None else ""
+        second = f"{second} {_infinitive(d, also)}".strip()
+        joint = f" {d.language.speech['clause']['and'][0]} "
+        text, direct = text + joint + second, direct + joint + asked_of_you(d, second)
+    if "why" in node.parts:
+        why = d.words(node.parts["why"].start, node.parts["why"].end)
+        text, direct = text + why, direct + why
+    first = node.parts.get("text") or node
+    words, what = (answers_in(d, each, first.start, first.end) for each in (text, direct))
+    request = d.sentence(str(node.production.fixed.get("phrase", "please_do")), what=what)
+    saying = Call("say", {"text": request})
+    steps = speak_to(d, person, [saying])
+    if "phrase" not in node.production.fixed and isinstance(words, Text):
+        d.request = Request(saying, words.value, person)
+    return steps
+
+
+def _infinitive(d: Discourse, verb: Leaf | Node) -> str:
+    """The verb of what somebody is asked to do, without a "zu" before it or in it: "anzurufen"."""
+    while isinstance(verb, Node) and len(verb.parts) == 1:
+        (verb,) = verb.parts.values()
+    if isinstance(verb, Leaf) and verb.slot == "zu_infinitive":
+        return str(verb.value)
+    return d.words(verb.end - 1, verb.end)  # words may have been passed over before it
+
+
+def manner_within(d: Discourse, node: Node, verb: Leaf | Node | None) -> str:
+    """Words for how loud something is to be done that were passed over behind the text, or before a
+    verb that stands last, as a part of what is asked."""
+    part = node.parts.get("text")
+    begun = [each.end for name, each in node.parts.items() if name in ("text", "person_ref")]
+    last = max(begun, default=node.start) if verb is None else verb.end - 1
+    if part is None and verb is None:
+        return ""
+    for way in d.language.speech.get("volumes", ()):
+        words = tuple(d.language.tokens_of(way))
+        for at in range(max(begun, default=node.start), last + 1):
+            if tuple(d.norms(at, min(at + len(words), len(d.tokens)))) == words:
+                d.resolved.update(range(at, at + len(words)))
+                return d.words(at, at + len(words))
+    return ""
