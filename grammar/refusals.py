@@ -49,7 +49,7 @@ def no_thing(plan: Plan, lexicon: Lexicon, language: Language) -> tuple[str, str
         listed = language.speech.get("no_things", {}) if step.method in IN_HAND else {}
         if step.method in SEEN:
             listed = {"out_of_sight": language.speech.get("out_of_sight", ())}
-        words = language.tokens_of(thing.value)
+        words = tuple(_without_harmless(list(language.tokens_of(thing.value)), language))
         if len(words) == 1 and words[0] in language.words_called("qualities"):
             return "no_quality", thing.value  # "which lab is quieter"
         titles = language.speech.get("personal_titles", ())

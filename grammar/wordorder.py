@@ -181,6 +181,8 @@ def _first_part(rules: Any, d: Discourse, groups: Sequence[Group]) -> int:
             hours = at + 1 < len(groups) and groups[at + 1].norm in rules["clock"]
             return at + 1 + hours  # "um zwölf Uhr ist Probealarm"
     named = _named(d, groups, at)
+    if named and _owns(d, groups, named):  # "Bobs Termin ist um drei"
+        return _noun_end(rules, groups, named)
     if named:
         return _noun_end(rules, groups, named - 1)
     group = groups[at]
@@ -226,6 +228,14 @@ def _noun_end(rules: Any, groups: Sequence[Group], at: int) -> int:
 
 def _begins_noun(rules: Any, group: Group) -> bool:
     return group.norm in rules["determiners"] or group.norm in rules["pronouns"]
+
+
+def _owns(d: Discourse, groups: Sequence[Group], end: int) -> bool:
+    """Whether the name before this position is a genitive: "Bobs", before what is his."""
+    mark = tuple(d.language.speech.get("bare_possessive", ()))
+    genitive = bool(mark) and groups[end - 1].spelled.endswith(mark)
+    owned = groups[end] if end < len(groups) - 1 else None
+    return genitive and owned is not None and owned.capital and not _named(d, groups, end)
 
 
 def _named(d: Discourse, groups: Sequence[Group], at: int) -> int:

@@ -20,6 +20,7 @@ from grammar.plan import Text
 def thing_owned(d: Discourse, node: Node) -> Thing:
     """ "Bob's folder": in his office, if nobody says where it is."""
     owner: Thing = d.get(node, "owner")
+    d.person = owner  # "Bob's folder in his office"
     found = thing(d, node)
     if found.place is None and found.furniture is None and d.at is None:
         found = replace(found, place=own_place(d, owner))

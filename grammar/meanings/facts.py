@@ -12,6 +12,7 @@ from grammar.meanings.places import kind_places
 from grammar.meanings.references import answer_to, survey_named
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report, told
+from grammar.meanings.speaking import language_spoken
 from grammar.naming import place_called
 from grammar.plan import (
     Ask,
@@ -78,7 +79,7 @@ def tell_joke(d: Discourse, node: Node) -> Steps:
 
 
 def joke(d: Discourse) -> Report:
-    jokes = [text for name, text in d.language.phrases.items() if name.startswith("joke_")]
+    jokes = [text for name, text in language_spoken(d).phrases.items() if name.startswith("joke_")]
     return Report(
         "only", Choice(Items(tuple(Text(each) for each in jokes))), name="joke", about_here=False
     )

@@ -20,7 +20,7 @@ from grammar.meanings.news import BACK
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
-from grammar.meanings.speaking import spoken
+from grammar.meanings.speaking import ready_made, spoken
 from grammar.meanings.strangers import announced_one
 from grammar.meanings.things import given_last
 from grammar.meanings.waiting import awaited
@@ -296,7 +296,7 @@ def greet(d: Discourse, node: Node) -> Steps:
         if d.answer is None:
             raise NotUnderstood(d.language.phrase("whose_name"))
         name = Recall(d.answer)
-    words = d.say("hello_name", name=name) if name else d.say("hello")
+    words = ready_made(d, "hello_name", name=name) if name else ready_made(d, "hello")
     return speak_to(d, person, [words])
 
 

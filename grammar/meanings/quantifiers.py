@@ -109,6 +109,10 @@ def distributed(d: Discourse, node: Node, make: Make) -> Steps:
     if hands_one_of_several(d, node):
         begun_before(d)
     several = one_each(d, several)
+    if node.means == "go_person" and len(several) == 1 and "then" not in node.parts:
+        among = gone_among(d, several[0])
+        if among is not None:
+            return among
     within_source = {id(part) for part in inside(node.parts.get("from"))}
     sources = [part for part in several if id(part) in within_source]  # "out of all offices"
     several = [part for part in several if id(part) not in within_source]
@@ -116,6 +120,21 @@ def distributed(d: Discourse, node: Node, make: Make) -> Steps:
     if node.means in FETCHES:
         keep_fetching(d, node, make, steps, scene, known)
     return steps
+
+
+def gone_among(d: Discourse, part: Node) -> Steps | None:
+    """ "go to every patient in ward a and ask them ...": to where they are, for nobody knows who they
+    are; what is asked or said next is for each of them. None of people who have names."""
+    scene = d.scene()
+    people = d.build(part)
+    if part.means not in ("person_kind", "person_group_kind") or isinstance(people.group, Items):
+        people = None
+    if people is None or people.place is None:
+        d.set_scene(scene)
+        return None
+    going = go(d, people.place)
+    d.person, d.thing_last = replace(people, place=None, here=True), False
+    return going
 
 
 def taken_from_there(d: Discourse, node: Node, several: list[Node], make: Make) -> Steps:

@@ -29,7 +29,13 @@ from grammar.meanings.persons import is_me
 from grammar.meanings.references import nouns_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import tell_speaker
-from grammar.meanings.whom_asked import all_meant, just_visited, several_of_a_kind, spoken_of
+from grammar.meanings.whom_asked import (
+    all_meant,
+    gone_to,
+    just_visited,
+    several_of_a_kind,
+    spoken_of,
+)
 from grammar.naming import some, the
 from grammar.plan import (
     Ask,
@@ -58,7 +64,7 @@ def ask(d: Discourse, node: Node) -> Steps:
     if person is None and isinstance(question, Node) and "asked_one" in question.parts:
         person = d.build(question.parts["asked_one"])  # "find out what Bob wants"
     if person is None:
-        person = just_visited(d) or all_meant(d, node) or spoken_of(d)
+        person = just_visited(d) or all_meant(d, node) or gone_to(d) or spoken_of(d)
     nobody = person is None and d.with_person is None and d.at is None and not d.in_loop
     if nobody and node.production.fixed.get("of_those_there"):
         raise NotUnderstood(d.language.phrase("no_question"))

@@ -9,12 +9,13 @@ from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, capital
 from grammar.doubts import NotUnderstood
 from grammar.freetext import words_for
-from grammar.language import load_language
+from grammar.language import Language, languages, load_language
 from grammar.meanings.finding import speak_to
 from grammar.meanings.persons import is_me
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning
 from grammar.plan import Call, ForEach, Items, Number, Recall, Text, Value
+from grammar.tidy import nodes
 
 
 @meaning("say")
@@ -144,7 +145,26 @@ def say_it(d: Discourse, node: Node) -> Steps:
 @meaning("phrase")
 def phrase(d: Discourse, node: Node) -> Steps:
     """Say what the language holds ready: "introduce yourself", "thank them"."""
-    return speak_to(d, d.get(node, "person_ref"), [d.say(str(node.production.fixed["phrase"]))])
+    words = ready_made(d, str(node.production.fixed["phrase"]))
+    return speak_to(d, d.get(node, "person_ref"), [words])
+
+
+def ready_made(d: Discourse, phrase: str, **values: Value | str) -> Call:
+    """What a language has ready to say, in the one that the robot was told to speak before."""
+    text = language_spoken(d).phrases[phrase]
+    return Call("say", {"text": d.filled(text, **values)})
+
+
+def language_spoken(d: Discourse) -> Language:
+    """The language that the robot was told to speak, if it is one whose phrases are known; else that
+    of the command."""
+    told = (
+        str(each.arguments["code"].value)
+        for each in reversed(list(nodes(tuple(d.done))))
+        if isinstance(each, Call) and each.method == "set_language"
+    )
+    code = next(told, d.language.code)
+    return load_language(code) if code in languages() else d.language
 
 
 @meaning("set_volume")

@@ -8,7 +8,7 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Thing
 from grammar.meanings.finding import met_just_before, visits_only
 from grammar.meanings.persons import known_by_name
-from grammar.plan import ForEach, Items, Text
+from grammar.plan import Call, ForEach, Items, Text
 from grammar.wordforms import singular
 
 
@@ -42,6 +42,16 @@ def just_visited(d: Discourse) -> Thing | None:
     if d.done and d.done[-1] is last:
         return None
     return Thing(Text(ANYONE), person=True, plural=True, known=True, group=last.items)
+
+
+def gone_to(d: Discourse) -> Thing | None:
+    """Those to whom the robot was sent, whoever they are: "go to everybody in the library and ask
+    whether ..."."""
+    person: Thing | None = d.person
+    last = d.done[-1] if d.done else None
+    if person is None or not (person.plural and person.here) or person.known:
+        return None
+    return person if isinstance(last, Call) and last.arguments.get("place") == d.at else None
 
 
 def spoken_of(d: Discourse) -> Thing | None:
