@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from msgspec.structs import replace
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.doubts import NotUnderstood
+from grammar.meanings.finding import go
 from grammar.meanings.gone_round import last_round, places_of, round_of, round_of_visits
 from grammar.meanings.news import News, Told, go_back, last_found
 from grammar.meanings.places import unknown_place
@@ -22,6 +25,7 @@ from grammar.plan import (
     If,
     Items,
     Length,
+    Not,
     Number,
     Recall,
     Remember,
@@ -32,20 +36,24 @@ from grammar.plan import (
 )
 from grammar.tidy import nodes
 
+NONE_AND_SOME: Final = ("nobody_of_them", "these_are_there")
+"""What is said of who is there."""
+
 
 @meaning("presence_told")
 def presence_told(d: Discourse, node: Node) -> Told:
-    """ "which of Alice and Bob are in their offices", "who of them is there"."""
+    """ "which of Alice and Bob are in their offices", "who of them is there", "who is missing"."""
     if "people" not in node.parts:
         return last_found(d) if d.news is not None else met_on_round(d, None)
-    people: Thing | list[Thing] = people_of(d, node)
+    people = people_of(d, node)
     if "kind" not in node.parts:
-        return those_met(d, people if isinstance(people, list) else [people])
+        missing = bool(node.production.fixed.get("missing"))
+        return those_met(d, people, d.get(node, "place"), missing=missing)
     kind, mark = str(d.get(node, "kind")), d.language.speech["possessive"]
     known = {place.name.lower(): place.name for place in d.lexicon.place_kinds[kind]}
     found = d.variable("found")
     first: Steps = [Remember(found, Items(()))]
-    for person in people if isinstance(people, list) else []:
+    for person in people:
         place = known.get(f"{person.text}{mark}{kind}".lower())
         if place is None:
             raise unknown_place(d, f"{person.text}{mark}{kind}", node)
@@ -58,26 +66,31 @@ def presence_told(d: Discourse, node: Node) -> Told:
     return Told([if_any(found, none, some)], first)
 
 
-def those_met(d: Discourse, people: list[Thing]) -> Told:
-    """ "whether Alice or Bob is there": which of them, on the round or where the robot is."""
-    at = last_round(d)
-    at = round_of_visits(d) if at is None else at
+def those_met(
+    d: Discourse, people: list[Thing], place: Value | None = None, *, missing: bool = False
+) -> Told:
+    """ "whether Alice or Bob is there": which of them are, or are not, in a place, on the round or
+    where the robot is."""
+    going = [] if place is None else go(d, place)
+    at = last_round(d) if place is None else None
+    at = round_of_visits(d) if at is None and place is None else at
     loop = None if at is None else d.done[at]
     if loop is None and d.at is None:
         raise NotUnderstood(d.language.phrase("which_places"))
     found = d.variable("found")
+    seen = [Holds(Ask("sees", {"thing": each.value})) for each in people]
     notes: Steps = [
-        If(Holds(Ask("sees", {"thing": each.value})), (Collect(found, each.value),))
-        for each in people
+        If(Not(here) if missing else here, (Collect(found, each.value),))
+        for here, each in zip(seen, people, strict=True)
     ]
-    first: Steps = [Remember(found, Items(()))]
+    first: Steps = [Remember(found, Items(())), *going]
     if at is not None and isinstance(loop, ForEach):
         d.done[at] = replace(loop, steps=(*loop.steps, *notes))
         d.done.insert(0, first.pop())
     else:
         first += notes
-    some = d.say("these_are_there", names=Recall(found))
-    return Told([if_any(found, d.say("nobody_of_them"), some)], first)
+    none, some = ("nobody_missing", "who_missing") if missing else NONE_AND_SOME
+    return Told([if_any(found, d.say(none), d.say(some, names=Recall(found)))], first)
 
 
 def people_of(d: Discourse, node: Node) -> list[Thing]:

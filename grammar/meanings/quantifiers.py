@@ -123,8 +123,8 @@ def distributed(d: Discourse, node: Node, make: Make) -> Steps:
 
 
 def gone_among(d: Discourse, part: Node) -> Steps | None:
-    """ "go to every patient in ward a and ask them ...": to where they are, for nobody knows who they
-    are; what is asked or said next is for each of them. None of people who have names."""
+    """ "go to every patient in ward a and ask them ...": to where they are, for nobody knows who
+    they are; what is asked or said next is for each of them. None of people who have names."""
     scene = d.scene()
     people = d.build(part)
     if part.means not in ("person_kind", "person_group_kind") or isinstance(people.group, Items):

@@ -89,10 +89,11 @@ def rounds(d: Discourse, node: Node, thing: Thing, single: Thing, body: Steps) -
         if not (isinstance(body[-1], Call) and body[-1].method == "give"):
             raise where_from(d, node, thing)
     source = Recall(d.variable("source"))
-    search = Holds(Ask("find", {**found(d, single).arguments, "place": source}))
+    sought = found(d, single).arguments
+    search = Holds(Ask("find", {**sought, "place": source}))
+    body = without_find(body, sought["thing"])
     if target is None:  # what is handed over is not found again
-        return [ForEach(source.name, Ask("places"), (While(search, tuple(without_find(body))),))]
-    body = without_find(body)
+        return [ForEach(source.name, Ask("places"), (While(search, tuple(body)),))]
     other = is_other(d, source, target)
     if thing.count is None:
         return [ForEach(source.name, Ask("places"), (While(Both((other, search)), tuple(body)),))]
@@ -107,9 +108,15 @@ def rounds(d: Discourse, node: Node, thing: Thing, single: Thing, body: Steps) -
     ]
 
 
-def without_find(body: Steps) -> Steps:
-    """A round whose loop has already found the thing."""
-    return [step for step in body if not (isinstance(step, Call) and step.method == "find")]
+def without_find(body: Steps, thing: Value) -> Steps:
+    """A round whose loop has already found the thing, but not who gets it."""
+    return [
+        step
+        for step in body
+        if not (
+            isinstance(step, Call) and step.method == "find" and step.arguments["thing"] == thing
+        )
+    ]
 
 
 def another_one(d: Discourse, body: Steps) -> Steps:

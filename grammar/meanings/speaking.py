@@ -156,14 +156,13 @@ def ready_made(d: Discourse, phrase: str, **values: Value | str) -> Call:
 
 
 def language_spoken(d: Discourse) -> Language:
-    """The language that the robot was told to speak, if it is one whose phrases are known; else that
-    of the command."""
-    told = (
-        str(each.arguments["code"].value)
-        for each in reversed(list(nodes(tuple(d.done))))
-        if isinstance(each, Call) and each.method == "set_language"
-    )
-    code = next(told, d.language.code)
+    """The language that the robot was told to speak, if it is one whose phrases are known; else
+    that of the command."""
+    code = d.language.code
+    for each in nodes(tuple(d.done)):
+        if isinstance(each, Call) and each.method == "set_language":
+            told = each.arguments["code"]
+            code = told.value if isinstance(told, Text) else code
     return load_language(code) if code in languages() else d.language
 
 

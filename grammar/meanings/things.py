@@ -310,6 +310,8 @@ def bring(d: Discourse, node: Node) -> Steps:
         if d.done[-1] == given or handed_already(d, thing, person):
             return []  # "Alice needs the cup, bring it to her"
     spot: Where | None = d.get(node, "where")
+    if person is not None and spot is not None:
+        person, spot = at_their_place(person, spot)
     if person is None and spot is None and node.production.fixed.get("open"):
         return brought_to_whoever_needs_it(d, thing)
     steps = deliver(d, thing, person, spot)
@@ -317,6 +319,15 @@ def bring(d: Discourse, node: Node) -> Steps:
     if node.production.fixed.get("why") and isinstance(d.delivery, Delivery):
         d.delivery = replace(d.delivery, needed=True)
     return steps
+
+
+def at_their_place(person: Thing, spot: Where) -> tuple[Thing | None, Where | None]:
+    """ "bring me the tea to office 4": handed over there, or put down for them on a table."""
+    if spot.place is None or spot.furniture:
+        return None, spot
+    if is_me(person):
+        person = Thing(Text(ANYONE), person=True)  # the speaker has no name
+    return replace(person, place=spot.place, here=False), None
 
 
 def brought_to_whoever_needs_it(d: Discourse, thing: Thing) -> Steps:
