@@ -188,7 +188,9 @@ def spellings(
         language.closed,
         signs(language),
         words_for(language).verbs,  # what the robot cannot do is no slip
+        listed_nouns(language),
     )
+    capital_nouns = bool(language.speech.get("capital_nouns"))
     confused = language.speech.get("confused", {})
     found: dict[int, tuple[str, ...]] = {}
     for at, token in enumerate(tokens):
@@ -203,9 +205,18 @@ def spellings(
                 if short
                 else misspelt(token.norm, language, lexicon)
             )
+            if capital_nouns and token.capital and at and tokens[at - 1].kind != "mark":
+                near = tuple(each for each in near if each not in language.closed)  # "Milch"
             if near:
                 found[at] = near
     return found
+
+
+@functools.cache
+def listed_nouns(language: Language) -> frozenset[str]:
+    """The nouns whose plurals a language lists."""
+    nouns = language.plurals.get("irregular", {})
+    return frozenset(norm for each in nouns for norm in language.tokens_of(each))
 
 
 @functools.lru_cache(maxsize=2048)

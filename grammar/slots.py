@@ -81,7 +81,8 @@ class Slots:
         no_verbs = ("pronouns", "determiners", "prepositions", "and", "subordinating", "reflexive")
         fillers = {filler[0] for filler in self.language.fillers if len(filler) == 1}
         ends = self.language.speech.get("text_ends", ())
-        self._no_verbs = fillers.union(ends, *(clause.get(each, ()) for each in no_verbs))
+        joins = self.language.speech.get("joins", ())
+        self._no_verbs = fillers.union(ends, joins, *(clause.get(each, ()) for each in no_verbs))
 
     def all(self) -> dict[str, Slot]:
         slots: dict[str, Slot] = {
