@@ -262,7 +262,8 @@ def come_back(d: Discourse, node: Node) -> Steps:
         return [Call("goto", {"place": Text(d.origin)})]
     if counted_alone(d):
         return tell_speaker(d)
-    if d.done and d.done[-1] is d.told and d.at == d.start():
+    told = d.done and (d.done[-1] is d.told or d.done[-1] is d.report_step)
+    if told and d.at == d.start():
         return []  # "Are there any cups in the lab? Go and look, come back and tell me."
     d.came_back()
     return [Call("goto", {"place": d.start()})]

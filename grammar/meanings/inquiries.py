@@ -26,7 +26,7 @@ def ask_topic(d: Discourse, node: Node) -> Steps:
     """ "What does Alice want for dinner? Go and ask her.", "Which of them want tea? Ask them."."""
     question = node.parts["question"]
     assert isinstance(question, Node)
-    person: Thing | None = d.get(question, "person_ref")
+    person: Thing | None = d.get(question, "person_ref") or d.get(node, "person_ref")
     place: Value | None = d.get(question, "asked_at")
     if person is None:  # "how many people in the lobby want coffee?"
         person = Thing(Text(ANYONE), person=True, plural=True)

@@ -32,7 +32,7 @@ from grammar.meanings.news import BACK, News, Told, go_back, in_round, last_foun
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import kind_places, sought
 from grammar.meanings.registry import meaning
-from grammar.meanings.rounds import found_places
+from grammar.meanings.rounds import found_places, summed_up
 from grammar.meanings.searches import named_places, search_in, searched, searches
 from grammar.meanings.sights import named_some
 from grammar.meanings.traits import Trait
@@ -81,6 +81,13 @@ class Lookout:
         d.done.insert(0, Remember(found, Items(())))
         d.round.lookout = None
         return Told(found_places(d, tell, found), [])
+
+    def counted(self, d: Discourse) -> Told:
+        """How many of them there are at all the places."""
+        if self.thing is None or self.trait.denied:
+            return self.told(d, "many")
+        d.round.lookout = None
+        return summed_up(d, "total", self.thing)
 
     def at(self, d: Discourse) -> int | None:
         """Where among the steps so far it is."""

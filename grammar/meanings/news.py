@@ -19,8 +19,11 @@ from grammar.meanings.persons import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import asked_yet, moved
 from grammar.plan import (
+    Ask,
     Call,
+    If,
     Recall,
+    Remember,
     Text,
     Value,
 )
@@ -68,6 +71,8 @@ def news(d: Discourse, node: Node) -> Steps:
         return deliver(d, replace(d.thing, pronoun=True), person, None)
     if search is not None:
         return where_it_is(d, search, person)
+    if asks_where(node) and (told_there := told_where(d, person)) is not None:
+        return told_there
     told: list[Told] = d.get(node, "told") or [last_found(d)]
     first = [step for each in told for step in each.first]
     words = [step for each in told for step in each.words]
@@ -149,6 +154,18 @@ def where_it_is(d: Discourse, sought: Thing, person: Thing | None) -> Steps:
     return found_for(d, person, located(d, sought))
 
 
+def told_where(d: Discourse, person: Thing | None) -> Steps | None:
+    """ "find out where Alice is and tell Bob": the end of a search that would have told the speaker
+    (`grammar.meanings.sights.located`); None if the last step is no such search."""
+    from grammar.meanings.reports import found_for
+
+    match d.done[-1:]:
+        case [If(then=(Remember(value=Ask(method="location")), back, Call(method="say")))]:
+            return found_for(d, person, [d.done.pop()]) if back == BACK else None
+        case _:
+            return None
+
+
 def just_went(d: Discourse) -> bool:
     """Whether the step before leads to a place."""
     last = d.done[-1] if d.done else None
@@ -207,7 +224,7 @@ def told_again(d: Discourse, person: Thing | None) -> Steps | None:
     """The last news told to somebody else, too; None if there are none."""
     found: News | None = d.news
     if found is None:
-        return None
+        return None if person is None or is_me(person) else told_where(d, person)
     if person is None or is_me(person):
         if not found.waiting and d.done[len(d.done) - len(found.words) :] == found.words:
             return []  # it is told already

@@ -246,10 +246,9 @@ def kept(d: Discourse) -> str | None:
 def known_words(d: Discourse) -> Steps:
     """Say the last answer, those of all who were asked, or what the last code says."""
     if d.answer is not None:
-        if d.surveys and (in_loop(d, d.surveys[-1].call) or several_asked(d)):
+        several = several_asked(d) or asked_one_after_the_other(d)
+        if d.surveys and (several or in_loop(d, d.surveys[-1].call)):
             return polls.polled(d, d.polled_for or "answers", None).words
-        if asked_one_after_the_other(d):
-            return polls.polled(d, "answers", None).words
         return said_one_by_one(d) or [Call("say", {"text": said_in_all(d)})]
     if d.code is not None:
         return [d.say("code_is", value=Recall(d.code))]
@@ -357,8 +356,9 @@ def told_report(d: Discourse, found: Report) -> news.Told:
 @meaning("found_told")
 def found_told(d: Discourse, node: Node | None = None) -> news.Told:
     """ "the result", "it", "what you found out": whatever was found out last."""
+    many = node is not None and bool(node.production.fixed.get("many"))
     if d.round.lookout is not None:
-        told_of_round: news.Told = d.round.lookout.told(d)
+        told_of_round: news.Told = d.round.lookout.counted(d) if many else d.round.lookout.told(d)
         return told_of_round
     told: news.News | None = d.news
     if told is not None:
@@ -367,7 +367,6 @@ def found_told(d: Discourse, node: Node | None = None) -> news.Told:
     if d.report is not None:
         return _report_again(d)
     if d.answer is not None and d.surveys:
-        many = node is not None and bool(node.production.fixed.get("many"))
         each = "many" if many else d.polled_for or "each"
         return polls.polled(d, each if in_loop(d, d.surveys[-1].call) else "answers", None)
     return news.Told(known_words(d), [])
@@ -410,12 +409,8 @@ def counted_alone(d: Discourse) -> bool:
     count the people"."""
     found: Report | None = d.report
     counted = found is not None and found.name == "count" and d.report_counts
-    return (
-        counted
-        and bool(d.done)
-        and d.done[-1] is d.report_step
-        and d.at not in (None, Recall(START))
-    )
+    told_here = bool(d.done) and d.done[-1] is d.report_step
+    return counted and told_here and d.at not in (None, Recall(START))
 
 
 def summed_or_said(d: Discourse, found: Report) -> news.Told:

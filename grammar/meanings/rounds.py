@@ -11,6 +11,7 @@ from grammar.discourse import Discourse, Steps, Thing
 from grammar.doubts import NotUnderstood
 from grammar.meanings.answers import Said
 from grammar.meanings.finding import speak_to
+from grammar.meanings.conditions import negated
 from grammar.meanings.gone_round import (
     goes_to,
     last_round,
@@ -314,7 +315,10 @@ def places_told(d: Discourse, node: Node) -> Told:
     trait: Trait = d.get(node, "place_trait")
     d.at = before
     found = d.variable("found")
-    noted: Step = If(trait.condition, (Collect(found, Recall(place)),))
+    told_of = trait.condition
+    if node.production.fixed.get("as_it_is"):  # "are all labs empty?": where they are not is told
+        told_of = negated(told_of)
+    noted: Step = If(told_of, (Collect(found, Recall(place)),))
     going: Steps = [Remember(found, Items(()))]
     if at is not None and isinstance(loop, ForEach):
         loop = without_check(d, loop)
