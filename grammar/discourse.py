@@ -420,6 +420,15 @@ class Discourse:
         others = [name for name in self.named if self.gender_of(name) == gender]
         return next((self.called(name) for name in reversed(others) if name != person.text), None)
 
+    def owned_before(self, person: Thing | None, at: int) -> str | None:
+        """What is somebody else's than the person's who is spoken to: "ask Clara whether she is in
+        and tell Bob to go to her office"."""
+        data = self.language.speech.get("addressing", {})
+        if person is None or "owned" not in data:
+            return None
+        owner = self.one_before(person, at) if self.tokens[at].norm in data["possessives"] else None
+        return None if owner is None else str(data["owned"].format(name=owner))
+
     def noun_words(self, start: int, end: int) -> str:
         """Some tokens as the words of a noun phrase that things are looked for by: in lower case,
         but for languages that write nouns with capitals."""

@@ -351,7 +351,7 @@ def turn_to_you(
         opened = " ".join(token.norm for token in d.tokens[position:last])
         if d.parted(position, last):  # "it" of "it's"
             original = opened
-        turned = you.get(first.norm)
+        turned = d.owned_before(to, position) or you.get(first.norm)
         alone = d.language.speech.get(f"{words}_alone", {})
         if first.norm in alone and _ends_phrase(d, position + 1, end):
             turned = alone[first.norm]  # "better for her", but "her office"

@@ -114,12 +114,17 @@ def when(d: Discourse, node: Node) -> Steps:
     if hands_it_over(node.parts["then"]) and d.thing is not None:
         take_back_delivery(d, d.thing)  # "get the cup and hand it to Bob when he comes"
     body: Steps = d.build(node.parts["then"])
-    if always or _is_duty(d, node, condition) or is_habit(d, node):
+    each = always or _is_duty(d, node, condition) or is_habit(d, node)
+    if each or is_greeter(d, node, condition, body):
         return each_time(before, condition, body)
     return [*awaited(before, condition), *body]
 
 
 ANY: Final = Call("wait_for", {"thing": Text(ANYONE)})
+
+
+GREETING: Final = frozenset({"say", "ask", "gesture", "emotion"})
+"""What is done with whoever comes, one after the other."""
 
 
 def just_came(step: Step | None) -> bool:
@@ -136,6 +141,14 @@ def _is_duty(d: Discourse, node: Node, condition: Condition) -> bool:
     part = node.parts["condition"]
     anybody = d.language.words_called("any_words") & set(d.norms(part.start, part.end))
     return d.on_duty == "guard" or bool(anybody)
+
+
+def is_greeter(d: Discourse, node: Node, condition: Condition, body: Steps) -> bool:
+    """Whether the robot stays somewhere for nothing but to speak to whoever comes: "stand at the
+    reception. When somebody arrives, ask them to sign in"."""
+    last = all(token.kind == "mark" for token in d.tokens[node.end :])
+    spoken = all(isinstance(step, Call) and step.method in GREETING for step in body)
+    return d.on_duty == "stay" and last and spoken and wait_until(condition) == [ANY]
 
 
 def is_habit(d: Discourse, node: Node) -> bool:
