@@ -47,9 +47,13 @@ def found_once(d: Discourse, loop: ForEach, clause: Node) -> Steps | None:
     *before, last = turned_round(loop.steps) if none else exclusive(list(loop.steps))
     if not isinstance(last, If):
         return None
+    if len(before) + 1 < len(loop.steps):  # the clause says what is done in the other case
+        back = back_to_tell(d, clause, last.otherwise)
+        last = replace(last, otherwise=(*back, *last.otherwise))
     if not none and not is_enough(last, clause, Recall(loop.variable)):
         return None
-    last = replace(last, then=(*back_to_tell(d, clause, last.then), *last.then))
+    if BACK not in last.otherwise:
+        last = replace(last, then=(*back_to_tell(d, clause, last.then), *last.then))
     search = searching(d, loop, last) if len(before) == 1 else None
     if search is not None:
         turned = If(Not(search), last.otherwise)

@@ -193,6 +193,17 @@ def lookout_told(d: Discourse, node: Node) -> Told:
     return Told([d.say("it_is_there", place=Recall(d.round.such))], [])
 
 
+def told_of_lookout(d: Discourse, many: bool) -> Told | None:
+    """What a round has looked for, or how many of them it has found; a search through several
+    places is such a round if "how many there are" is asked."""
+    lookout: Lookout | None = d.round.lookout
+    if lookout is None and many:
+        lookout = search_as_round(d)
+    if lookout is None:
+        return None
+    return lookout.counted(d) if many else lookout.told(d)
+
+
 def found_before_coming_back(d: Discourse) -> None:
     """ "look for it in all the labs. Come back. Tell me where it is": found out on the way, so that
     the way back is said once more with what is told."""
@@ -224,15 +235,10 @@ def told_of_search(d: Discourse, tell: str) -> Told:
     if condition is None:
         raise NotUnderstood(d.language.phrase("which_places"))
     looked = searches(condition)
-    value = looked[0].arguments["thing"]
-    known = (each for each in (d.thing, d.person) if each and sought(d, each) == value)
-    thing = next(known, Thing(value))
-    places = tuple(each.arguments["place"] for each in looked if "place" in each.arguments)
-    if len(places) > 1:
-        place = d.variable("place")
-        d.done[-1] = round_of(d, Items(places), [], place)
-        seen = Trait(Holds(Ask("sees", {"thing": value})), [], thing)
-        return Lookout(place, Items(places), seen, thing, d.depth, True, tell).told(d)
+    thing = sought_last(d, looked[0])
+    lookout = search_as_round(d)
+    if lookout is not None:
+        return lookout.told(d, tell)
     if tell != "any" or len(looked) > 1:
         raise NotUnderstood(d.language.phrase("which_places"))
     found = d.variable("found")
@@ -243,6 +249,27 @@ def told_of_search(d: Discourse, tell: str) -> Told:
         (d.say("no_seen", thing=named_some(d, thing)),),
     )
     return Told([words], [])
+
+
+def sought_last(d: Discourse, search: Ask) -> Thing:
+    """What a search is for, as it was spoken of."""
+    value = search.arguments["thing"]
+    known = (each for each in (d.thing, d.person) if each and sought(d, each) == value)
+    return next(known, Thing(value))
+
+
+def search_as_round(d: Discourse) -> Lookout | None:
+    """The search that the last step is, as a round of all its places, if it has several."""
+    condition = searched(d.done[-1] if d.done else None)
+    looked = [] if condition is None else searches(condition)
+    places = tuple(each.arguments["place"] for each in looked if "place" in each.arguments)
+    if len(places) < 2:
+        return None
+    thing = sought_last(d, looked[0])
+    place = d.variable("place")
+    d.done[-1] = round_of(d, Items(places), [], place)
+    seen = Trait(Holds(Ask("sees", {"thing": looked[0].arguments["thing"]})), [], thing)
+    return Lookout(place, Items(places), seen, thing, d.depth, True, "which")
 
 
 def tell_lookout(d: Discourse, person: Thing | None) -> Steps | None:

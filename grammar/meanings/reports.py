@@ -356,10 +356,12 @@ def told_report(d: Discourse, found: Report) -> news.Told:
 @meaning("found_told")
 def found_told(d: Discourse, node: Node | None = None) -> news.Told:
     """ "the result", "it", "what you found out": whatever was found out last."""
+    from grammar.meanings.lookouts import told_of_lookout
+
     many = node is not None and bool(node.production.fixed.get("many"))
-    if d.round.lookout is not None:
-        told_of_round: news.Told = d.round.lookout.counted(d) if many else d.round.lookout.told(d)
-        return told_of_round
+    of_round = told_of_lookout(d, many)
+    if of_round is not None:
+        return of_round
     told: news.News | None = d.news
     if told is not None:
         news.take_back(d, told)

@@ -10,8 +10,8 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.doubts import NotUnderstood
 from grammar.meanings.answers import Said
-from grammar.meanings.finding import speak_to
 from grammar.meanings.conditions import negated
+from grammar.meanings.finding import speak_to
 from grammar.meanings.gone_round import (
     goes_to,
     last_round,
