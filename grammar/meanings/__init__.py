@@ -58,6 +58,7 @@ import grammar.meanings.strangers
 import grammar.meanings.telling_if
 import grammar.meanings.there
 import grammar.meanings.things
+import grammar.meanings.topics
 import grammar.meanings.traits
 import grammar.meanings.visiting
 import grammar.meanings.volunteers

@@ -142,7 +142,8 @@ def look_for(d: Discourse, thing: Thing) -> Steps:
     if several:
         looking = If(Not(whether_found(d, thing)), (not_found(d, thing),))
         return [] if d.done and d.done[-1] == looking else [looking]
-    return [found(d, thing)]
+    once = found(d, thing)
+    return [] if d.done and d.done[-1] == once else [once]  # "I lost my bag, find it"
 
 
 def meet(d: Discourse, person: Thing) -> Steps:

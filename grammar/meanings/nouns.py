@@ -45,10 +45,10 @@ def thing(d: Discourse, node: Node) -> Thing:
     else:
         one, known, many = str(node.production.fixed.get("what", "object")), False, False
         if "superlative" in node.parts and d.thing is not None:
-            one = d.thing.noun or one  # "the biggest one"
+            one = d.thing.noun or one  # "the biggest"
     count = d.get(node, "number") if node.production.rule == "thing" else None
     found = replace(
-        described(d, one, node, lies_about=True),
+        best_of_those(d, node, described(d, one, node, lies_about=True)),
         known=known,
         plural=many,
         here=bool(node.production.fixed.get("here")),
@@ -58,6 +58,22 @@ def thing(d: Discourse, node: Node) -> Thing:
     )
     d.thing, d.thing_last = found, True
     return found
+
+
+def best_of_those(d: Discourse, node: Node, found: Thing) -> Thing:
+    """ "look at the books on the shelf and bring me the thickest": where those are, too."""
+    head = node.parts.get("head")
+    named = isinstance(head, Leaf) and d.norms(head.start, head.end)[-1] not in (
+        d.language.speech.get("one_words", ())
+    )
+    those = d.thing
+    if named or "superlative" not in node.parts or those is None or not those.plural:
+        return found
+    if found.place is not None or found.furniture is not None:
+        return found
+    return replace(
+        found, place=those.place, furniture=those.furniture, preposition=those.preposition
+    )
 
 
 def is_short_for(d: Discourse, words: str, name: str) -> bool:

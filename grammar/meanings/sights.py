@@ -11,6 +11,7 @@ from grammar.meanings import news
 from grammar.meanings.answered_numbers import number_answered
 from grammar.meanings.descriptions import described
 from grammar.meanings.finding import found, in_state, is_here, not_found, whether_found
+from grammar.meanings.nouns import best_of_those
 from grammar.meanings.places import place_called_after, sought
 from grammar.meanings.polls import polled, told_as_asked
 from grammar.meanings.registry import meaning
@@ -46,6 +47,10 @@ def names_here(d: Discourse, node: Node) -> Report | Steps:
         person = replace(person, place=None)
     elif person.here or d.with_person == person.value:  # wherever that is by now
         person = replace(person, place=None)
+    told_apart = person.noun not in ("", ANYONE, person.text) and not person.pronoun
+    if told_apart and not (person.known or person.plural):  # "the woman at the sofa": a description says her name
+        look = Ask("describe", {"thing": sought(d, person)})
+        return Report("only", look, person.place, name="description")
     return Report("people_seen", Ask("people"), person.place, name="names")
 
 
@@ -204,7 +209,9 @@ def _best(d: Discourse, node: Node) -> Thing:
     if isinstance(head, Leaf):
         said = str(head.value[0]) if head.value else d.noun_words(head.start, head.end)
         noun = singular(said, d.language)
-    return described(d, noun, node)
+    elif d.thing is not None and d.thing.plural:  # "check the drinks and tell me which is biggest"
+        noun = d.thing.noun or noun
+    return best_of_those(d, node, described(d, noun, node))
 
 
 @meaning("counted_info")

@@ -435,9 +435,10 @@ def statement(d: Discourse, node: Node) -> Steps:
     posture = node.parts.get("activity")
     if posture is not None and not thing.known:
         thing = replace(thing, value=Text(f"{thing.text} {d.described_by(posture)}"))
-    more = d.get(node, "mods")
-    if more is not None:
-        thing = described(d, thing.text, node)
+    if not (thing.person and thing.known):  # "behind the bowl is a cup", "a man here is waving"
+        more = described(d, thing.text, node)
+        thing = replace(thing, value=more.value, place=more.place or thing.place)
+        thing = replace(thing, furniture=more.furniture or thing.furniture)
     if spot is not None:
         thing = replace(thing, place=spot.place, furniture=spot.furniture)
     thing = all_there_are(thing)
