@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from grammar.chart import Node
+from grammar.chart import Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.places import (
@@ -26,7 +26,8 @@ def mods(d: Discourse, node: Node) -> list[Where | str]:
     if isinstance(first, list):
         found = first
     words = d.norms(node.parts["first"].start, node.parts["first"].end)
-    if words[-1] in d.language.speech.get("pointing", ()):
+    to_another = what_it_means(part) == "relation"  # "behind it"
+    if words[-1] in d.language.speech.get("pointing", ()) and not to_another:
         found = []  # "the woman there": nothing that tells her from others
     return [*found, *(d.get(node, "rest") or [])]
 

@@ -95,7 +95,9 @@ def seen_here(d: Discourse, node: Node) -> Report | Steps:
     """ "what you see"; "everything", after people were asked, is all that they said."""
     if node.end - node.start == 1 and asked_yet(d) and d.report is None:
         return polled(d, "answers", None).words
-    place = described(d, "", node)
+    place = described(d, "", node, lies_about=True)
+    if place.text:  # "what is behind the cup?", "what is on the far left of the shelf?"
+        return one_there(d, node)
     if "at_place" in node.parts:  # "describe the lobby"
         place = replace(place, place=d.get(node, "at_place"))
     if place.furniture:
@@ -103,6 +105,19 @@ def seen_here(d: Discourse, node: Node) -> Report | Steps:
     if place.place is None and isinstance(d.report_asked, Report) and d.report_asked.looked:
         return d.report_asked  # "see what is on the desk and tell Alex what is there"
     return Report("objects_seen", Ask("objects"), place.place, name="things")
+
+
+def one_there(d: Discourse, node: Node) -> Report:
+    """What is just there, and nothing else, is what "it" is then."""
+    noun = d.language.phrase("objects")
+    thing = described(d, noun, node, lies_about=True)
+    if thing.text.startswith(noun):
+        every = described(d, d.language.phrase("all_objects"), node, lies_about=True)
+        found = whatever_there(d, thing, every)
+    else:
+        found = best_there(d, thing)
+        d.thing, d.thing_last = replace(thing, noun=noun, here=thing.place is None), True
+    return found
 
 
 def seen_around(d: Discourse) -> Report:
@@ -115,17 +130,24 @@ def seen_around(d: Discourse) -> Report:
 def things_on(d: Discourse, place: Thing) -> Report:
     """ "what is on the bed?": all that is on it, or that there is nothing."""
     thing = replace(place, value=Text(d.language.phrase("objects")))
-    all_of_it = replace(place, value=Text(d.language.phrase("all_objects")))
-    one, everything = sought(d, thing), sought(d, all_of_it)
+    every = replace(place, value=Text(d.language.phrase("all_objects")))
+    return whatever_there(d, thing, every)
+
+
+def whatever_there(d: Discourse, thing: Thing, every: Thing) -> Report:
+    """All things that are as one and "every" one is said to be, or that there is nothing. What is
+    there is "it" then."""
+    d.thing, d.thing_last = replace(thing, here=thing.place is None), True
+    one, everything = sought(d, thing), sought(d, every)
     assert isinstance(one, Text)
-    where = d.called(one.value.removeprefix(thing.text).strip())
+    where = d.called(one.value.removeprefix(d.language.phrase("objects")).strip())
     words = d.variable("description")
     look = Remember(words, Ask("describe", {"thing": everything}))
     before = (
         Remember(words, d.sentence("nothing_there", where=where)),
         If(Holds(Ask("sees", {"thing": one})), (look,)),
     )
-    return Report("only", Recall(words), place.place, before=before, looked=True)
+    return Report("only", Recall(words), thing.place, before=before, looked=True)
 
 
 @meaning("kind_seen")
