@@ -48,7 +48,9 @@ def names_here(d: Discourse, node: Node) -> Report | Steps:
     elif person.here or d.with_person == person.value:  # wherever that is by now
         person = replace(person, place=None)
     told_apart = person.noun not in ("", ANYONE, person.text) and not person.pronoun
-    if told_apart and not (person.known or person.plural):  # "the woman at the sofa": a description says her name
+    if told_apart and not (
+        person.known or person.plural
+    ):  # "the woman at the sofa": a description says her name
         look = Ask("describe", {"thing": sought(d, person)})
         return Report("only", look, person.place, name="description")
     return Report("people_seen", Ask("people"), person.place, name="names")
