@@ -26,8 +26,10 @@ def mods(d: Discourse, node: Node) -> list[Where | str]:
     if isinstance(first, list):
         found = first
     words = d.norms(node.parts["first"].start, node.parts["first"].end)
-    to_another = what_it_means(part) == "relation"  # "behind it"
-    if words[-1] in d.language.speech.get("pointing", ()) and not to_another:
+    beside = what_it_means(part) == "relation" and words[0] not in d.language.speech.get(
+        "on_it", ()
+    )
+    if words[-1] in d.language.speech.get("pointing", ()) and not beside:  # but "behind it"
         found = []  # "the woman there": nothing that tells her from others
     return [*found, *(d.get(node, "rest") or [])]
 
