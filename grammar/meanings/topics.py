@@ -11,8 +11,8 @@ from grammar.doubts import NotUnderstood
 from grammar.meanings.deliveries import inside
 from grammar.meanings.registry import meaning
 
-STANDS_FOR: Final = {"thing": "thing_it", "person_ref": "person_pronoun"}
-"""What means the topic where the command says it, by the rule of the topic."""
+THINGS: Final = "thing"
+"""The rule for things; another topic is somebody."""
 
 
 @meaning("topic")
@@ -32,10 +32,11 @@ def topic(d: Discourse, node: Node) -> Steps:
 
 def with_topic(command: Node, topic: Node) -> Node | None:
     """A command with the topic for the first pronoun that stands for it; None if there is none."""
+    pronoun = "thing_it" if topic.production.rule == THINGS else "person_pronoun"
     for name, part in command.parts.items():
         if not isinstance(part, Node):
             continue
-        if part.means == STANDS_FOR[topic.production.rule]:
+        if part.means == pronoun:
             return replace(command, parts={**command.parts, name: topic})
         inner = with_topic(part, topic)
         if inner is not None:
