@@ -56,3 +56,15 @@ def chosen_from(d: Discourse, node: Node) -> Steps:
         raise NotUnderstood(d.language.phrase("not_understood", part=words), gap=gap)
     steps: Steps = d.build(command)
     return steps
+
+
+@meaning("looked_over")
+def looked_over(d: Discourse, node: Node) -> Steps:
+    """ "look at the books on the shelf and bring me the thickest": several, to choose from."""
+    those = d.get(node, "thing")
+    if isinstance(those, list) or not those.plural:
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(
+            d.language.phrase("not_understood", part=words), gap=(node.start, node.end)
+        )
+    return []
