@@ -7,14 +7,16 @@ nowhere; neither is done at each place again.
 
 from __future__ import annotations
 
+from typing import Final
+
 from msgspec.structs import replace
 
-from grammar.chart import Node
+from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Steps
 from grammar.meanings.alternatives import CONDITIONAL, exclusive
 from grammar.meanings.claims import TELL
 from grammar.meanings.conditions import negated
-from grammar.meanings.deliveries import inside
+from grammar.meanings.deliveries import first_clause, inside
 from grammar.meanings.news import BACK
 from grammar.meanings.persons import is_me
 from grammar.meanings.searches import named_places
@@ -37,6 +39,9 @@ from grammar.plan import (
 )
 from grammar.tidy import mentions, nodes
 
+OTHER: Final = "otherwise"
+"""What the parts of a condition begin with that say what is done in the other case."""
+
 
 def found_once(d: Discourse, loop: ForEach, clause: Node) -> Steps | None:
     """The steps of a round that ends where something is so for the first time, with what is done if
@@ -47,9 +52,13 @@ def found_once(d: Discourse, loop: ForEach, clause: Node) -> Steps | None:
     *before, last = turned_round(loop.steps) if none else exclusive(list(loop.steps))
     if not isinstance(last, If):
         return None
+    other = next((clause.parts[name] for name in clause.parts if name.startswith(OTHER)), None)
     if len(before) + 1 < len(loop.steps):  # the clause says what is done in the other case
         back = back_to_tell(d, clause, last.otherwise)
         last = replace(last, otherwise=(*back, *last.otherwise))
+    elif other is not None and tells_me(other) and all(map(is_said, last.otherwise)):
+        d.start()
+        last = replace(last, otherwise=(BACK, *last.otherwise))
     if not none and not is_enough(last, clause, Recall(loop.variable)):
         return None
     if BACK not in last.otherwise:
@@ -66,6 +75,18 @@ def found_once(d: Discourse, loop: ForEach, clause: Node) -> Steps | None:
     body = (*before, If(last.condition, noted))
     nowhere = If(Not(Holds(Recall(found))), last.otherwise)
     return [Remember(found, Truth(False)), replace(loop, steps=body), nowhere]
+
+
+def tells_me(part: Leaf | Node) -> bool:
+    """ "if not, come and tell me": whether nothing but that is done."""
+    only = first_clause(part) if isinstance(part, Node) else None
+    if only is None or only.means not in ("tell_me_that", "tell_that"):
+        return False
+    return any(each.means == "person_me" for each in inside(part)) or only.means == "tell_me_that"
+
+
+def is_said(step: Step) -> bool:
+    return isinstance(step, Call) and step.method == "say"
 
 
 def back_to_tell(d: Discourse, clause: Node, steps: tuple[Step, ...]) -> Steps:
