@@ -85,9 +85,10 @@ class Changes(Turn):
             yield from before.corrected(told)
             return
         yield from before.corrected(new)
-        for part in (before.without_repeated(new), thing_alone(before, new)):
-            if part is not None and part is not new:  # "no, bring the red cup", "no, ask Clara"
-                yield from before.corrected(part)
+        if not self.goes_on(new):  # "no, bring the red cup", "no, ask Clara"
+            for part in (before.without_repeated(new), thing_alone(before, new)):
+                if part is not None and part is not new:
+                    yield from before.corrected(part)
         if self.commands(said):
             yield before.with_clause(new)
             if not is_pieces(new):  # "only the kitchen" stands for a part, not for all

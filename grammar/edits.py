@@ -16,6 +16,7 @@ from grammar.language import Language
 from grammar.lexicon import Lexicon, Routine
 from grammar.pieces import (
     CORRECTABLE,
+    FURNITURE,
     NAMED,
     NOUNS,
     NUMBERS,
@@ -109,6 +110,11 @@ class Sentence:
                 means = part.means if isinstance(part, Node) else ""
                 if name in NAMED and not inside:
                     found.append(Piece(NAMED[name], part.start, part.end, means))
+                spot = part.parts if isinstance(part, Node) and name == "spot" else {}
+                furniture = spot.get("furniture")
+                if furniture is not None:  # "on the desk | in the kitchen"
+                    told = furniture.end if furniture.end < part.end else 0
+                    found.append(Piece("place_ref", part.start, part.end, FURNITURE, True, told))
                 if name in CORRECTABLE:
                     told = named_until(part) if isinstance(part, Node) else 0
                     found.append(Piece(name, part.start, part.end, means, named_until=told))
@@ -179,17 +185,31 @@ class Sentence:
         first. `everywhere`: a part may stand for any noun; `within_texts`: the places are in what
         is to be said."""
         places = self.within_texts() if within_texts else self.pieces()
-        for said in pieces_of(new):
+        rows = list(pieces_of(new))
+        # "and the tables", of "count the chairs in the lobby", is nowhere to count in
+        for said in sorted(rows, key=lambda said: not self._led_alike(new, said, places)):
             text = self._with_pieces(new, said, places, everywhere)
             if text is not None:
                 yield text
 
-    def place_of(self, new: Reader) -> int | None:
-        """Where the part stands that a single new one is like, if it is the thing spoken of."""
+    def _led_alike(self, new: Reader, said: list[Piece], places: list[Piece]) -> bool:
+        """Whether what new parts correct has the prepositions before it that they have, or is
+        furniture as they are."""
+        old = [self._counterpart(new, piece, places, set(), False) for piece in said]
+        return all(
+            each is not None
+            and (
+                each.means == piece.means == FURNITURE
+                or lead_words(self.reader, each) == lead_words(new, piece)
+            )
+            for each, piece in zip(old, said, strict=True)
+        )
+
+    def place_of(self, new: Reader) -> Piece | None:
+        """The part that a single new one is like, if it is the thing spoken of."""
         for said in pieces_of(new):
             if len(said) == 1 and said[0].rule == "thing":
-                old = self._counterpart(new, said[0], self.pieces(), set(), False)
-                return old.start if old is not None else None
+                return self._counterpart(new, said[0], self.pieces(), set(), False)
         return None
 
     def without_repeated(self, new: Reader) -> Reader:
@@ -207,11 +227,10 @@ class Sentence:
         return new
 
     def spoken_earlier(self, new: Reader) -> bool:
-        """Whether a single thing has its like before the last clause: "and the folder", of "pick
-        up the box and take it to the lab"."""
-        row = self.siblings()[0] if self.siblings() else []
+        """Whether a single thing has its like before the end: "and the folder", of "pick up the
+        box and take it to the lab"."""
         place = self.place_of(new)
-        return place is not None and len(row) > 1 and place < row[-1][0]
+        return place is not None and place.end < self.reader.last_word
 
     def _with_pieces(
         self, new: Reader, said: list[Piece], places: list[Piece], everywhere: bool
@@ -220,7 +239,7 @@ class Sentence:
         taken: set[int] = set()
         for piece in said:
             old = self._counterpart(new, piece, places, taken, everywhere)
-            if old is None:
+            if old is None or not (piece.known or self._sole(old, places)):
                 return None
             taken.update(range(old.start, old.end))
             lead, old_lead = leading(new, piece.start), leading(self.reader, old.start)
@@ -239,6 +258,11 @@ class Sentence:
             tail = len(self.text) - self.tokens[end - 1].end
             text = changed[: len(changed) - tail] + text[self.tokens[end - 1].end :]
         return text
+
+    def _sole(self, old: Piece, places: list[Piece]) -> bool:
+        """Whether a part is the only one of its kind. Which of two nouns that nobody knows is
+        meant cannot be told: "dinner", of "lunch is late"."""
+        return sum(each.rule == old.rule for each in places) == 1
 
     def _counterpart(
         self, new: Reader, piece: Piece, places: list[Piece], taken: set[int], everywhere: bool
@@ -259,7 +283,7 @@ class Sentence:
                 continue
             if lead and (lead in away) != (before in away):
                 continue  # "from the kitchen" is no other place to go to
-            if lead and not before and {old.rule, piece.rule} == {"person_ref", "place_ref"}:
+            if lead and lead != before and piece.rule in PLACES and old.rule not in PLACES:
                 continue  # "in ward b" is nobody to be asked instead
             score = (
                 old.means not in PRONOUNS,

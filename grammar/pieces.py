@@ -19,6 +19,7 @@ CORRECTABLE: Final = (
     "all_places",
     "person_ref",
     "thing",
+    "counted",
     "number",
     "count",
     "length",
@@ -36,6 +37,10 @@ NOUNS: Final = frozenset({"place_ref", "person_ref", "thing"})
 """Those of them that may stand for each other: "go to Alice" - "no, the kitchen"."""
 PLACES: Final = frozenset({"place_ref", "all_places"})
 """Those that stand for each other wherever they are said: "every office" - "only Bob's"."""
+FURNITURE: Final = "place_of_furniture"
+"""What a piece of furniture means that is spoken of as a place."""
+THINGS: Final = frozenset({"thing", "counted"})
+"""Rules for things that are spoken of by a noun."""
 NUMBERS: Final = frozenset({"number", "count"})
 NAMED: Final = {"person": "person_ref"}
 """Slots for names, and the rule that they count as where none of it is around them."""
@@ -76,7 +81,7 @@ def leaves(node: Node) -> Iterator[Leaf]:
 def named_until(node: Node) -> int:
     """Where more is told of a thing, or 0."""
     mods = node.parts.get("mods")
-    told = node.production.rule == "thing" and isinstance(mods, Node) and mods.end == node.end
+    told = node.production.rule in THINGS and isinstance(mods, Node) and mods.end == node.end
     return mods.start if told and isinstance(mods, Node) else 0
 
 
@@ -158,6 +163,9 @@ def pieces_at(reader: Reader, start: int) -> Iterator[Piece]:
             if node is not None and node.cost < UNKNOWN_NAME:
                 known = all(leaf.slot not in UNHEARD for leaf in leaves(node))
                 yield Piece(rule, node.start, node.end, node.means, known, named_until(node))
+                if node.means == FURNITURE and not leading(reader, start):
+                    for each in sorted(THINGS):  # tables can be counted, too
+                        yield Piece(each, node.start, node.end, "thing")
         else:
             for end, _, _ in reader.slots[f"{{{rule}}}"](start):
                 yield Piece(rule, start, end)

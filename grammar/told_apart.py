@@ -60,10 +60,11 @@ def with_other_look(before: Sentence, new: Reader, *, instead: bool = False) -> 
 
 
 def one_told_apart(before: Sentence, new: Reader) -> Reader | None:
-    """ "the one in the lobby": the last thing, with what tells it from others."""
+    """ "the one in the lobby": the last thing or kind of person, with what tells it from others."""
     ones = words_listed(new.language, "ones")
-    thing = next((each for each in reversed(before.pieces()) if each.rule == "thing"), None)
-    if thing is None or thing.means in PRONOUNS:
+    those = (each for each in reversed(before.pieces()) if each.rule in ("thing", "person_ref"))
+    thing = next((each for each in those if each.means in ("thing", "person_kind")), None)
+    if thing is None:
         return None
     for at in range(new.last_word - 1):
         if (new.tokens[at].norm,) in ones and leading(new, at + 2):

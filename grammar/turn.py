@@ -15,7 +15,7 @@ from grammar.chart import TooMuch
 from grammar.edits import Sentence
 from grammar.language import Language
 from grammar.lexicon import Lexicon
-from grammar.pieces import is_pieces, leaves
+from grammar.pieces import is_pieces, leaves, pieces_of
 from grammar.plan import calls
 from grammar.requests import Request
 from grammar.understand import Reader
@@ -77,6 +77,9 @@ class Turn:
             return before
         return Sentence(self.reader(routine.sentence, self.base))
 
+    def _is_times(self, new: Reader) -> bool:
+        return any(len(row) == 1 and row[0].rule == "times" for row in pieces_of(new))
+
     def commands(self, said: str) -> bool:
         """Whether this is a command in itself."""
         result = self.reader(said, self.context).understand()
@@ -96,7 +99,7 @@ class Turn:
         if not new.tokens:
             return False
         known = new.tokens[0].norm in begins or new.tokens[0].kind in ("number", "time")
-        return known or self.is_number(new)
+        return known or self.is_number(new) or self._is_times(new)
 
     def is_number(self, new: Reader) -> bool:
         return any(end == new.last_word for end, _, _ in new.slots["{number}"](0))

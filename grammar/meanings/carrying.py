@@ -44,11 +44,22 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
     nearby = d.at is not None and not (for_somebody or lacking) and thing.place is None
     # What somebody asked for is anywhere, and so is what is to be brought after coming back.
     nearby = nearby and not wished_for(d, thing) and d.at != Recall(START)
+    nearby = nearby and not (only_delivered(d) and thing.value not in d.now_at)
     is_here = thing.here or nearby or (d.at is not None and thing.place == d.at)
     steps: Steps = [] if looked or is_here else look_for(d, thing)
     d.holding = thing.value
     d.thing, d.thing_last = thing, True
     return [*steps, Call("grab", {"thing": sought(d, thing)})]
+
+
+def only_delivered(d: Discourse) -> bool:
+    """Whether the robot is where it is only because it has taken something there: "bring a blanket
+    to ward a and a pillow to ward b"; the pillow may be anywhere."""
+    match d.done[-2:]:
+        case [Call(method="goto"), Call(method="put")]:
+            return True
+        case _:
+            return False
 
 
 def wished_for(d: Discourse, thing: Thing) -> bool:
