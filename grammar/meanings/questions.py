@@ -29,6 +29,7 @@ from grammar.meanings.persons import is_me
 from grammar.meanings.references import nouns_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import tell_speaker
+from grammar.meanings.speaking import put_for
 from grammar.meanings.whom_asked import (
     all_meant,
     gone_to,
@@ -124,7 +125,7 @@ def worded(d: Discourse, question: Node, whom: Audience) -> tuple[str, tuple[str
     """The words of a question for those who are asked, and the answers that it offers."""
     d.asking_each = whom.many
     d.asking_one = whom.person is not None and whom.person.known and not whom.many
-    text: str = d.build(question)
+    text: str = capital(put_for(d, "asked_singly", d.build(question)))
     options = options_of(d, question)
     d.asking_each = d.asking_one = False
     return text, options
@@ -219,8 +220,9 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
         yes_no = options == (d.language.phrase("yes"), d.language.phrase("no"))
         begin = rest.start if "verb" in question.parts else rest.start + 1  # "would like a coffee"
         start, end = without_little_words(d, begin, rest.end)
-        while start < end - 1 and d.tokens[start].norm in d.language.speech.get("how_much", ()):
-            start += 1
+        little = d.language.words_called("how_much")
+        while start < end - 1 and d.tokens[start].norm in little:
+            start, _ = without_little_words(d, start + 1, end)  # "still need their computer"
         if not yes_no and d.place != Recall(name):
             d.thing, d.thing_last = Thing(Recall(name)), False
         elif yes_no and not names_people(d, start, end):
