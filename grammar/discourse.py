@@ -158,6 +158,10 @@ class Discourse:
     """Where people were led to."""
     visitor: Thing | None = None
     """Somebody nobody knows who was met or waited for: "they", told to somebody by name."""
+    guest: Thing | None = None
+    """Who without a name was spoken of before the receiver of the message that is made."""
+    host: Thing | None = None
+    """Whom a guest was said to be for."""
     on_duty: str = ""
     """Whether the robot is to "guard" a place or to "stay" there: "when somebody comes" is then
     each time, or only "if anybody comes"."""
@@ -254,6 +258,16 @@ class Discourse:
     """The last steps that look for several things and tell which there are."""
     collected: Thing | None = None
     """Several things that are to be collected, before it was said where to."""
+    shown: Value | None = None
+    """What somebody was only to see or to sign, and is still in the robot's hand."""
+    offers: list[Any] = field(default_factory=list)
+    """What was offered to somebody so far (`grammar.meanings.offers.Offer`)."""
+    listed_before: tuple[Thing, ...] = ()
+    """The things of the last list."""
+    only_fetches: bool = False
+    """Whether a command fetches things without a word to whom or where to."""
+    fetched_list: Any = None
+    """The list of things that was fetched so (`grammar.meanings.thing_lists.FetchedList`)."""
     delivered_in: Step | None = None
     """The loop that brings several things to the speaker without their saying where to."""
     variables: set[str] = field(default_factory=set)

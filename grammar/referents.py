@@ -43,6 +43,8 @@ class Thing:
     """Those of a group who are left out."""
     every: bool = False
     """Whether all of them are meant that are there: "all the visitors", "every cup"."""
+    listed: tuple[Thing, ...] = ()
+    """All things of the list that it was the last of: "both" are these."""
 
     @property
     def several(self) -> bool:

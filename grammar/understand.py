@@ -23,6 +23,7 @@ from grammar.doubts import Ambiguous, NotUnderstood
 from grammar.freetext import Doubt, doubtful, words_for
 from grammar.language import Language, load_language
 from grammar.lexicon import Lexicon
+from grammar.meanings.offers import with_offers_kept
 from grammar.names import Names, names_of
 from grammar.naming import joined_up, place_called
 from grammar.plan import Plan, Text, Value
@@ -137,7 +138,7 @@ class Reader:
                 context=self.context,
             )
         try:
-            steps = discourse.build(tree.parts["steps"])
+            steps = with_offers_kept(discourse, discourse.build(tree.parts["steps"]))
             if discourse.collected is not None:
                 raise NotUnderstood(self.language.phrase("one_thing"))
         except NotUnderstood as reason:

@@ -36,6 +36,7 @@ import grammar.meanings.loops
 import grammar.meanings.messages
 import grammar.meanings.news
 import grammar.meanings.nouns
+import grammar.meanings.offers
 import grammar.meanings.people
 import grammar.meanings.persons
 import grammar.meanings.place_sets
@@ -51,12 +52,14 @@ import grammar.meanings.requests
 import grammar.meanings.rounds
 import grammar.meanings.sharing
 import grammar.meanings.sights
+import grammar.meanings.signatures
 import grammar.meanings.sources
 import grammar.meanings.speaking
 import grammar.meanings.stops
 import grammar.meanings.strangers
 import grammar.meanings.telling_if
 import grammar.meanings.there
+import grammar.meanings.thing_lists
 import grammar.meanings.things
 import grammar.meanings.topics
 import grammar.meanings.traits

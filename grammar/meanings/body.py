@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, Steps, as_value
+from grammar.discourse import Discourse, Steps, Thing, as_value
 from grammar.doubts import NotUnderstood
 from grammar.meanings.finding import speak_to
 from grammar.meanings.news import on_screen
@@ -25,7 +25,9 @@ def show(d: Discourse, node: Node) -> Steps:
         return on_screen(d)  # of all who were asked
     if part is None:
         return [Call("show", {"text": Recall(found_out(d))})]
-    return [Call("show", {"text": Text(str(d.build(part)))})]
+    shown: Steps = [Call("show", {"text": Text(str(d.build(part)))})]
+    whom: Thing | None = d.get(node, "person_ref")
+    return shown if whom is None else speak_to(d, whom, shown)
 
 
 @meaning("show_fact")

@@ -8,7 +8,7 @@ from dataclasses import replace
 from grammar.chart import Node
 from grammar.discourse import ANYONE, START, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
-from grammar.meanings.deliveries import Delivery, for_them, ordered_now
+from grammar.meanings.deliveries import Delivery, for_them, kept_in_hand, ordered_now
 from grammar.meanings.finding import go, look_for, meet, where_sent
 from grammar.meanings.holders import from_whoever_has_it
 from grammar.meanings.persons import is_me
@@ -17,6 +17,7 @@ from grammar.meanings.searches import search_of
 from grammar.meanings.sources import where_told
 from grammar.meanings.surveys import Survey, note
 from grammar.plan import Ask, Call, Holds, If, Items, Recall, Step, Text, Value
+from grammar.tidy import nodes
 
 
 def pick_up(d: Discourse, thing: Thing) -> Steps:
@@ -125,9 +126,16 @@ def the_same(d: Discourse, node: Node, thing: Thing) -> Thing:
     definite = isinstance(part, Node) and d.tokens[part.start].norm in d.language.speech.get(
         "definite", ()
     )
+    if definite and d.shown is not None and d.shown == d.holding and is_kind_of(d.shown, thing):
+        return replace(thing, value=d.shown, place=None, pronoun=True)  # "the signed form"
     if not definite or thing.value != d.delivered or thing.place is not None or thing.several:
         return thing
     return replace(thing, pronoun=True)
+
+
+def is_kind_of(value: Value, thing: Thing) -> bool:
+    """Whether a thing is called by the noun of another: "the signed form", of a form."""
+    return isinstance(value, Text) and bool(thing.noun) and value.value.split()[-1] == thing.noun
 
 
 def _is_given(step: Step, thing: Thing) -> bool:
@@ -136,6 +144,10 @@ def _is_given(step: Step, thing: Thing) -> bool:
 
 def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None) -> Steps:
     """Pick a thing up, go where it is to be, and put it down or hand it over."""
+    from grammar.meanings.thing_lists import off_the_list
+
+    thing = off_the_list(d, thing)
+    take_along_again(d, thing, person)
     need = ordered_now(d, thing, person)
     if need is not None:
         thing = replace(need.thing if thing.pronoun else thing, place=thing.place, pronoun=False)
@@ -150,6 +162,24 @@ def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None
     steps = _delivered(d, thing, person, spot)
     d.delivery = Delivery(thing, person, spot, tuple(steps), scene)
     return steps
+
+
+def take_along_again(d: Discourse, thing: Thing, person: Thing | None) -> None:
+    """ "take the form to Clara, ask her to sign it and bring it back": what somebody is to have for
+    a moment only stays in the hand, and is taken along when they say that they are done."""
+    delivery: Delivery | None = d.delivery
+    receiver = None if delivery is None else delivery.receiver
+    if delivery is None or receiver is None or delivery.spot is not None:
+        return
+    if not thing.pronoun or thing.value != delivery.thing.value:
+        return
+    if person is not None and person.value == receiver.value and not is_me(person):
+        return
+    if kept_in_hand(d, asking=False) is None:
+        return
+    since = [each for each in nodes(tuple(d.done)) if isinstance(each, Call)]
+    if since[-1].method not in ("ask", "wait"):
+        d.done.append(Call("ask", {"question": d.sentence("done_with_it")}))
 
 
 def told_where_it_is(d: Discourse, thing: Thing) -> If | None:

@@ -291,9 +291,10 @@ def still_in_hand(d: Discourse, delivery: Delivery) -> Step | None:
     return last
 
 
-def kept_in_hand(d: Discourse) -> Steps | None:
+def kept_in_hand(d: Discourse, *, asking: bool = True) -> Steps | None:
     """How a thing was handed over before something was asked, taken back: "take her a sandwich and
-    ask whether she wants it. If not, bring it back"."""
+    ask whether she wants it. If not, bring it back"; or before nothing but words, if not `asking`:
+    "take her the form, tell her to sign it and bring it back"."""
     delivery: Delivery | None = d.delivery
     if delivery is None or not delivery.steps or delivery.spot is not None:
         return None
@@ -301,7 +302,9 @@ def kept_in_hand(d: Discourse) -> Steps | None:
     if at is None:
         return None
     unsaid = delivery.person is None and leaves_things(d.done[at + 1 :])
-    if not unsaid and not only_asks(d.done[at + 1 :]):
+    since = d.done[at + 1 :]
+    words_only = only_asks(since) if asking else not since or leaves_things(since)
+    if not unsaid and not words_only:
         return None
     first = at
     if delivery.receiver is None and at and d.done[at - 1] == Call("goto", {"place": d.start()}):
@@ -324,7 +327,7 @@ def leaves_things(steps: Steps) -> bool:
     """Whether some steps only go somewhere, wait and speak."""
     calls = [each for each in nodes(tuple(steps)) if isinstance(each, Call)]
     return bool(calls) and all(
-        each.method in ("ask", "find", "goto", "say", "wait_for") for each in calls
+        each.method in ("ask", "find", "goto", "say", "wait", "wait_for") for each in calls
     )
 
 

@@ -141,10 +141,25 @@ def there_to(d: Discourse, node: Node, going: Steps) -> Steps:
 def go_places(d: Discourse, node: Node) -> Steps:
     """ "go to the lobby, the pharmacy and the kitchen"."""
     steps: Steps = []
-    for place in [d.get(node, "place"), *d.get(node, "place_list")]:
+    places = [d.get(node, "place"), *d.get(node, "place_list")]
+    if node.production.fixed.get("from") and are_a_row(d, places):
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("not_understood", part=words))
+    if node.production.fixed.get("back"):  # "from the lobby to the kitchen and back"
+        places.append(places[0])
+    for place in places:
         d.went(place)
         steps.append(Call("goto", {"place": place}))
     return steps
+
+
+def are_a_row(d: Discourse, places: list[Value]) -> bool:
+    """Whether places are of a kind, so that those between them are meant, too: "from office 1 to
+    office 4"."""
+    names = {place.value for place in places if isinstance(place, Text)}
+    return any(
+        len(names & {each.name for each in alike}) > 1 for alike in d.lexicon.place_kinds.values()
+    )
 
 
 @meaning("go_point")
@@ -353,7 +368,7 @@ def wait_for(d: Discourse, node: Node) -> Steps:
     if timeout is not None:
         arguments["timeout"] = as_value(timeout)
     if thing.person:
-        d.person = d.person or thing
+        d.person = come(d.person or thing, thing)
         d.with_person = thing.value
         d.visitor = d.visitor if thing.known else thing
     if thing.count is not None:
@@ -361,6 +376,13 @@ def wait_for(d: Discourse, node: Node) -> Steps:
             d.person = d.last_counted = replace(thing, count=None, place=None, here=True)
         return [*steps, Repeat(Number(thing.count), (Call("wait_for", arguments),))]
     return [*steps, Call("wait_for", arguments)]
+
+
+def come(person: Thing, awaited: Thing) -> Thing:
+    """Somebody spoken of, who was expected if it is they who were waited for."""
+    if not person.first or person.value != awaited.value:
+        return person
+    return replace(person, first=False, place=None, here=True)
 
 
 def whoever_came(d: Discourse, group: Items, seen: tuple[Condition, ...]) -> Steps:

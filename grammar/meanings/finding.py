@@ -7,7 +7,7 @@ from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
-from grammar.meanings.genders import gender_of_thing
+from grammar.meanings.genders import gender_of_thing, pronoun_of
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import sought
 from grammar.naming import person_called, the
@@ -78,7 +78,7 @@ def thing_after_all(d: Discourse, part: Leaf | Node) -> Thing | None:
     """The thing that a pronoun stands for where things are "he" and "she", too: "bring mir den
     Schlüssel. Wenn er nirgends ist, ..."; but it is Bob who is not there if he was spoken of."""
     genders: dict[str, str] = d.language.speech.get("object_genders", {})
-    gender = genders.get(d.norms(part.start, part.end)[-1])
+    gender = genders.get(pronoun_of(d, part))
     while isinstance(part, Node) and part.production.means is None and len(part.parts) == 1:
         (part,) = part.parts.values()
     is_pronoun = isinstance(part, Node) and part.means == "person_pronoun"

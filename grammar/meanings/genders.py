@@ -14,7 +14,7 @@ def means_thing(d: Discourse, part: Leaf | Node) -> bool:
     spoken of: by its gender ("la": not Bob), else if that was spoken of last."""
     if isinstance(part, Node) and part.means == "person_first":  # "the first one you find"
         return d.thing is not None and d.thing_last and "kind_of_person" not in part.parts
-    word = d.norms(part.start, part.end)[-1]
+    word = pronoun_of(d, part)
     if d.thing is None or word not in d.language.speech.get("things_too", ()):
         return False
     gender = d.language.speech.get("object_genders", {}).get(word)
@@ -22,6 +22,12 @@ def means_thing(d: Discourse, part: Leaf | Node) -> bool:
         return d.thing_last and not only_people(d, part)
     thing = gender_of_thing(d, d.thing) in (None, gender)
     return d.thing_last if thing == d.may_have(d.person, gender) else thing
+
+
+def pronoun_of(d: Discourse, part: Leaf | Node) -> str:
+    """The last word of a noun phrase that is no mere politeness: "them" of "them please"."""
+    words = d.norms(part.start, part.end)
+    return next((word for word in reversed(words) if (word,) not in d.language.fillers), words[-1])
 
 
 def only_people(d: Discourse, part: Leaf | Node) -> bool:
@@ -36,7 +42,7 @@ def only_people(d: Discourse, part: Leaf | Node) -> bool:
 def means_receiver(d: Discourse, part: Leaf | Node) -> bool:
     """Whether a pronoun may stand for who is to get a thing: "bring the book to Bob; if you do not
     find him"."""
-    gender = d.language.speech.get("object_genders", {}).get(d.norms(part.start, part.end)[-1])
+    gender = d.language.speech.get("object_genders", {}).get(pronoun_of(d, part))
     to = d.delivery.person if d.delivery is not None else None
     if to is None or d.person is None or to.value != d.person.value:
         return False

@@ -1,11 +1,12 @@
-"""What a host does: introducing people to each other, leading somebody to somebody or by a way."""
+"""What a host does: introducing people to each other, leading somebody to somebody or by a way, and
+knowing whom a guest is for."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, Steps, Thing, Where
+from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.carrying import deliver
 from grammar.meanings.driving import go_to
@@ -13,8 +14,12 @@ from grammar.meanings.finding import meet, named, speak_to, where_sent
 from grammar.meanings.genders import means_thing
 from grammar.meanings.leading import lead
 from grammar.meanings.people import guide, leave_out_fetching, led
-from grammar.meanings.places import own_place
+from grammar.meanings.places import own_place, owner_of
 from grammar.meanings.registry import meaning
+from grammar.meanings.remarks import aside, expected
+from grammar.meanings.reports import Report, found_out
+from grammar.meanings.sights import who_has_come
+from grammar.meanings.speaking import sentence_form
 from grammar.plan import Call, Text, Value
 
 
@@ -97,3 +102,39 @@ def bare_place(d: Discourse, node: Node) -> Value:
 def cannot_do(d: Discourse, node: Node) -> Steps:
     """ "pour the milk into the cup": known, and beyond the methods of a robot."""
     raise NotUnderstood(d.language.phrase("cannot_do", what=d.words(node.start, node.end)))
+
+
+@meaning("guest_for")
+def guest_for(d: Discourse, node: Node) -> Steps:
+    """ "there is a visitor for Clara in the lobby": it is about the visitor; who is told of it is
+    Clara."""
+    d.host = d.get(node, "host")
+    guest: Thing = d.get(node, "person_ref")
+    spot: Where | None = d.get(node, "where")
+    if spot is not None:
+        guest = replace(guest, place=spot.place, furniture=spot.furniture)
+    if node.production.fixed.get("coming"):
+        guest = expected(guest)
+    d.person = d.visitor = guest
+    d.place = guest.place or d.place
+    d.thing_last = False
+    told = d.words(node.start, node.end)
+    d.report, d.report_step = Report("only", Text(sentence_form(told)), about_here=False), None
+    return aside(d, node)
+
+
+@meaning("announce_guest")
+def announce_guest(d: Discourse, node: Node) -> Steps:
+    """ "ask for her name, take her to Clara and announce her": whom she is with by then, or whom
+    she is for, is told who has come."""
+    here, known = owner_of(d), d.last_named
+    guest: Thing = led(d, node) or Thing(Text(ANYONE), person=True, here=True)
+    host: Thing | None = d.get(node, "host")
+    if host is None and here is not None:
+        host = Thing(here, known=True, person=True)
+    host = host or d.host or known
+    if host is None:
+        raise NotUnderstood(d.language.phrase("announced_to"))
+    d.visitor = d.visitor or guest
+    news = who_has_come(d)
+    return [] if news is None else found_out(d, news, host, back=False)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import replace
+from typing import Final
 
 import msgspec
 
@@ -14,6 +15,9 @@ from grammar.meanings.places import is_of
 from grammar.meanings.surveys import Survey, exchanged
 from grammar.plan import Items, Recall, Sentence, Text, Value
 from grammar.tidy import nodes
+
+SOMEBODY: Final = "person"
+"""What an answer is called that tells whom somebody wants to see."""
 
 
 def place_of_named(d: Discourse, survey: Survey, kind: str | None = None) -> Value | None:
@@ -55,3 +59,15 @@ def offer(d: Discourse, survey: Survey, names: tuple[str, ...]) -> None:
     d.done[:] = exchanged(d.done, survey.call, [call])
     at = d.surveys.index(survey)
     d.surveys[at] = replace(survey, call=call, options=names)
+
+
+def place_just_named(d: Discourse, kind: str | None = None) -> Value | None:
+    """ "ask them who they want to see and take them there": the place of whoever the answer to the
+    last question names, if nothing was done since."""
+    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    if survey is None or not d.done or all(each is not survey.call for each in nodes(d.done[-1])):
+        return None
+    people = {each.name for each in d.lexicon.people}
+    if SOMEBODY not in survey.nouns and not (survey.options and set(survey.options) <= people):
+        return None
+    return place_of_named(d, survey, kind)

@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, capital
+from grammar.meanings.about_guests import guest_in, guest_spoken_of, host_told
 from grammar.meanings.finding import go, speak_to
 from grammar.meanings.genders import gender_of_thing
 from grammar.meanings.news import back_to_speaker
@@ -42,6 +43,8 @@ NOBODY_ELSE: Final[dict[str, Any]] = {
 def say_that(d: Discourse, node: Node) -> Steps:
     """ "tell her that lunch is ready" -> "Lunch is ready."; to somebody, "they" becomes "you"."""
     part = node.parts["text"]
+    d.guest = guest_spoken_of(d)
+    host_told(d, node)
     person: Thing | None = d.get(node, "person_ref")
     d.message = node
     if node.production.fixed.get("to_me"):
@@ -117,6 +120,7 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
         return _joined(d.words(start, end), data)
     if person.me:  # "remind me that I have an appointment": "I" is who will hear it
         data = {**data, **NOBODY_ELSE, **data["speaker"]}
+    guests = guest_in(d, person, start, end)
     pieces: list[str] = []
     subject = False
     for at, original, space in _written(d, start, end):
@@ -143,6 +147,9 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
             )
             named = not (person.me or impersonal or another)
             before = d.one_before(person, at + number) if named else None
+            if at + number in guests:
+                changed[number] = guests[at + number]
+                continue
             if before and not possessed and before not in pieces:
                 changed[number] = before
             elif (
@@ -339,6 +346,7 @@ def _noun_follows(d: Discourse, at: int, end: int, data: Mapping[str, Any]) -> b
 def remind(d: Discourse, node: Node) -> Steps:
     """ "remind me of the meeting", "remind Bob in ten minutes to come"."""
     delay: Steps = d.get(node, "delay") or []
+    d.guest = guest_spoken_of(d)
     person: Thing | None = d.get(node, "person_ref")
     part = node.parts["text"]
     phrase = str(node.production.fixed.get("phrase", "reminder"))

@@ -12,12 +12,12 @@ from grammar.meanings.descriptions import described
 from grammar.meanings.genders import means_receiver, means_thing
 from grammar.meanings.persons import person_kind, person_pronoun, unknown_person
 from grammar.meanings.places import (
-    listed,
     only_taken_apart,
     owner_of,
     source_of,
 )
 from grammar.meanings.registry import meaning
+from grammar.meanings.thing_lists import other_of_two
 from grammar.plan import Text
 from grammar.tokens import Token
 from grammar.wordforms import head_word, singular
@@ -131,6 +131,10 @@ def thing_other(d: Discourse, node: Node) -> Thing:
     noun = singular(d.noun_words(head.start, head.end), d.language) if head is not None else ""
     before = d.thing
     new = node.production.fixed.get("new")
+    other = None if new else other_of_two(d, head_word(noun, d.language) if noun else "")
+    if other is not None:
+        d.thing, d.thing_last = other, True
+        return other
     if before is None or not before.noun or (noun and head_word(noun, d.language) != before.noun):
         if new and noun:
             return replace(described(d, noun, node), noun=head_word(noun, d.language))
@@ -155,13 +159,6 @@ def thing_other(d: Discourse, node: Node) -> Thing:
 def thing_same(d: Discourse, node: Node) -> Thing:
     """ "the same cup": the one spoken of."""
     return replace(spoken_of(d, node), pronoun=True)
-
-
-@meaning("things")
-def things(d: Discourse, node: Node) -> list[Thing]:
-    """ "the cup and the book"."""
-    only_taken_apart(d, node)
-    return listed(d, node)
 
 
 @meaning("thing_rather")
@@ -205,7 +202,10 @@ def thing_it(d: Discourse, node: Node) -> Thing:
         return replace(d.thing, pronoun=True)
     if d.holding is not None:
         return Thing(d.holding, pronoun=True)
-    if d.person is not None:  # "where is Victor? look for him"
+    of_things = set(d.norms(node.start, node.end)) & set(
+        d.language.speech.get("of_things_only", ())
+    )
+    if d.person is not None and not of_things:  # "where is Victor? look for him"
         return person_pronoun(d, node)
     word = d.words(node.start, node.end)
     raise NotUnderstood(d.language.phrase("what_is_it", word=word), gap=(node.start, node.end))

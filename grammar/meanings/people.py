@@ -153,6 +153,7 @@ def fetch_person(d: Discourse, node: Node) -> Steps:
         return announced
     also = led_before(d) if node.production.fixed.get("too") else None
     steps = meet(d, replace(thing, here=False)) or look_for(d, thing)
+    d.visitor = d.visitor if thing.known else thing
     if also is not None:
         return [*steps, lead(d, thing, also)]
     d.fetched = lead(d, replace(thing, here=False), d.start())

@@ -59,8 +59,23 @@ def person_kind(d: Discourse, node: Node) -> Thing:
     for each in d.lexicon.people:  # "the person named Alice" is Alice
         if found.text == f"{kind} named {each.name}":
             found = replace(found, value=Text(each.name), known=True)
+    found = where_spoken_of(d, node, found)
     d.person, d.thing_last = found, False
     return found
+
+
+def where_spoken_of(d: Discourse, node: Node, found: Thing) -> Thing:
+    """ "there is a visitor at the reception. Bring the visitor to Bob": the one spoken of, as long
+    as nobody has led them elsewhere."""
+    if found.place is not None or found.furniture is not None or found.plural or found.here:
+        return found
+    if d.tokens[node.start].norm not in d.language.speech.get("definite", ()):
+        return found
+    if d.with_person == found.value or found.value in d.left or d.at is not None:
+        return found
+    spoken_of = (each for each in (d.person, d.visitor) if each is not None)
+    before = next((each for each in spoken_of if each.value == found.value and each.place), None)
+    return found if before is None else replace(found, place=before.place, first=before.first)
 
 
 def kind_in_plural(d: Discourse, node: Node) -> bool:

@@ -36,6 +36,12 @@ def place_of_kind(d: Discourse, node: Node) -> Value:
     if own is not None and len(named) == 1 and any(each.name == own.value for each in places):
         return own  # "if Clara is not in the office": in hers, where she alone was spoken of
     if len(places) > 1:
+        from grammar.meanings.hosts import place_just_named
+
+        answered = place_just_named(d, kind)
+        if answered is not None:  # "ask whom he wants to visit and lead him to the office"
+            d.place = answered
+            return answered
         raise d.which(node.start, node.end, tuple(place.name for place in places))
     d.place = Text(places[0].name)
     return d.place
@@ -60,6 +66,8 @@ def only_taken_apart(d: Discourse, node: Node) -> None:
 @meaning("place_own")
 def place_own(d: Discourse, node: Node) -> Value:
     """ "his office", after Bob: Bob's office; of nobody by name, the only office there is."""
+    from grammar.meanings.hosts import place_just_named
+
     kind = d.get(node, "kind")
     said: Thing | None = d.get(node, "owner")
     who = said or d.person or d.one_called(node.start, node.end)
@@ -71,6 +79,10 @@ def place_own(d: Discourse, node: Node) -> Value:
         who = Thing(host, known=True, person=True)
     if who is not None and isinstance(who.group, Items):  # for each of them anew
         who = replace(who, value=who.group.items[-1])
+    named = place_just_named(d, kind) if who is None or not who.known else None
+    if named is not None:  # "ask her whom she wants to see, and take her to their office"
+        d.place = named
+        return named
     owner = who.text if who is not None and who.known else None
     places = d.lexicon.place_kinds[kind]
     own = [each for each in places if owner and is_of(d, each.name, owner)]
@@ -90,7 +102,12 @@ def place_own(d: Discourse, node: Node) -> Value:
 @meaning("place_there")
 def place_there(d: Discourse, node: Node) -> Value:
     from grammar.meanings.found_places import first_of_round
+    from grammar.meanings.hosts import place_just_named
 
+    named = place_just_named(d)
+    if named is not None:
+        d.place = named
+        return named
     unsaid = d.place in (None, Recall(START))
     if unsaid and (d.round.such is not None or first_of_round(d)):
         return Recall(str(d.round.such))  # "find an empty room, come back, and take them there"

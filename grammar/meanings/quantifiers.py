@@ -42,11 +42,11 @@ from grammar.meanings.several_things import (
     begun_before,
     first_found,
     over_either_thing,
-    over_thing_list,
     over_things,
 )
 from grammar.meanings.sources import keep_fetching, sourced
 from grammar.meanings.surveys import Survey, each_asked, uses_answer
+from grammar.meanings.thing_lists import list_before, over_list_before, over_thing_list
 from grammar.meanings.volunteers import over_willing
 from grammar.plan import (
     Ask,
@@ -73,8 +73,8 @@ LIST_PARTS: Final = frozenset({"more_names", "either_names", "more_things"})
 
 TOGETHER: Final = frozenset(
     {
-        "answer", "answers_reached", "ask", "ask_again", "ask_to", "find", "greet", "phrase",
-        "report", "said_with", "same_for", "say", "say_it", "say_that", "shared_with",
+        "answer", "answers_reached", "ask", "ask_again", "ask_to", "find", "greet", "offer",
+        "phrase", "report", "said_with", "same_for", "say", "say_it", "say_that", "shared_with",
         "shares", "statement", "swap", "swap_owned", "tell", "tell_joke", "tell_that", "wait_for",
     }
 )  # fmt: skip
@@ -93,6 +93,8 @@ ALWAYS: Final = frozenset(
     }
 )  # fmt: skip
 """Noun phrases that no command knows itself what to do with."""
+KNOWN_TO: Final = frozenset({("wait_for", "person_either"), ("statement", "things")})
+"""Noun phrases that a command knows itself what to do with, and no other."""
 CLAUSES: Final = frozenset({"command", "closing", "clause", "steps", "body", "whole"})
 """Rules in which commands of their own stand."""
 
@@ -116,7 +118,9 @@ def distributed(d: Discourse, node: Node, make: Make) -> Steps:
     within_source = {id(part) for part in inside(node.parts.get("from"))}
     sources = [part for part in several if id(part) in within_source]  # "out of all offices"
     several = [part for part in several if id(part) not in within_source]
+    outer, d.only_fetches = d.only_fetches, only_fetches(node)
     steps = over(d, sources, lambda: taken_from_there(d, node, several, make))
+    d.only_fetches = outer
     if node.means in FETCHES:
         keep_fetching(d, node, make, steps, scene, known)
     return steps
@@ -137,10 +141,16 @@ def gone_among(d: Discourse, part: Node) -> Steps | None:
     return going
 
 
+def only_fetches(node: Node) -> bool:
+    """Whether a command fetches things without a word to whom or where to."""
+    fixed = node.production.fixed
+    return node.means == "grab" or bool(fixed.get("open") or fixed.get("why"))
+
+
 def taken_from_there(d: Discourse, node: Node, several: list[Node], make: Make) -> Steps:
     """The steps of a command for several things, of which is said where they are taken from."""
     outer, place = d.taken_from, d.place
-    things = any(OVER[part.means] in (over_things, over_thing_list) for part in several)
+    things = any(OVER[part.means] in OF_THINGS for part in several)
     d.taken_from = d.get(node, "from") if things and "from" in node.parts else outer
     if "source" in node.parts and any(OVER[part.means] is over_people for part in several):
         d.taken_from = d.get(node, "source")  # "take everybody from the lounge to the exit"
@@ -160,7 +170,7 @@ def hands_one_of_several(d: Discourse, node: Node) -> bool:
 def one_each(d: Discourse, several: list[Node]) -> list[Node]:
     """ "hand out the flyers to everybody": not all of them to each, but one."""
     people = [part for part in several if part.production.rule in PEOPLE]
-    things = [part for part in several if OVER[part.means] is over_things]
+    things = [part for part in several if OVER[part.means] in (over_it, over_things)]
     if not people or len(things) != 1:
         return several
     scene = d.scene()
@@ -197,7 +207,7 @@ def speaks_of_several(d: Discourse, node: Node, part: Node) -> bool:
     together = node.means in TOGETHER
     if id(part) in d.bound:
         return False
-    if node.means == "wait_for" and part.means == "person_either":
+    if (node.means, part.means) in KNOWN_TO:
         return False
     by_name = node.means == "greet" and part.means in ("person_group", "person_group_kind")
     if together and part.means not in ALWAYS and "but" not in part.parts and not by_name:
@@ -209,7 +219,8 @@ def speaks_of_several(d: Discourse, node: Node, part: Node) -> bool:
         several_of = node.means == "bring" and definite and kind_in_plural(d, part)
         return bool(part.production.fixed.get("plural")) or several_of
     if part.means == "person_pronoun" and d.thing_last:
-        return d.thing is not None and d.thing.several and d.is_plural(part)
+        several = d.thing is not None and (d.thing.several or d.thing.listed)
+        return bool(several) and d.is_plural(part)
     if part.means == "person_pronoun":
         each = node.means in HANDED and each_asked(d) is not None
         group = d.person is not None and d.person.group is not None
@@ -220,7 +231,8 @@ def speaks_of_several(d: Discourse, node: Node, part: Node) -> bool:
         told = {*part.parts, *part.production.fixed}
         return bool(told & {"number", "every"}) or (node.means in HANDED and all_of(d, node, part))
     if part.means == "thing_it":
-        return d.thing is not None and d.thing.several and d.is_plural(part)
+        several = d.thing is not None and d.thing.several and d.is_plural(part)
+        return several or (node.means in HANDED and bool(list_before(d, part)))
     return True
 
 
@@ -382,9 +394,15 @@ def fetched_before(body: Steps, who: Value, here: Value | None) -> int:
 def over_them(d: Discourse, node: Node, person: Thing, one: One) -> Steps:
     """ "them": people, or things that were spoken of after them."""
     if d.thing_last and d.thing is not None:
-        return over_things(d, node, d.thing, one)
+        return over_it(d, node, d.thing, one)
     steps = each_their_own(d, one)
     return over_people(d, node, person, one) if steps is None else steps
+
+
+def over_it(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
+    """ "them", of things: those of a list, or several of a kind."""
+    before = list_before(d, node)
+    return over_list_before(d, node, before, one) if before else over_things(d, node, thing, one)
 
 
 def each_their_own(d: Discourse, one: One) -> Steps | None:
@@ -457,8 +475,10 @@ OVER: Final[dict[str, Callable[[Discourse, Node, Any, One], Steps]]] = {
     "person_willing": over_willing,
     "several_of": over_things,
     "thing": over_things,
-    "thing_it": over_things,
+    "thing_it": over_it,
     "things": over_thing_list,
     "thing_either": over_either_thing,
 }
 """The noun phrases that may speak of several, by their meaning: what is done with each."""
+
+OF_THINGS: Final = frozenset({over_it, over_things, over_thing_list})

@@ -12,6 +12,7 @@ from grammar.chart import Node
 from grammar.discourse import START, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings import news, polls
+from grammar.meanings.about_guests import who_is_told
 from grammar.meanings.absences import undelivered
 from grammar.meanings.answered_numbers import of_answers
 from grammar.meanings.arrivals import arrival, arrival_told
@@ -262,10 +263,7 @@ def tell_that(d: Discourse, node: Node) -> Steps:
     """ "and tell Alice how many there are": what was found out before, told to somebody else."""
     search = news.searched_last(d, node, "person_ref")
     of_answers(d, node)
-    person: Thing | None = d.get(node, "person_ref")
-    person_at: Where | None = d.get(node, "person_at")
-    if person is not None and person_at is not None:  # "go and tell him in his office"
-        person = replace(person, place=person_at.place, here=False)
+    person = who_is_told(d, node)
     if search is not None and (search.person or (person is not None and not is_me(person))):
         return news.where_it_is(d, search, person)  # "find Alice and tell Bob"
     if node.production.fixed.get("seen") and looks_around(d):

@@ -27,7 +27,6 @@ from grammar.plan import (
     Holds,
     If,
     Increase,
-    Items,
     Not,
     Number,
     Recall,
@@ -220,18 +219,6 @@ def where_from(d: Discourse, node: Node, thing: Thing) -> Ambiguous:
             for place in d.lexicon.places
         ),
     )
-
-
-def over_thing_list(d: Discourse, node: Node, things: list[Thing], one: One) -> Steps:
-    """ "the cup and the book"."""
-    plain = all(thing.place is None and not thing.furniture for thing in things)
-    if not plain:
-        return [step for thing in things for step in round_of_steps(d, lambda t=thing: one(t))]  # type: ignore[misc]
-    each = Recall(d.variable("thing"))
-    d.at = None
-    body = round_of_steps(d, lambda: one(Thing(each)))
-    d.at = d.with_person = None
-    return [ForEach(each.name, Items(tuple(thing.value for thing in things)), tuple(body))]
 
 
 def over_either_thing(d: Discourse, node: Node, things: list[Thing], one: One) -> Steps:

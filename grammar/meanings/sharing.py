@@ -17,6 +17,7 @@ from grammar.meanings.nouns import spoken_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.several_things import begun_before
 from grammar.meanings.sources import where_told
+from grammar.meanings.thing_lists import off_the_list, other_of_two
 from grammar.plan import Items, Text
 
 
@@ -31,7 +32,8 @@ class Share:
 @meaning("one_more")
 def one_more(d: Discourse, node: Node) -> Thing:
     """ "one", "the other one": of what was spoken of, where that is taken from."""
-    one = replace(spoken_of(d, node).single, here=False)
+    other = other_of_two(d, "") if node.production.fixed.get("other") else None
+    one = other or replace(spoken_of(d, node).single, here=False)
     spot: Where | None = d.get(node, "where")
     return one if spot is None else replace(one, place=spot.place, furniture=spot.furniture)
 
@@ -130,7 +132,7 @@ def shared_out(
     place = place or d.at
     steps: Steps = []
     for each in given:
-        thing = each.thing
+        thing = off_the_list(d, each.thing)
         if thing.place is None and not thing.here:
             thing = replace(thing, place=place, furniture=thing.furniture or furniture)
         if thing.place is None:

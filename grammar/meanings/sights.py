@@ -35,6 +35,9 @@ def names_here(d: Discourse, node: Node) -> Report | Steps:
     come = None if person is not None or "mods" in node.parts else who_has_come(d)
     if come is not None:
         return come
+    given = name_given(d, node, person)
+    if given is not None:
+        return given
     if person is None:
         person = described(d, ANYONE, node)
         away = person.place is not None
@@ -81,6 +84,18 @@ def who_has_come(d: Discourse) -> Report | None:
         return Report("is_here", Recall(survey), about_here=False, name="name")
     words = (("thing", some(d.called(d.visitor.text), d.language)),)
     return Report("somebody_here", words=words, about_here=False)
+
+
+def name_given(d: Discourse, node: Node, person: Thing | None) -> Report | None:
+    """ "ask for her name, take her to Bob and tell him her name": the name that she gave."""
+    survey = survey_named_so(d, "name")
+    part = node.parts.get("person_ref")
+    if survey is None or d.visitor is None or person is None or "mods" in node.parts:
+        return None
+    pronoun = isinstance(part, Node) and part.means == "person_pronoun"
+    if not pronoun and person.value != d.visitor.value:
+        return None
+    return Report("only", Recall(survey), about_here=False, name="name")
 
 
 def survey_named_so(d: Discourse, noun: str) -> str | None:
@@ -312,6 +327,7 @@ def whether_seen(d: Discourse, node: Node) -> Report | Steps:
     if isinstance(thing.place, Items):  # "in the lobby or in the kitchen"
         return located(d, thing)
     named = named_some(d, thing)
+    d.get(node, "for_whom")  # "whether there is a letter for Bob": "him"
     return Report(
         "yes_seen",
         Ask("sees", {"thing": sought(d, thing)}),

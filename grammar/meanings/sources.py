@@ -45,7 +45,8 @@ def told_where(d: Discourse, thing: Thing) -> None:
     source = Where(thing.place)
     fetching = just_fetched(d)
     if fetching is not None and any(is_called(d, thing, each) for each in fetching.things):
-        d.done.extend(made_anew(d, fetching, source))
+        of_one = d.fetched_list is not None  # what is said of one of a list
+        d.done.extend(made_anew(d, fetching, None if of_one else source))
 
 
 def all_there_are(thing: Thing) -> Thing:
@@ -126,7 +127,7 @@ def just_fetched(d: Discourse) -> Fetching | None:
     return fetching
 
 
-def made_anew(d: Discourse, fetching: Fetching, source: Where) -> Steps:
+def made_anew(d: Discourse, fetching: Fetching, source: Where | None) -> Steps:
     """The steps of a command, with what is fetched taken from there."""
     from grammar.meanings.quantifiers import distributed
 

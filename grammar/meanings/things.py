@@ -29,6 +29,7 @@ from grammar.meanings.finding import (
 from grammar.meanings.holders import take_from_holder
 from grammar.meanings.inquiries import as_many_as_answered
 from grammar.meanings.nouns import thing_it
+from grammar.meanings.offers import if_they_want_it
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import (
     extraposed,
@@ -45,6 +46,7 @@ from grammar.meanings.sights import best_there, which_there
 from grammar.meanings.sources import all_there_are, told_where
 from grammar.meanings.speaking import sentence_form
 from grammar.meanings.strangers import announced_one
+from grammar.meanings.thing_lists import all_listed, off_the_list, told_where_all_are
 from grammar.plan import Call, ForEach, Items, Recall, Step, Text, Value
 from grammar.slots import command_words
 from grammar.tidy import nodes
@@ -60,6 +62,8 @@ def find(d: Discourse, node: Node) -> Steps:
     announced = announced_one(d, node)
     if announced is not None:
         return announced
+    if thing.first:  # "we expect a visitor. Meet her in the lobby"
+        return meet(d, thing)
     if isinstance(thing.group, Items):
         who = Recall(d.variable("person"))
         d.at = d.with_person = None
@@ -168,8 +172,9 @@ def put(d: Discourse, node: Node) -> Steps:
         d.holding = thing.value
     if node.production.fixed.get("brought") and d.delivered == thing.value and given_last(d):
         return []  # "get the cup and bring it back": here
+    thing = off_the_list(d, thing)
     take_back_delivery(d, thing)
-    if node.production.fixed.get("brought") and thing.pronoun and not was_moved(d, thing):
+    if node.production.fixed.get("brought") and thing.pronoun and not kept_elsewhere(d, thing):
         return deliver(d, thing, None, None)  # "if you find it, bring it back": to who lost it
     if node.production.fixed.get("back") and thing.pronoun and spot == Where():
         spot = Where(d.source or d.at_pick_up or thing.place)
@@ -203,6 +208,13 @@ def where_gone_to(d: Discourse, node: Node) -> Where | None:
     d.done.pop()
     d.at = d.at_furniture = None
     return spot
+
+
+def kept_elsewhere(d: Discourse, thing: Thing) -> bool:
+    """Whether a thing has a place to be brought back to: not what somebody was only to see."""
+    given = d.delivery.thing.value if isinstance(d.delivery, Delivery) else None
+    to_somebody = given == thing.value and d.delivery.receiver is not None
+    return was_moved(d, thing) and not to_somebody and d.shown != thing.value
 
 
 def was_moved(d: Discourse, thing: Thing) -> bool:
@@ -313,8 +325,8 @@ def bring(d: Discourse, node: Node) -> Steps:
     if person is not None and spot is not None:
         person, spot = at_their_place(person, spot)
     if person is None and spot is None and node.production.fixed.get("open"):
-        return brought_to_whoever_needs_it(d, thing)
-    steps = deliver(d, thing, person, spot)
+        return if_they_want_it(d, thing, None, brought_to_whoever_needs_it(d, thing))
+    steps = if_they_want_it(d, thing, person, deliver(d, thing, person, spot))
     d.destined = d.delivery if node.production.fixed.get("destined") else None
     if node.production.fixed.get("why") and isinstance(d.delivery, Delivery):
         d.delivery = replace(d.delivery, needed=True)
@@ -427,11 +439,14 @@ def statement(d: Discourse, node: Node) -> Steps:
         # "check whether the door | of room 3 is open" is one clause, however its words may part
         raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
     spoken_of: Thing | list[Thing] | None = mislaid(d, node.parts.get("person_ref"))
-    spoken_of = spoken_of or d.get(node, "thing") or d.get(node, "person_ref")
+    spoken_of = (
+        spoken_of or all_listed(d, node.parts.get("thing")) or d.get(node, "thing")
+    ) or d.get(node, "person_ref")
     thing = spoken_of[0] if isinstance(spoken_of, list) else spoken_of  # "it" is one of them
     spot: Where | None = d.get(node, "from")
     if thing is None:  # "he is in the kitchen"
-        thing = d.person or d.thing or Thing(Text(ANYONE), person=True)
+        said_of_it = d.thing if node.production.fixed.get("it") else None
+        thing = said_of_it or d.person or d.thing or Thing(Text(ANYONE), person=True)
     posture = node.parts.get("activity")
     if posture is not None and not thing.known:
         thing = replace(thing, value=Text(f"{thing.text} {d.described_by(posture)}"))
@@ -447,6 +462,7 @@ def statement(d: Discourse, node: Node) -> Steps:
     if thing.place is not None:
         d.place = thing.place
         told_where(d, thing)
+        told_where_all_are(d, thing)
         known_to_be(d, thing.value, thing.place)
     if thing.person:
         d.person, d.thing_last = thing, False
@@ -454,7 +470,10 @@ def statement(d: Discourse, node: Node) -> Steps:
         fetched_there(d, thing, thing.place)
     else:
         d.thing, d.thing_last = thing, True
+    guest = d.person
     d.get(node, "for_whom")  # "the folder is for Clara": she is spoken of now, too
+    if thing.person:  # but "there is a visitor for Clara": it is about the visitor
+        d.person = guest
     said = sentence_form(d.words(node.start, node.end))
     d.report, d.report_step = Report("only", Text(said), about_here=False), None
     return []

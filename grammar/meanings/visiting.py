@@ -16,7 +16,7 @@ from grammar.discourse import Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.alternatives import itself
 from grammar.meanings.finding import meet, named, speak_to
-from grammar.meanings.hosts import place_of_named
+from grammar.meanings.hosts import SOMEBODY, place_of_named
 from grammar.meanings.leading import lead
 from grammar.meanings.people import followed, led
 from grammar.meanings.persons import is_me, person_pronoun
@@ -34,8 +34,6 @@ from grammar.tidy import nodes
 LED_AWAY: Final = frozenset({"guide", "guide_where_wanted", "guide_nowhere", "send_person"})
 SPOKEN_TO: Final = frozenset({"ask", "ask_to", "say_that"})
 """Commands that are about one visitor after the other."""
-SOMEBODY: Final = "person"
-"""What an answer is called that tells whom somebody wants to see."""
 
 
 @meaning("send_person")

@@ -1,0 +1,59 @@
+"""Messages about somebody without a name: "when the courier comes, tell David that he is there".
+
+That "he" would be David, were it not for what is said of him: who is there, waits, has come or
+wants to see somebody is the one who was met or spoken of before.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from grammar.chart import Node
+from grammar.discourse import ANYONE, Discourse, Thing, Where
+
+
+def guest_spoken_of(d: Discourse) -> Thing | None:
+    """Somebody without a name who was met or spoken of last."""
+    last = d.person if d.person is not None and not d.person.known else d.visitor
+    if last is None or last.me or last.group is not None or last.text in ("", ANYONE):
+        return None
+    return last
+
+
+def guest_in(d: Discourse, receiver: Thing, start: int, end: int) -> dict[int, str]:
+    """The word of a message that stands for the guest spoken of before, by its token, and the
+    words for them: "he" of "he is there" is "the courier"."""
+    data: dict[str, Any] | None = d.language.speech.get("guests")
+    guest: Thing | None = d.guest
+    if data is None or guest is None or receiver.me or guest.value == receiver.value:
+        return {}
+    subject, *rest = d.norms(start, end)
+
+    def says(phrases: list[str]) -> bool:
+        return any(f" {words} " in f" {' '.join(rest)} " for words in phrases)
+
+    if subject not in data["subjects"] or says(data["duties"]) or not says(data["presence"]):
+        return {}
+    return {start: data["the"].format(who=d.called(guest.text))}
+
+
+def host_told(d: Discourse, node: Node) -> None:
+    """ "There is a visitor for Clara. Tell her.": "her" is whom the visitor is for, as long as
+    nothing was done with the visitor."""
+    part = node.parts.get("person_ref")
+    host: Thing | None = d.host
+    if host is None or d.done or not isinstance(part, Node) or part.means != "person_pronoun":
+        return
+    if d.may_be(host, part.start, part.end):
+        d.person = host
+
+
+def who_is_told(d: Discourse, node: Node) -> Thing | None:
+    """Who is told what was found out, and where they are: "go and tell him in his office"."""
+    host_told(d, node)
+    person: Thing | None = d.get(node, "person_ref")
+    at: Where | None = d.get(node, "person_at")
+    if person is None or at is None:
+        return person
+    return replace(person, place=at.place, here=False)
