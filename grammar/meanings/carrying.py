@@ -169,7 +169,7 @@ def take_along_again(d: Discourse, thing: Thing, person: Thing | None) -> None:
     a moment only stays in the hand, and is taken along when they say that they are done."""
     delivery: Delivery | None = d.delivery
     receiver = None if delivery is None else delivery.receiver
-    if delivery is None or receiver is None or delivery.spot is not None:
+    if delivery is None or receiver is None or delivery.spot is not None or delivery.needed:
         return
     if not thing.pronoun or thing.value != delivery.thing.value:
         return

@@ -36,6 +36,8 @@ def offer(d: Discourse, node: Node) -> Steps:
     said: Thing = d.get(node, "person_ref")
     person = several_of_a_kind(d, node, said) or said
     thing: Thing = d.get(node, "thing")
+    if thing.pronoun:  # "get a coke and offer it to Bob": it is there already
+        return deliver(d, thing, person, None)
     whom = audience(d, person)
     yes, no = d.language.phrase("yes"), d.language.phrase("no")
     question = d.sentence("would_you_like", thing=as_offered(d, node.parts["thing"], thing))
