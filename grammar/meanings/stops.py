@@ -25,8 +25,8 @@ SAID: Final = frozenset({"say", "ask", "show", "gesture", "emotion", "people"})
 
 def gone_to(d: Discourse, clause: Node, steps: Steps) -> Items | None:
     """The places that a clause goes to one after the other, if it does nothing else."""
-    going = itself(clause)
-    if going.means != "go_places" or going.production.fixed.get("from"):
+    command = itself(clause)
+    if command.means != "go_places" or command.production.fixed.get("from"):
         return None
     going = [step for step in steps if isinstance(step, Call) and step.method == "goto"]
     return Items(tuple(step.arguments["place"] for step in going)) if going == steps else None
