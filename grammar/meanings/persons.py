@@ -119,6 +119,10 @@ def person_pronoun(d: Discourse, node: Node) -> Thing:
         other = d.one_called(node.start, node.end)
         if other is not None:
             return replace(other, here=d.with_person == other.value)
+        guest = led_there(d)
+        if guest is not None:
+            d.called_so(guest, node.start, node.end)
+            return guest
     if d.person is not None:
         d.called_so(d.person, node.start, node.end)
         met = d.person.here or d.with_person == d.person.value
@@ -133,6 +137,15 @@ def person_pronoun(d: Discourse, node: Node) -> Thing:
     if d.last_named is not None and d.with_person is None and not d.is_plural(node):
         return d.last_named  # somebody named in the other branch
     return Thing(d.with_person or Text(ANYONE), person=True, here=True)
+
+
+def led_there(d: Discourse) -> Thing | None:
+    """Somebody without a name who was led where the robot is: "take the visitor to Clara. If she is
+    not there, tell him to wait"; he is not Clara."""
+    named = {each.name for each in d.lexicon.people}
+    led = (each for each, place in d.left.items() if place == d.at and isinstance(each, Text))
+    guest = next((each for each in led if each.value not in named), None)
+    return None if guest is None else Thing(guest, person=True, here=True)
 
 
 def is_several(person: Thing) -> bool:

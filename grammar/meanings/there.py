@@ -59,7 +59,10 @@ def is_found(d: Discourse, node: Node) -> Condition:
 
 def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
     thing = noun_of(d, node)
-    thing = host_of_visit(d, thing) or thing
+    host = host_of_visit(d, thing)
+    if host is not None:  # "take him to Clara's office. If she is not there, ..."
+        d.named.append(host.text)
+        thing = host
     survey: Survey | None = d.surveys[-1] if d.surveys else None
     if not node.production.fixed.get("it"):
         survey = None
