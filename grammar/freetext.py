@@ -271,7 +271,7 @@ class Judge:
         announced = start > 0 and self.tokens[start - 1].norm == COLON
         if (not spoken and node.means not in WRITTEN) or clause or announced:
             return None
-        if self.tokens[start].norm in self.words.never_first or self.given_to(start):
+        if self.tokens[start].norm in self.words.never_first | self.joins or self.given_to(start):
             return doubt(start, "cannot_say")
         greeted = self.complete_greeting(start) if spoken else 0
         if 0 < greeted < end - start:  # "good morning to everyone who comes": to whom
