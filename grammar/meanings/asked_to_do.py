@@ -5,6 +5,7 @@ from __future__ import annotations
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.meanings.finding import speak_to
+from grammar.meanings.persons import guest_for
 from grammar.meanings.questions import turn_to_you
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning
@@ -18,7 +19,7 @@ def ask_to(d: Discourse, node: Node) -> Steps:
     """ "ask them to wait" -> "Please wait."."""
     part = node.parts.get("text")
     # Whoever else is spoken of is not the one who is asked: "sie soll ihn mir bringen".
-    person: Thing | None = d.get(node, "person_ref")
+    person: Thing | None = guest_for(d, node.parts.get("person_ref"), d.get(node, "person_ref"))
     d.message = node
     kinds = ("to_you_asked", "to_you_who", "to_you")
     you = next(each for each in kinds if each in d.language.speech)

@@ -17,7 +17,7 @@ from grammar.meanings.finding import go, speak_to
 from grammar.meanings.genders import gender_of_thing
 from grammar.meanings.news import back_to_speaker
 from grammar.meanings.options import people_named
-from grammar.meanings.persons import is_me, person_me
+from grammar.meanings.persons import guest_for, is_me, person_me
 from grammar.meanings.questions import base_form, turn_to_you
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning
@@ -45,7 +45,7 @@ def say_that(d: Discourse, node: Node) -> Steps:
     part = node.parts["text"]
     d.guest = guest_spoken_of(d)
     host_told(d, node)
-    person: Thing | None = d.get(node, "person_ref")
+    person: Thing | None = guest_for(d, node.parts.get("person_ref"), d.get(node, "person_ref"))
     d.message = node
     if node.production.fixed.get("to_me"):
         person = person_me(d, node)

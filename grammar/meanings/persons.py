@@ -139,6 +139,17 @@ def person_pronoun(d: Discourse, node: Node) -> Thing:
     return Thing(d.with_person or Text(ANYONE), person=True, here=True)
 
 
+def guest_for(d: Discourse, part: Leaf | Node | None, person: Thing | None) -> Thing | None:
+    """ "take the visitor to Bob. If he is not there, tell him to wait": who is spoken to or led is
+    not Bob, who was just said not to be there."""
+    guest: Thing | None = d.led
+    if guest is None or person is None or d.missing is None or not isinstance(part, Node):
+        return person
+    by_pronoun = part.means in ("person_pronoun", "thing_it")
+    missing = d.missing.value == person.value
+    return replace(guest, here=True) if by_pronoun and missing else person
+
+
 def led_there(d: Discourse) -> Thing | None:
     """Somebody without a name who was led where the robot is: "take the visitor to Clara. If she is
     not there, tell him to wait"; he is not Clara."""

@@ -25,7 +25,7 @@ from grammar.meanings.options import (
     places_named,
     without_little_words,
 )
-from grammar.meanings.persons import is_me
+from grammar.meanings.persons import guest_for, is_me
 from grammar.meanings.references import nouns_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import tell_speaker
@@ -59,7 +59,7 @@ LONGEST_OFFERED: Final = 3
 @meaning("ask")
 def ask(d: Discourse, node: Node) -> Steps:
     """Ask somebody a question and remember the answer."""
-    person: Thing | None = d.get(node, "person_ref")
+    person: Thing | None = guest_for(d, node.parts.get("person_ref"), d.get(node, "person_ref"))
     d.message = node
     question = node.parts.get("question")
     if person is None and isinstance(question, Node) and "asked_one" in question.parts:

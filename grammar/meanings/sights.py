@@ -18,6 +18,7 @@ from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report, told_report
 from grammar.meanings.surveys import asked_yet, in_loop
 from grammar.naming import person_called, place_called, some, the
+from grammar.pieces import leaves
 from grammar.plan import Ask, Call, Holds, If, Items, Recall, Remember, Text, Value
 from grammar.wordforms import plural, singular
 
@@ -313,8 +314,8 @@ def whether_seen(d: Discourse, node: Node) -> Report | Steps:
     more = described(d, thing.text, node)
     if not thing.known:  # "whether the woman is lying down"
         thing = replace(thing, value=more.value)
-    elif thing.person and more.text != thing.text:  # "is Alice sitting?"
-        return looks_of(d, node)
+    elif thing.person and (more.text != thing.text or does_something(node)):
+        return looks_of(d, node)  # "is Alice sitting?"
     thing = replace(
         in_state(d, node, thing),
         place=thing.place or more.place or there,
@@ -346,6 +347,16 @@ def named_some(d: Discourse, thing: Thing) -> str:
     called = d.called(thing.text)
     somebody = thing.known and thing.person
     return person_called(called, d.language) if somebody else some(called, d.language)
+
+
+def does_something(node: Node) -> bool:
+    """Whether it is said of a person by name what they are doing: "ist Clara wach"."""
+    parts = (node.parts.get("person_ref"), node.parts.get("doing"))
+    said = (leaf for part in parts if isinstance(part, Node) for leaf in leaves(part))
+    doing = parts[1]
+    return any(leaf.slot == "activity" for leaf in said) or (
+        isinstance(doing, Leaf) and doing.slot == "activity"
+    )
 
 
 @meaning("where_found")

@@ -30,7 +30,7 @@ from grammar.meanings.holders import take_from_holder
 from grammar.meanings.inquiries import as_many_as_answered
 from grammar.meanings.nouns import thing_it
 from grammar.meanings.offers import if_they_want_it
-from grammar.meanings.persons import is_me
+from grammar.meanings.persons import guest_for, is_me
 from grammar.meanings.places import (
     extraposed,
     home_of,
@@ -296,6 +296,7 @@ def bring(d: Discourse, node: Node) -> Steps:
     if thing.person and person is not None and not is_me(person):
         from grammar.meanings.hosting import led_to
 
+        thing = guest_for(d, node.parts.get("thing"), thing) or thing
         part = node.parts["person_ref"]  # "fetch the visitor and take them to Clara"
         same = person.value == thing.value
         return led_to(d, thing, (d.one_called(part.start, part.end) if same else None) or person)

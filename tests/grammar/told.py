@@ -6,6 +6,7 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator
+from typing import Final
 
 from grammar.speech import Words, speech
 
@@ -19,6 +20,10 @@ _GAP = re.compile(r"\{\w+(?:!\w+)?\}|⟨\w+⟩ ?|\w*⟨[^⟩]*⟩\w*")
 _LITTLE = re.compile(r"(?:^| )\w{1,2}$")
 """A word that may run together with what follows: "à le" is "au"."""
 _INFLECTED = re.compile(r"⟨[^⟩]*⟩")
+
+
+NOBODY: Final = {"de": "niemand"}
+"""How "no person" is told: "wenn ich niemanden sehe"."""
 
 
 def untold(
@@ -56,6 +61,7 @@ def untold(
             tongue = speech(language).languages.get(text)  # "de" is told as "German"
             ways = (text,) if spoken else (text, name, many(name), *stems)
             ways = ways if tongue is None else (*ways, tongue)
+            ways = (*ways, NOBODY[language]) if text == "person" and language in NOBODY else ways
             if not any(_plain(way) in said for way in ways):
                 missing.append(text)
     return missing
