@@ -50,6 +50,8 @@ def presence_told(d: Discourse, node: Node) -> Told:
         missing = bool(node.production.fixed.get("missing"))
         return those_met(d, people, d.get(node, "place"), missing=missing)
     kind, mark = str(d.get(node, "kind")), d.language.speech["possessive"]
+    if len(d.lexicon.place_kinds[kind]) == 1:  # "in the library": there is only one
+        return those_met(d, people, Text(d.lexicon.place_kinds[kind][0].name))
     known = {place.name.lower(): place.name for place in d.lexicon.place_kinds[kind]}
     found = d.variable("found")
     first: Steps = [Remember(found, Items(()))]

@@ -351,12 +351,8 @@ def named_some(d: Discourse, thing: Thing) -> str:
 
 def does_something(node: Node) -> bool:
     """Whether it is said of a person by name what they are doing: "ist Clara wach"."""
-    parts = (node.parts.get("person_ref"), node.parts.get("doing"))
-    said = (leaf for part in parts if isinstance(part, Node) for leaf in leaves(part))
-    doing = parts[1]
-    return any(leaf.slot == "activity" for leaf in said) or (
-        isinstance(doing, Leaf) and doing.slot == "activity"
-    )
+    person = node.parts.get("person_ref")
+    return isinstance(person, Node) and any(leaf.slot == "activity" for leaf in leaves(person))
 
 
 @meaning("where_found")
