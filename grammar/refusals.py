@@ -15,6 +15,7 @@ from grammar.lexicon import Lexicon
 from grammar.plan import Ask, Call, Number, Plan, Text
 from grammar.tidy import nodes
 from grammar.tokens import Token
+from grammar.wordforms import singular
 from robot_api.methods import METHODS
 
 ENDING: Final = 2
@@ -93,9 +94,11 @@ def _is_somebody(name: str, lexicon: Lexicon, language: Language) -> bool:
 
 
 def _is_dangerous(words: Sequence[str], language: Language) -> bool:
-    """Whether a thing is dangerous or holds something that is: "a bottle of acid"."""
-    dangers = [language.tokens_of(each) for each in language.speech.get("dangerous", ())]
-    return any(_begins(words[at:], danger) for at in range(len(words)) for danger in dangers)
+    """Whether a thing is dangerous or holds something that is: "a bottle of acid". Only its whole
+    name counts: a "Waffel" is no "Waffe"."""
+    dangers = {language.tokens_of(each) for each in language.speech.get("dangerous", ())}
+    named = {(form,) for word in words for form in (word, singular(word, language))}
+    return not dangers.isdisjoint(named)
 
 
 def _treats(giving: Call | Ask, lexicon: Lexicon, language: Language) -> bool:
@@ -134,14 +137,9 @@ def _headed(words: tuple[str, ...], name: tuple[str, ...], language: Language) -
     ends = language.closed | set(language.speech.get("beside", ()))
     head = next((at for at, word in enumerate(words) if at and word in ends), len(words))
     first = 0 if language.speech.get("head_first") else max(0, head - len(name))
-    return _begins(words[first:], name)
-
-
-def _begins(words: Sequence[str], name: tuple[str, ...]) -> bool:
-    """Whether words begin with a name, in the plural or not."""
-    return len(words) >= len(name) and all(
+    return len(words) >= first + len(name) and all(
         word.startswith(each) and len(word) - len(each) <= ENDING
-        for word, each in zip(words, name, strict=False)
+        for word, each in zip(words[first:], name, strict=False)
     )
 
 
