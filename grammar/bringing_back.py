@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from msgspec.structs import replace
 
-from grammar.discourse import START, Discourse
+from grammar.discourse import Discourse
+from grammar.meanings.found_once import is_said
+from grammar.meanings.news import BACK
 from grammar.plan import (
     Ask,
     Call,
@@ -29,8 +31,6 @@ from grammar.plan import (
     Value,
 )
 from grammar.tidy import mentions, nodes
-
-BACK = Call("goto", {"place": Recall(START)})
 
 
 def told_when_all_are_asked(plan: Plan, d: Discourse) -> Plan:
@@ -66,16 +66,12 @@ def _errand_of(step: Step) -> tuple[Step, ...] | None:
     if isinstance(step, If) and step.otherwise in ((), (BACK,)):
         steps = step.then
     for at, each in enumerate(steps):
-        if each == BACK and all(_is_said(later) for later in steps[at + 1 :]):
+        if each == BACK and all(is_said(later) for later in steps[at + 1 :]):
             return steps[at:]
     last = steps[-1] if steps else None
-    if isinstance(last, If) and _is_search(last) and all(map(_is_said, last.then)):
+    if isinstance(last, If) and _is_search(last) and all(map(is_said, last.then)):
         return (last,)
     return _errand_of(last) if isinstance(last, ForEach | If) else None
-
-
-def _is_said(step: Step) -> bool:
-    return isinstance(step, Call) and step.method == "say"
 
 
 def _is_search(step: If) -> bool:

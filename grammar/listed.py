@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Final
 
 from grammar.chart import Leaf, Node
-from grammar.language import Language
 from grammar.pieces import Piece, leading, leaves, words_listed
 from grammar.understand import Reader
 
@@ -126,7 +125,7 @@ def _called(leaf: Leaf) -> set[str]:
 
 def _member(reader: Reader, start: int, end: int, kind: str, called: set[str]) -> Member:
     first = start
-    if first > 0 and _is_article(reader, first - 1, reader.language):
+    if first > 0 and _is_article(reader, first - 1):
         first -= 1
     begin = first - leading(reader, first)
     contracted = begin < first and reader.tokens[first].start == reader.tokens[first - 1].start
@@ -141,9 +140,10 @@ def _member(reader: Reader, start: int, end: int, kind: str, called: set[str]) -
     )
 
 
-def _is_article(reader: Reader, at: int, language: Language) -> bool:
+def _is_article(reader: Reader, at: int) -> bool:
     norm = (reader.tokens[at].norm,)
-    others = words_listed(language, "joins") | words_listed(language, "prepositions")
+    others = words_listed(reader.language, "joins")
+    others |= words_listed(reader.language, "prepositions")
     return reader.is_little(range(at, at + 1)) and norm not in others
 
 
