@@ -92,6 +92,8 @@ class Discourse:
     thing_last: bool = False
     """Whether a thing was spoken of after the last person."""
     place: Value | None = None
+    place_before: Value | None = None
+    """The place that was spoken of before the command that is made."""
     at: Value | None = None
     """Where the robot is by now; None where the command was given."""
     away: bool = False
@@ -291,6 +293,7 @@ class Discourse:
             return distributed(self, part, lambda: MEANINGS[SETTING](self, part))
         meaning = MEANINGS.get(part.means)
         if part.production.rule in COMMANDS and (meaning or part.means in METHODS):
+            self.place_before = self.place
             return distributed(self, part, lambda: self._command(part))
         if meaning is not None:
             return meaning(self, part)

@@ -122,3 +122,7 @@ class Round:
     """The news of who of several people is in (`grammar.meanings.presence`)."""
     such: str | None = None
     """The variable with the place that was looked for, as the first that is so."""
+    told_of: bool = False
+    """Whether somebody is only to be told of which places a condition is true."""
+    claims: Any = None
+    """What is so of them, and what if not (`grammar.meanings.some_places.Claims`)."""

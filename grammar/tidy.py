@@ -334,7 +334,16 @@ def _forget(steps: tuple[Step, ...], used: set[str]) -> tuple[Step, ...]:
         for step in steps
         if not (isinstance(step, Remember | Collect | Increase) and step.name not in used)
     )
-    return tuple(step for step in kept if step is not None)
+    return _going_once(tuple(step for step in kept if step is not None))
+
+
+def _going_once(steps: tuple[Step, ...]) -> tuple[Step, ...]:
+    """Nobody drives to where they have just gone."""
+    return tuple(
+        step
+        for before, step in zip((None, *steps), steps, strict=False)
+        if step != before or not (isinstance(step, Call) and step.method == "goto")
+    )
 
 
 def _forget_in(step: Step, used: set[str]) -> Step | None:

@@ -53,6 +53,7 @@ import grammar.meanings.rounds
 import grammar.meanings.sharing
 import grammar.meanings.sights
 import grammar.meanings.signatures
+import grammar.meanings.some_places
 import grammar.meanings.sources
 import grammar.meanings.speaking
 import grammar.meanings.stops

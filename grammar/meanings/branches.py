@@ -13,7 +13,7 @@ from typing import Final
 from msgspec.structs import replace as structs_replace
 
 from grammar.chart import Leaf, Node, what_it_means
-from grammar.discourse import ANYONE, Branched, Claim, Discourse, Meeting, Steps
+from grammar.discourse import ANYONE, START, Branched, Claim, Discourse, Meeting, Steps, Thing
 from grammar.doubts import NotUnderstood
 from grammar.meanings.absences import Addressed, addressed_before
 from grammar.meanings.answered import said_so
@@ -150,6 +150,7 @@ def if_(d: Discourse, node: Node) -> Steps:
         d.set_scene(scene)
     otherwise: Steps = []
     if part is not None and not (asked and part is denied):
+        led_from_here(d, then, after)
         otherwise = branch(d, part, turned(met), found_claim(d, condition, turned(met)))
     else:
         meet_there(d, turned(met))
@@ -178,6 +179,17 @@ def if_(d: Discourse, node: Node) -> Steps:
             return [*before_it, *counted, whole, *told]
     d.branched = Branched(whole, start, met, d.answer, assumed)
     return [*before_it, *counted, whole]
+
+
+def led_from_here(d: Discourse, then: Steps, after: dict[str, object]) -> None:
+    """ "if a room is free, take the visitors there. Otherwise tell them to wait": they are where
+    the robot would have come back for them."""
+    led = after["led"]
+    back = [at for at, each in enumerate(then) if each == BACK]
+    after_it = then[back[-1] :] if back else []
+    guided = any(isinstance(each, Call) and each.method == "guide" for each in after_it)
+    if guided and isinstance(led, Thing) and d.person != led:
+        d.person, d.thing_last = replace(led, here=False, place=Recall(START)), False
 
 
 def is_other_case(d: Discourse, condition: Condition, met: Meeting | None) -> bool:

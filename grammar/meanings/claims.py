@@ -42,13 +42,17 @@ COUNT: Final = "count"
 def claim_of(d: Discourse, node: Node, condition: Condition, met: Meeting | None) -> Step | None:
     """What a condition says, as a sentence of its own: "if there is a cup, tell me"."""
     part = node.parts["condition"]
+    if what_it_means(part) == "some_places" and d.round.claims is not None:
+        claims = d.round.claims
+        said: Step = claims.yes if condition == claims.condition else claims.no
+        return said
     if what_it_means(part) in ("so", "answered"):
         # Of a round it would be told at each place, and never that it is nowhere.
         return found_claim(d, condition, met) if met is not None and not d.in_loop else None
     if what_it_means(part) == "answers_many":  # "if anyone says yes, tell Alice": how many did
         return polled(d, "many", None).words[0]
     if (
-        _is_of_them(part)
+        (_is_of_them(part) and found_claim(d, condition, met) is not None)
         or node.production.fixed.get("turned")
         or node.production.fixed.get("unless")
     ):
@@ -60,11 +64,15 @@ def claim_of(d: Discourse, node: Node, condition: Condition, met: Meeting | None
     return Call("say", {"text": Text(sentence_form(clause))})
 
 
+NAMELESS: Final = frozenset({"one_of_them", "person_pronoun"})
+
+
 def _is_of_them(part: Leaf | Node) -> bool:
-    """Whether what a condition is about has no name in it: "keiner ist mehr da"."""
+    """Whether what a condition is about has no name in it: "keiner ist mehr da", "he is not there",
+    which says nothing to somebody who has not heard of whom."""
     if isinstance(part, Leaf):
         return False
-    return part.production.means == "one_of_them" or any(map(_is_of_them, part.parts.values()))
+    return part.production.means in NAMELESS or any(map(_is_of_them, part.parts.values()))
 
 
 def as_fact(d: Discourse, clause: str) -> str:
@@ -83,6 +91,9 @@ def found_claim(d: Discourse, condition: Condition, met: Meeting | None) -> Step
         return d.say("nobody_seen")
     if met is not None:
         return not_found(d, met.thing)
+    if d.round.claims is not None and d.round.claims.condition == condition:
+        missing: Step = d.round.claims.no
+        return missing
     if isinstance(condition, Compare) and isinstance(condition.left, Ask):
         thing = condition.left.arguments.get("thing")
         if condition.left.method == "count" and isinstance(thing, Text):

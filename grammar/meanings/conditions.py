@@ -85,9 +85,20 @@ def condition_of(d: Discourse, node: Node, name: str = "condition") -> tuple[Ste
     about is then `d.met`."""
     named_before(d, node, name)
     outer, d.pending, d.met = d.pending, [], None
+    d.round.told_of = only_told_of(node)
     condition: Condition = d.get(node, name)
     before, d.pending = d.pending, outer
     return before, condition
+
+
+def only_told_of(node: Node) -> bool:
+    """Whether what depends on a condition is that somebody is told of it, and nothing is done where
+    it is so: "if any lab is free, tell Bob"."""
+    then = node.parts.get("then")
+    if then is None:
+        return node.means == "tell_condition"
+    means = {each.means for each in inside(then)}
+    return bool(means & {"tell_that", "tell_me_that"}) and "place_there" not in means
 
 
 def named_before(d: Discourse, node: Node, name: str) -> None:

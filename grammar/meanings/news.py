@@ -17,6 +17,7 @@ from grammar.discourse import START, Discourse, Steps, Thing
 from grammar.meanings.finding import go, speak_to
 from grammar.meanings.persons import is_me
 from grammar.meanings.registry import meaning
+from grammar.meanings.sent_to_tell import searched_before
 from grammar.meanings.surveys import asked_yet, moved
 from grammar.plan import (
     Ask,
@@ -61,7 +62,10 @@ class News:
 @meaning("news")
 def news(d: Discourse, node: Node) -> Steps:
     """ "come back and tell me who said yes", "announce the result in the lobby"."""
-    search = searched_last(d, node, "whom") if asks_where(node) else None
+    sent = searched_before(d, node) if asks_where(node) else None
+    search = searched_last(d, node, "whom") if asks_where(node) and sent is None else None
+    if sent is not None:
+        return told_to_sent(d, *sent)
     person: Thing | None = d.get(node, "whom")
     if d.thing is not None and d.delivered == d.thing.value and _speaks_of_it(d, node):
         return []  # "get the key from Alice and come back with it": it is here by now
@@ -152,6 +156,11 @@ def where_it_is(d: Discourse, sought: Thing, person: Thing | None) -> Steps:
     from grammar.meanings.sights import located
 
     return found_for(d, person, located(d, sought))
+
+
+def told_to_sent(d: Discourse, sought: Thing, person: Thing) -> Steps:
+    """ "find Alice, then go to Bob and tell him": where she is."""
+    return told_where(d, person) or where_it_is(d, sought, person)
 
 
 def told_where(d: Discourse, person: Thing | None) -> Steps | None:

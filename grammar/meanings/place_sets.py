@@ -125,11 +125,11 @@ def places_joined(d: Discourse, node: Node) -> Value:
     rest: Value | None = d.get(node, "rest")
     if rest is None:
         return first
-    names = [name for part in (first, rest) for name in _names_of(d, part)]
+    names = [name for part in (first, rest) for name in names_of(d, part)]
     return Items(tuple(dict.fromkeys(names)))
 
 
-def _names_of(d: Discourse, places: Value | str) -> list[Value]:
+def names_of(d: Discourse, places: Value | str) -> list[Value]:
     """The places that are meant, each by its name."""
     known = kind_places(d, places)
     if isinstance(known, Ask):
@@ -160,6 +160,29 @@ def tail(d: Discourse, node: Node) -> str:
     assert isinstance(part, Leaf)
     number = isinstance(part.value, int | float)
     return f"{part.value:g}" if number else d.tokens[part.start].norm
+
+
+@meaning("place_tail")
+def place_tail(d: Discourse, node: Node) -> Value:
+    """ "b" in "ward a, b and c": a place of the same kind as the one before."""
+    leaf = node.parts["place_tail"]
+    assert isinstance(leaf, Leaf)
+    before = d.place.value if isinstance(d.place, Text) else ""
+    kind = next((place.kind for place in d.lexicon.places if place.name == before), None)
+    alike = [name.name for name in leaf.value if name.kind == kind and name.name != before]
+    if len(alike) > 1:  # of the same series: "meeting room 1 or 2"
+        series = before.rsplit(" ", 1)[0]
+        alike = [name for name in alike if name.rsplit(" ", 1)[0] == series]
+    if kind is None and len(leaf.value) == 1:  # "every ward but c"
+        alike = [leaf.value[0].name]
+    if len(alike) != 1:
+        raise NotUnderstood(
+            d.language.phrase("unknown_place", name=d.words(node.start, node.end)),
+            tuple(name.name for name in leaf.value),
+            (node.start, node.end),
+        )
+    d.place = Text(alike[0])
+    return d.place
 
 
 @meaning("places_owned")

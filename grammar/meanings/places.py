@@ -113,9 +113,19 @@ def place_there(d: Discourse, node: Node) -> Value:
         return Recall(str(d.round.such))  # "find an empty room, come back, and take them there"
     if d.place is None:
         raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
+    if d.place_before is not None and d.taken_from is None and taken_elsewhere(d, node):
+        d.place = d.place_before
     if d.delivered is not None and d.place == Recall(START):
         d.place = before_fetching(d, node)
     return d.place
+
+
+def taken_elsewhere(d: Discourse, node: Node) -> bool:
+    """ "take the visitor from the lobby there": whether the place that was named last is where the
+    command itself takes somebody or something from, so that it is not meant by "there"."""
+    words = " ".join(d.norms(max(node.start - 6, 0), node.start))
+    called = d.place.value.lower() if isinstance(d.place, Text) else None
+    return bool(called) and d.place != d.place_before and words.endswith(str(called))
 
 
 @meaning("place_answered")
@@ -384,26 +394,6 @@ def place_of_furniture(d: Discourse, node: Node) -> Value:
         raise NotUnderstood(d.language.phrase("unknown_place", name=furniture))
     d.place = home
     return home
-
-
-@meaning("place_tail")
-def place_tail(d: Discourse, node: Node) -> Value:
-    """ "b" in "ward a, b and c": a place of the same kind as the one before."""
-    leaf = node.parts["place_tail"]
-    assert isinstance(leaf, Leaf)
-    before = d.place.value if isinstance(d.place, Text) else ""
-    kind = next((place.kind for place in d.lexicon.places if place.name == before), None)
-    alike = [name.name for name in leaf.value if name.kind == kind and name.name != before]
-    if kind is None and len(leaf.value) == 1:  # "every ward but c"
-        alike = [leaf.value[0].name]
-    if len(alike) != 1:
-        raise NotUnderstood(
-            d.language.phrase("unknown_place", name=d.words(node.start, node.end)),
-            tuple(name.name for name in leaf.value),
-            (node.start, node.end),
-        )
-    d.place = Text(alike[0])
-    return d.place
 
 
 def kind_places(d: Discourse, kind: str | Value | None) -> Value:

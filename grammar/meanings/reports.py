@@ -21,6 +21,7 @@ from grammar.meanings.follow_ups import asked_one_after_the_other, said_in_all, 
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import is_of, sought
 from grammar.meanings.registry import meaning
+from grammar.meanings.sent_to_tell import searched_before, sent_to
 from grammar.meanings.surveys import (
     in_loop,
     moved,
@@ -80,6 +81,8 @@ def report(d: Discourse, node: Node) -> Steps:
     if found is None:
         found = d.get(node, "info")
     if isinstance(found, list):
+        if receiver is not None and receiver.start < info.start:
+            person = sent_to(d, person) or person
         steps = found_for(d, person, found)
         if is_me(person) and d.answer is not None and not mentions(steps, news.BACK):
             steps = [*news.back_to_speaker(d), *steps]
@@ -261,6 +264,8 @@ def known_words(d: Discourse) -> Steps:
 @meaning("tell_that")
 def tell_that(d: Discourse, node: Node) -> Steps:
     """ "and tell Alice how many there are": what was found out before, told to somebody else."""
+    if sent := searched_before(d, node):
+        return news.told_to_sent(d, *sent)
     search = news.searched_last(d, node, "person_ref")
     of_answers(d, node)
     person = who_is_told(d, node)
@@ -276,8 +281,7 @@ def tell_that(d: Discourse, node: Node) -> Steps:
 
 
 def looks_around(d: Discourse) -> bool:
-    """Whether the robot is where it was sent to look, and has told nothing of it: "look at the desk
-    and tell Bob what you saw"."""
+    """ "look at the desk and tell Bob what you saw": sent there to look, with nothing told."""
     untold = d.report is None and d.answer is None and d.code is None and d.claim is None
     ways = [each for each in nodes(tuple(d.done)) if isinstance(each, Call)]
     return untold and isinstance(d.at, Text) and [each.method for each in ways] == ["goto"]
@@ -433,6 +437,8 @@ def not_back_yet(d: Discourse) -> None:
 @meaning("tell_me_that")
 def tell_me_that(d: Discourse, node: Node) -> Steps:
     """ "and tell me": what was found out just before, brought back to the speaker."""
+    if sent := searched_before(d, node):
+        return news.told_to_sent(d, *sent)
     search = news.searched_last(d, node, "person_ref")
     of_answers(d, node)
     d.report_open = False
@@ -472,7 +478,7 @@ def tell_speaker(d: Discourse) -> Steps:
             return []
         told_there = retold(d, None)
         d.went(start)
-        return [Call("goto", {"place": start}), *told_there]
+        return [news.BACK, *told_there]
     if d.answer is None and d.code is None and (come := arrival_told(d)) is not None:
         return come
     if d.answer is None and d.code is None and d.thing is not None:
@@ -481,10 +487,8 @@ def tell_speaker(d: Discourse) -> Steps:
         # "find the smallest cup and tell me what it is"
         what = Ask("describe", {"thing": sought(d, d.thing)})
         name = d.variable("description")
-        start = d.start()
-        d.went(start)
-        saying = Call("say", {"text": Recall(name)})
-        return [Remember(name, what), Call("goto", {"place": start}), saying]
+        d.went(d.start())
+        return [Remember(name, what), news.BACK, Call("say", {"text": Recall(name)})]
     if d.answer is not None or d.code is not None:
         words = known_words(d)
         start = d.start()

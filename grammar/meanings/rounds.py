@@ -47,6 +47,7 @@ from grammar.plan import (
     Recall,
     Remember,
     Sentence,
+    Share,
     Step,
     Text,
     Value,
@@ -326,7 +327,8 @@ def places_told(d: Discourse, node: Node) -> Told:
         d.done.insert(0, going.pop())
     else:
         going.append(round_of(d, places_of(d, node), [*trait.first, noted], place))
-    return Told(found_places(d, str(node.production.fixed.get("tell", "which")), found), going)
+    gone_round = loop.items if isinstance(loop, ForEach) else places_of(d, node)
+    return Told(found_places(d, tell, found, gone_round), going)
 
 
 def without_check(d: Discourse, loop: ForEach) -> ForEach:
@@ -353,8 +355,10 @@ def same_places(d: Discourse, node: Node, loop: Step | None) -> bool:
     return all(each in known for each in loop.items.items)
 
 
-def found_places(d: Discourse, tell: str, found: str) -> Steps:
+def found_places(d: Discourse, tell: str, found: str, places: Value | None = None) -> Steps:
     number = Length(Recall(found))
+    if tell == "share" and places is not None:
+        return [d.say("share_of_places", share=Share(number, how_many(places)))]
     if tell == "many":
         return [d.say("so_many_places", number=number)]
     none, some = d.say("no_such_places"), d.say("such_places", places=Recall(found))
@@ -363,6 +367,10 @@ def found_places(d: Discourse, tell: str, found: str) -> Steps:
     elif tell == "all":
         none, some = d.say("yes_all"), d.say("no_not_these", places=Recall(found))
     return [If(Compare(number, "==", Number(0)), (none,), (some,))]
+
+
+def how_many(places: Value) -> Value:
+    return Number(len(places.items)) if isinstance(places, Items) else Length(places)
 
 
 @meaning("compared")

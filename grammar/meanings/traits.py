@@ -97,11 +97,15 @@ def trait_asked(d: Discourse, node: Node) -> Trait:
 def trait_holds(d: Discourse, node: Node) -> Condition:
     """ "if the kitchen is empty", "if it has no stapler": found out there; "if none of them is
     empty": on the whole round (`grammar.meanings.found_once`)."""
+    from grammar.meanings.some_places import at_none
+
     place: Value | None = d.get(node, "trait_place")
     none = node.production.fixed.get("of_round") == "none"
     asked_for = about_answer(d, node) if place is None and not none else None
     if asked_for is not None:  # "ask him whether he has a pain. If he has a pain, ..."
         return asked_for
+    if none and not asked_yet(d) and (of_kind := at_none(d, node)) is not None:
+        return of_kind
     if none and asked_yet(d) and not in_round(d):
         part = node.parts["place_trait"]
         return so_many_said(d, node, Said(part.start, part.end))

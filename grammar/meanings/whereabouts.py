@@ -10,6 +10,7 @@ from grammar.discourse import Discourse, Meeting, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.deliveries import Delivery, delivered_last, taken_back
 from grammar.meanings.finding import look_for
+from grammar.meanings.place_sets import names_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.searches import named_places, searched, searches
 from grammar.plan import Call, ForEach, Items, Recall, Text, Value
@@ -20,7 +21,8 @@ def where_any(d: Discourse, node: Node) -> Where:
     """ "in the lobby or in the lounge", "in one of the three meeting rooms"."""
     kind: str | None = d.get(node, "kind")
     if kind is None:
-        places: list[Value] = [d.get(node, "place"), *d.get(node, "place_list")]
+        said = [d.get(node, "place"), *d.get(node, "place_list")]
+        places: list[Value] = [name for each in said for name in names_of(d, each)]
     else:
         places = [Text(each.name) for each in d.lexicon.place_kinds[kind]]
         number = d.get(node, "number")

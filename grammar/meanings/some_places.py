@@ -1,0 +1,143 @@
+"""Conditions on how many of several places something is true of: "any meeting room is free", "all
+labs are empty", "more than two wards have no wheelchair". It is found out on a round of them; where
+one such place is enough, that is what "there" is from then on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+from grammar.chart import Node
+from grammar.discourse import ANYONE, Discourse, Steps, Thing, as_value
+from grammar.meanings.best_places import Such, first_such
+from grammar.meanings.conditions import negated
+from grammar.meanings.deliveries import inside
+from grammar.meanings.gone_round import last_round, round_of
+from grammar.meanings.news import in_round
+from grammar.meanings.places import kind_places
+from grammar.meanings.registry import meaning
+from grammar.meanings.rounds import how_many
+from grammar.meanings.traits import for_each_place_such
+from grammar.plan import (
+    Call,
+    Collect,
+    Compare,
+    Condition,
+    If,
+    Items,
+    Length,
+    Number,
+    Recall,
+    Remember,
+    Share,
+    Value,
+)
+
+SOME_PLACES: Final = "some_places"
+
+
+@dataclass(frozen=True)
+class Claims:
+    """What is so if a condition on several places holds, and what if not."""
+
+    condition: Condition
+    yes: Call
+    no: Call
+
+
+@meaning(SOME_PLACES)
+def some_places(d: Discourse, node: Node) -> Condition:
+    return so_in(d, node, str(node.production.fixed.get("how", "some")))
+
+
+def at_none(d: Discourse, node: Node) -> Condition | None:
+    """ "none of the labs has a fan", where no round of them was spoken of before."""
+    if "kinds" not in node.parts or in_round(d) or last_round(d) is not None:
+        return None
+    return so_in(d, node, "none")
+
+
+def so_in(d: Discourse, node: Node, how: str) -> Condition:
+    such = places_in_question(d, node)
+    if how == "some" and not d.round.told_of:
+        return one_such(d, such)
+    found = d.variable("found")
+    so = such.trait.condition if how != "all" else negated(such.trait.condition)
+    noted = If(so, (Collect(found, Recall(such.variable)),))
+    d.pending += [
+        Remember(found, Items(())),
+        round_of(d, such.places, [*such.trait.first, noted], such.variable),
+    ]
+    d.at = d.with_person = None
+    d.away = True
+    condition = enough(d, node, how, Length(Recall(found)), such.places)
+    named = d.say("such_places", places=Recall(found))
+    yes, no = named, d.say("no_such_places")
+    if how == "all":
+        yes, no = d.say("yes_all"), d.say("no_not_these", places=Recall(found))
+    elif how == "none":
+        yes, no = no, yes
+    elif how != "some":
+        no = d.say("so_many_places", number=Length(Recall(found)))
+    d.round.claims = Claims(condition, yes, no)
+    d.met = None
+    return condition
+
+
+def places_in_question(d: Discourse, node: Node) -> Such:
+    part = node.parts.get("place")
+    if part is not None:  # "there is a free meeting room"
+        d.taking_apart = True
+        try:
+            such: Such = d.build(part)
+        finally:
+            d.taking_apart = False
+        return such
+    place = d.variable("place")
+    before = d.at, d.person, d.thing, d.thing_last
+    d.at = Recall(place)
+    trait = d.get(node, "place_trait")
+    d.at, d.person, d.thing, d.thing_last = before
+    return Such(kind_places(d, d.get(node, "kinds")), place, trait)
+
+
+def one_such(d: Discourse, such: Such) -> Condition:
+    """The first place that is so is where the robot stays, and what "there" means."""
+    going, place, none = first_such(d, such)
+    d.pending += going
+    d.round.such = place.name
+    d.round.claims = Claims(
+        negated(none), d.say("it_is_there", place=place), d.say("no_such_places")
+    )
+    d.at = d.place = place
+    thing = such.trait.thing
+    if thing is not None and thing.person and not such.trait.denied:
+        d.person, d.thing_last = Thing(thing.value, person=True, here=True, plural=True), False
+        d.with_person = None if thing.text != ANYONE else thing.value
+    elif thing is not None and not thing.person:
+        d.thing, d.thing_last = thing, True
+    return negated(none)
+
+
+def enough(d: Discourse, node: Node, how: str, number: Value, places: Value) -> Condition:
+    """Whether it is so in as many of the places as it has to be."""
+    match how:
+        case "some":
+            return Compare(number, ">", Number(0))
+        case "none" | "all":
+            return Compare(number, "==", Number(0))
+        case "most":
+            return Compare(Share(number, how_many(places)), ">", Number(50))
+    return Compare(number, d.get(node, "operator", "=="), as_value(d.get(node, "count")))
+
+
+@meaning("if_any_such")
+def if_any_such(d: Discourse, node: Node) -> Steps:
+    """ "if any lab has no stapler, bring one there": to each of them; "if any lab is free, take the
+    visitor there": to one."""
+    if not any(each.means == "guide" for each in inside(node.parts["steps"])):
+        return for_each_place_such(d, node)
+    outer, d.pending = d.pending, []
+    condition = one_such(d, places_in_question(d, node))
+    before, d.pending = d.pending, outer
+    return [*before, If(condition, tuple(d.build(node.parts["steps"])))]
