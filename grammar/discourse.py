@@ -408,7 +408,9 @@ class Discourse:
 
     def may_be(self, person: Thing, start: int, end: int) -> bool:
         """Whether a pronoun may stand for a person, by how that person was spoken of before."""
-        gender = self.gender(start, end)
+        objects = self.language.speech.get("object_genders", {})  # "va la chercher": no article
+        alone = objects.get(self.tokens[start].norm) if end - start == 1 else None
+        gender = self.gender(start, end) or alone
         return gender is None or self.may_have(person, gender)
 
     def may_have(self, person: Thing, gender: str) -> bool:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Final
 
 from grammar.chart import Leaf, Node, TooMuch
 from grammar.language import Language
-from grammar.slots import UNKNOWN_NAME, command_words
+from grammar.slips import command_words
+from grammar.slots import UNKNOWN_NAME
 
 if TYPE_CHECKING:
     from grammar.understand import Reader

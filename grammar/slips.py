@@ -206,10 +206,45 @@ def spellings(
                 else misspelt(token.norm, language, lexicon)
             )
             if capital_nouns and token.capital and at and tokens[at - 1].kind != "mark":
-                near = tuple(each for each in near if each not in language.closed)  # "Milch"
+                near = tuple(each for each in near if each not in no_nouns(language))  # "Milch"
             if near:
                 found[at] = near
     return found
+
+
+@functools.cache
+def command_words(language: Language) -> frozenset[str]:
+    """The words that a command can begin with."""
+    network = language.network
+    words: set[str] = set()
+
+    def visit(rule: int, seen: set[int]) -> None:
+        if rule in seen or network.starts[rule] < 0:
+            return
+        seen.add(rule)
+        state = network.states[network.starts[rule]]
+        words.update(state.words)
+        for callee, _, _ in state.calls:
+            visit(callee, seen)
+
+    for rule in ("command", "summary"):
+        if rule in language.rules:
+            visit(network.rule(rule), set())
+    others = language.speech.get("not_command_words", ())
+    return frozenset(words).difference(*map(language.tokens_of, others))
+
+
+@functools.cache
+def no_nouns(language: Language) -> frozenset[str]:
+    """Words that a noun cannot be a slip of: "die Leiter" is no "leider", and no "leite"."""
+    looks = (words for each in ("attribute", "superlative") for words in _listed(language, each))
+    said_anywhere = (word for words in (*language.fillers, *looks) for word in words)
+    return language.closed | command_words(language) | frozenset(said_anywhere)
+
+
+def _listed(language: Language, name: str) -> Iterator[tuple[str, ...]]:
+    for words in language.lists.get(name, {}).values():
+        yield from words
 
 
 @functools.cache

@@ -13,10 +13,9 @@ from typing import Any, Final
 
 from grammar.chart import CORRECTION, Corrected, Match, Slot
 from grammar.freetext import Judge
-from grammar.language import Language
 from grammar.names import Names, Trie
 from grammar.numerals import Numerals
-from grammar.slips import plain_forms
+from grammar.slips import command_words, plain_forms
 from grammar.tokens import COLON, COMMA, STOP, Token
 from grammar.wordforms import singular
 
@@ -493,25 +492,3 @@ class Slots:
             cost = UNKNOWN_NAME + FREE_WORD * (position + 1 - at - token.capital)
             matches.append((position + 1, cost, None))
         return matches
-
-
-@functools.cache
-def command_words(language: Language) -> frozenset[str]:
-    """The words that a command can begin with."""
-    network = language.network
-    words: set[str] = set()
-
-    def visit(rule: int, seen: set[int]) -> None:
-        if rule in seen or network.starts[rule] < 0:
-            return
-        seen.add(rule)
-        state = network.states[network.starts[rule]]
-        words.update(state.words)
-        for callee, _, _ in state.calls:
-            visit(callee, seen)
-
-    for rule in ("command", "summary"):
-        if rule in language.rules:
-            visit(network.rule(rule), set())
-    others = language.speech.get("not_command_words", ())
-    return frozenset(words).difference(*map(language.tokens_of, others))

@@ -39,8 +39,8 @@ from grammar.refusals import (
     why_not,
 )
 from grammar.requests import Request
-from grammar.slips import fillers_by_first, mended, perfects, spellings, swapped_back
-from grammar.slots import Slots, command_words
+from grammar.slips import command_words, fillers_by_first, mended, perfects, spellings, swapped_back
+from grammar.slots import Slots
 from grammar.so_many import with_numbers
 from grammar.speech import speech
 from grammar.tidy import Unbound, charging_last, is_one_of_each, returning, scoped, without_unused

@@ -286,7 +286,9 @@ def tell_lookout(d: Discourse, person: Thing | None) -> Steps | None:
 @meaning("look_now")
 def look_now(d: Discourse, node: Node) -> Steps:
     """ "Is there a mug in the kitchen? Go and look ...": that is what is done already."""
-    if d.news is None and d.report is None and d.round.lookout is None and d.round.such is None:
+    told = bool(d.done) and d.told == d.done[-1]  # "is there a mug anywhere? Go and look"
+    asked = d.news or d.report or d.round.lookout or d.round.such
+    if not told and asked is None:
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
     return []

@@ -9,6 +9,7 @@ from typing import Any, Final
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where, capital
 from grammar.doubts import NotUnderstood
+from grammar.freetext import words_for
 from grammar.meanings.answered import says_the_same
 from grammar.meanings.asking import Audience, asked, audience, put, remember_answer
 from grammar.meanings.descriptions import described
@@ -195,6 +196,7 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
         and d.thing is None
         and d.place != Recall(name)
         and not _no_thing(d, counted)
+        and not _no_thing(d, question.parts.get("aux"))
     ):
         d.thing, d.thing_last = Thing(Recall(name)), False  # "ask what they need and bring it"
     elif "noun" in question.parts and d.place != Recall(name):
@@ -203,6 +205,9 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
     if isinstance(about, Node) and any(each in about.parts for each in ("noun", "object")):
         start, end = without_little_words(d, about.start, about.end)
         d.thing, d.thing_last = Thing(Text(d.noun_words(start, end))), False
+    if (lost := sought_after(d, question)) is not None:
+        d.thing, d.thing_last = lost, True
+        return
     numbers = all(each.isdigit() for each in options)
     if "options" in question.parts and not numbers and d.place != Recall(name):
         d.thing, d.thing_last = Thing(Recall(name)), False  # "what they want: tea or coffee"
@@ -230,6 +235,28 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
             d.thing_last = False
             if d.thing is not None and isinstance(d.thing.value, Text):
                 asks_who_has(d, question, d.thing.value)
+
+
+def sought_after(d: Discourse, question: Node) -> Thing | None:
+    """The thing that somebody is asked the place of: "where the key is"."""
+    words = question.parts.get("wh") or question.parts.get("aux")
+    where = set(d.language.speech.get("asks_where", ()))
+    if words is None or not where & set(d.norms(words.start, words.end)):
+        return None
+    about = question.parts.get("subject") or question.parts.get("rest")
+    if about is None or d.tokens[about.start].norm in d.language.words_called("speakers"):
+        return None
+    first, definite = about.start, words_for(d.language).definite
+    if not {"subject", "article", "aux"} & question.parts.keys():  # "where she put the key"
+        at = [n for n in range(about.start, about.end - 1) if d.tokens[n].norm in definite]
+        if not at:
+            return None
+        first = at[-1]
+    start, end = without_little_words(d, first, about.end)
+    if names_people(d, start, end) or people_named(d, start, end) or places_named(d, start, end):
+        return None
+    what = d.noun_words(start, end)
+    return Thing(Text(what), noun=head_word(what, d.language)) if what else None
 
 
 def asked_about(d: Discourse, start: int, end: int) -> Thing | None:

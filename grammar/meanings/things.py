@@ -48,7 +48,7 @@ from grammar.meanings.speaking import sentence_form
 from grammar.meanings.strangers import announced_one
 from grammar.meanings.thing_lists import all_listed, off_the_list, told_where_all_are
 from grammar.plan import Call, ForEach, Items, Recall, Step, Text, Value
-from grammar.slots import command_words
+from grammar.slips import command_words
 from grammar.tidy import nodes
 from grammar.wordforms import head_word, singular
 
