@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from grammar.chart import Node
+from grammar.chart import Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Thing, Where
 
 
@@ -43,7 +43,7 @@ def host_told(d: Discourse, node: Node) -> None:
     nothing was done with the visitor."""
     part = node.parts.get("person_ref")
     host: Thing | None = d.host
-    if host is None or d.done or not isinstance(part, Node) or part.means != "person_pronoun":
+    if host is None or d.done or part is None or what_it_means(part) != "person_pronoun":
         return
     if d.may_be(host, part.start, part.end):
         d.person = host

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from grammar.chart import Node
+from grammar.chart import Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.carrying import deliver
@@ -48,7 +48,7 @@ def guide_to_person(d: Discourse, node: Node) -> Steps:
     before = d.person
     thing = None if things else led(d, node)
     to = node.parts["other"]
-    if thing is not None and isinstance(to, Node) and to.means == "person_pronoun":
+    if thing is not None and isinstance(to, Node) and what_it_means(to) == "person_pronoun":
         someone_else = before is not None and before.value != thing.value
         d.person = before if someone_else else d.one_called(to.start, to.end)  # "her" is no visitor
     other: Thing = d.get(node, "other")

@@ -34,7 +34,7 @@ from grammar.meanings.places import kind_places, sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.rounds import found_places, summed_up
 from grammar.meanings.searches import named_places, search_in, searched, searches
-from grammar.meanings.sights import named_some
+from grammar.meanings.sights import named_some, told_where
 from grammar.meanings.traits import Trait
 from grammar.plan import Ask, Call, Collect, End, ForEach, Holds, If, Items, Recall, Remember, Value
 
@@ -232,6 +232,8 @@ def told_of_search(d: Discourse, tell: str) -> Told:
     """ "look for a ladder in the lobby and tell Bob whether there is one", "check the lobby and the
     hall for it and tell me where it is": of the search that the last step is."""
     condition = searched(d.done[-1] if d.done else None)
+    if condition is None and tell == "which":  # "I am looking for Bob, tell me where he is"
+        return told_where(d, d.thing if d.thing_last else d.person)
     if condition is None:
         raise NotUnderstood(d.language.phrase("which_places"))
     looked = searches(condition)

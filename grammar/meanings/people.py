@@ -13,12 +13,12 @@ from grammar.meanings.conditions import condition_of
 from grammar.meanings.deliveries import inside
 from grammar.meanings.finding import look_for, meet, named, speak_to, where_sent
 from grammar.meanings.genders import means_thing
-from grammar.meanings.hosts import place_of_named
+from grammar.meanings.hosts import place_just_named, place_of_named
 from grammar.meanings.inquiries import as_many_as_answered
 from grammar.meanings.leading import lead
 from grammar.meanings.news import BACK
 from grammar.meanings.persons import is_me
-from grammar.meanings.places import kind_places
+from grammar.meanings.places import kind_places, own_place
 from grammar.meanings.registry import meaning
 from grammar.meanings.speaking import ready_made, spoken
 from grammar.meanings.strangers import announced_one
@@ -80,6 +80,15 @@ def left_behind(d: Discourse, node: Node, person: Thing) -> Steps:
     return [BACK]
 
 
+def led_on(d: Discourse, person: Thing, place: Value | None) -> Steps | None:
+    """ "Emma abholen und zum Röntgen bringen": whoever was just fetched is led straight there."""
+    fetched = d.done[-1] if d.done else None
+    if place is None or fetched is None or fetched is not d.fetched:
+        return None
+    leave_out_fetching(d)
+    return [lead(d, person, place)]
+
+
 def leave_out_fetching(d: Discourse) -> None:
     """Who is fetched and then led somewhere is not brought here first, nor to be asked where to."""
     at = next((at for at, step in enumerate(d.done) if step is d.fetched), None)
@@ -115,7 +124,7 @@ def led(d: Discourse, node: Node) -> Thing:
     guest = d.led
     absent = guest is not None and d.missing is not None and d.missing.value == person.value
     part = node.parts.get("person_ref")
-    of_guest = isinstance(part, Node) and part.means == "person_pronoun"
+    of_guest = isinstance(part, Node) and what_it_means(part) == "person_pronoun"
     missing = d.missing is not None and d.missing.value == person.value and person.known
     if guest is None and missing and isinstance(part, Node) and of_guest and d.is_plural(part):
         host = named(d, person)  # "if Bob is not in, take them to the lounge"
@@ -191,6 +200,12 @@ def guide_nowhere(d: Discourse, node: Node) -> Steps:
         return []  # "Bob wants to go to the kitchen, show him the way"
     if last is not None and Call("answer", {}) in nodes((last,)):
         return []  # "Bob has a question, help him"
+    if (asked := place_just_named(d)) is not None:  # "... Bob or Clara, and take him"
+        person = led(d, node)
+        return [*meet(d, person), lead(d, person, asked)]
+    if d.host is not None and not d.done and (theirs := own_place(d, d.host)) is not None:
+        person = led(d, node)  # "he has an appointment with Clara, take him"
+        return [*meet(d, person), lead(d, person, theirs)]
     if d.answer is not None and d.place == Recall(d.answer):
         return guide_where_wanted(d, node)  # "ask where she wants to go and accompany her"
     who = named(d, led(d, node))

@@ -108,6 +108,10 @@ def place_there(d: Discourse, node: Node) -> Value:
     if named is not None:
         d.place = named
         return named
+    if d.host is not None and not d.done:  # "he has an appointment with Clara. Take him there"
+        if (theirs := own_place(d, d.host)) is None:
+            raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
+        return theirs
     unsaid = d.place in (None, Recall(START))
     if unsaid and (d.round.such is not None or first_of_round(d)):
         return Recall(str(d.round.such))  # "find an empty room, come back, and take them there"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from grammar.chart import Leaf, Node
+from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings import news
@@ -20,6 +20,7 @@ from grammar.meanings.surveys import asked_yet, in_loop
 from grammar.naming import person_called, place_called, some, the
 from grammar.pieces import leaves
 from grammar.plan import Ask, Call, Holds, If, Items, Recall, Remember, Text, Value
+from grammar.tidy import mentions
 from grammar.wordforms import plural, singular
 
 
@@ -363,6 +364,15 @@ def where_found(d: Discourse, node: Node) -> Steps:
     if said is not None:
         return said.words
     thing: Thing = d.get(node, "thing") or d.get(node, "person_ref")
+    part, last = node.parts.get("person_ref"), d.done[-1] if d.done else None
+    again = thing.pronoun or (part is not None and what_it_means(part) == "person_pronoun")
+    if (
+        again
+        and isinstance(last, If)
+        and last == d.told
+        and mentions((last.condition,), thing.value)
+    ):
+        return []  # "where is Victor? Go and see where he is": looked for already
     if thing.text == ANYONE and (thing.pronoun or thing.here):  # "where is that?", of a place
         raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
     if thing.person and thing.every:  # "where is everyone?": a search ends with the first

@@ -10,6 +10,7 @@ from grammar.discourse import Discourse, Steps, Thing, capital
 from grammar.doubts import NotUnderstood
 from grammar.freetext import words_for
 from grammar.language import Language, languages, load_language
+from grammar.meanings.about_guests import host_told
 from grammar.meanings.finding import speak_to
 from grammar.meanings.persons import is_me
 from grammar.meanings.references import answers_in
@@ -128,6 +129,7 @@ def say_it(d: Discourse, node: Node) -> Steps:
     from grammar.meanings.polls import said_by
     from grammar.meanings.reports import known_words, tell_speaker, told_again
 
+    host_told(d, node)
     person: Thing | None = d.get(node, "person_ref")
     told = node.parts.get("person_ref")
     of_whom = said_by(d, node.start if told is None else told.end, node.end)

@@ -147,6 +147,11 @@ def put(d: Discourse, node: Node) -> Steps:
         return so_many
     on_it = where_gone_to(d, node)
     thing: Thing = whereto_told(d, d.get(node, "thing") or thing_it(d, node))
+    if thing.person and "thing" not in node.parts and where is not None:
+        from grammar.meanings.people import led_on
+
+        if (further := led_on(d, thing, d.build(where).place)) is not None:
+            return further
     if thing.person and thing.known:  # "otherwise put it there", where only Bob was spoken of
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("cannot_do", what=words), gap=(node.start, node.end))
