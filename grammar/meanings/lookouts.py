@@ -232,7 +232,9 @@ def told_of_search(d: Discourse, tell: str) -> Told:
     """ "look for a ladder in the lobby and tell Bob whether there is one", "check the lobby and the
     hall for it and tell me where it is": of the search that the last step is."""
     condition = searched(d.done[-1] if d.done else None)
-    if condition is None and tell == "which":  # "I am looking for Bob, tell me where he is"
+    if (
+        condition is None and tell == "which" and d.answer is None
+    ):  # "I am looking for Bob, tell me where he is"
         return told_where(d, d.thing if d.thing_last else d.person)
     if condition is None:
         raise NotUnderstood(d.language.phrase("which_places"))

@@ -141,9 +141,14 @@ def guide_back(d: Discourse, node: Node) -> Steps:
     pronoun = node.parts.get("person_ref")
     if pronoun is not None and not leads_people_only(d, node) and means_thing(d, pronoun):
         return fetch_it(d)
-    thing = led(d, node)
-    steps = meet(d, thing)
-    return [*steps, lead(d, thing, d.start())]
+    return led_back(d, led(d, node))
+
+
+def led_back(d: Discourse, person: Thing) -> Steps:
+    if d.done and d.done[-1] is d.fetched and person.value == d.with_person:
+        return []  # "fetch Clara and bring her here"
+    steps = meet(d, person)
+    return [*steps, lead(d, person, d.start())]
 
 
 @meaning("fetch_person")

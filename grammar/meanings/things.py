@@ -152,6 +152,10 @@ def put(d: Discourse, node: Node) -> Steps:
 
         if (further := led_on(d, thing, d.build(where).place)) is not None:
             return further
+    if thing.person and node.production.fixed.get("brought"):
+        from grammar.meanings.people import led_back
+
+        return led_back(d, thing)  # "va chercher Clara et ramène-la"
     if thing.person and thing.known:  # "otherwise put it there", where only Bob was spoken of
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("cannot_do", what=words), gap=(node.start, node.end))
