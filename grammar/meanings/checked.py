@@ -11,6 +11,7 @@ from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report, not_back_yet
 from grammar.meanings.surveys import asked_before, in_loop, of_one_question
 from grammar.plan import Holds, If, Recall, Remember, Truth, Value
+from grammar.wordorder import direct_clause
 
 
 @meaning("whether_told")
@@ -22,8 +23,10 @@ def whether_told(d: Discourse, node: Node) -> news.Told:
     before, d.pending = d.pending, []
     d.checked = d.variable("so")
     no, yes = Remember(d.checked, Truth(False)), Remember(d.checked, Truth(True))
-    clause = d.words(part.start, part.end)
+    clause = direct_clause(d, part.start, part.end)
     told_yes, told_no = d.say("so_it_is", clause=clause), d.say("not_so", clause=clause)
+    if node.production.fixed.get("asked"):  # "is meeting room 2 free?"
+        told_yes, told_no = d.say("so_yes"), d.say("so_no")
     told = If(Holds(Recall(d.checked)), (told_yes,), (told_no,))
     d.report = None
     return news.Told([told], [*before, no, If(condition, (yes,))])

@@ -202,7 +202,10 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
     elif "noun" in question.parts and d.place != Recall(name):
         d.thing, d.thing_last = Thing(Recall(name)), False  # "ask for her favourite fruit"
     about = question.parts.get("subject")
-    if isinstance(about, Node) and any(each in about.parts for each in ("noun", "object")):
+    if isinstance(about, Leaf) and about.slot in ("noun", "object"):  # "si la soupe est prête"
+        if not names_people(d, about.start, about.end):
+            d.thing, d.thing_last = Thing(Text(d.noun_words(about.start, about.end))), True
+    elif isinstance(about, Node) and any(each in about.parts for each in ("noun", "object")):
         start, end = without_little_words(d, about.start, about.end)
         d.thing, d.thing_last = Thing(Text(d.noun_words(start, end))), False
     if (lost := sought_after(d, question)) is not None:
