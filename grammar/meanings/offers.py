@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing
+from grammar.doubts import NotUnderstood
 from grammar.meanings.asking import audience, put, remember_answer
 from grammar.meanings.carrying import deliver
 from grammar.meanings.registry import meaning
@@ -36,6 +37,8 @@ def offer(d: Discourse, node: Node) -> Steps:
     said: Thing = d.get(node, "person_ref")
     person = several_of_a_kind(d, node, said) or said
     thing: Thing = d.get(node, "thing")
+    if thing.pronoun and person.plural:  # there is one of it, and it is not for all of them
+        raise NotUnderstood(d.language.phrase("one_person"))
     if thing.pronoun:  # "get a coke and offer it to Bob": it is there already
         return deliver(d, thing, person, None)
     whom = audience(d, person)
