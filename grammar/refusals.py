@@ -18,8 +18,6 @@ from grammar.tokens import Token
 from grammar.wordforms import singular
 from robot_api.methods import METHODS
 
-ENDING: Final = 2
-"""Letters by which a plural is longer."""
 IN_HAND: Final = frozenset({"grab", "give", "put"})
 SPOKEN: Final = frozenset({"say", "ask", "show"})
 SEEN: Final = frozenset({"find", "sees", "count", "wait_for", "describe"})
@@ -138,7 +136,7 @@ def _headed(words: tuple[str, ...], name: tuple[str, ...], language: Language) -
     head = next((at for at, word in enumerate(words) if at and word in ends), len(words))
     first = 0 if language.speech.get("head_first") else max(0, head - len(name))
     return len(words) >= first + len(name) and all(
-        word.startswith(each) and len(word) - len(each) <= ENDING
+        each in (word, singular(word, language))  # "pasta" is no past
         for word, each in zip(words[first:], name, strict=False)
     )
 

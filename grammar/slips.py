@@ -9,6 +9,8 @@ never where they stand: free text is still taken from the original.
 from __future__ import annotations
 
 import functools
+import itertools
+import operator
 from collections import Counter
 from collections.abc import Collection, Iterator
 from dataclasses import replace
@@ -78,7 +80,24 @@ def mended(
 ) -> tuple[Token, ...]:
     """The tokens with joined words parted and verbs in the form that commands begin with."""
     parted = [part for token in tokens for part in _parted(token, language, known)]
-    return tuple(_in_plain_form(parted, language, verbs))
+    return tuple(_in_plain_form(_opened(parted, language), language, verbs))
+
+
+def _opened(tokens: list[Token], language: Language) -> list[Token]:
+    """ "Bob's in the lab" as "Bob is in the lab", by the words that nothing that he owns begins
+    with."""
+    data = language.speech.get("possessive_or_verb")
+    if data is None:
+        return tokens
+    mark = str(language.speech.get("possessive", "")).strip()
+    opened = []
+    for at, token in enumerate(tokens):
+        follow = [each.norm for each in tokens[at + 1 : at + 3]]
+        if follow[:1] and follow[0] in data["between"]:  # "Bob's waiting in the lab"
+            follow.pop(0)
+        is_verb = token.norm == mark and follow[:1] and follow[0] in data["before"]
+        opened.append(replace(token, norm=str(data["verb"])) if is_verb else token)
+    return opened
 
 
 def _parted(token: Token, language: Language, known: Collection[str]) -> list[Token]:
@@ -204,6 +223,7 @@ def spellings(
                 misspelt_little(token.norm, language, lexicon)
                 if short
                 else misspelt(token.norm, language, lexicon)
+                or misspelt_beside(tokens, at, language, lexicon)
             )
             if capital_nouns and token.capital and at and tokens[at - 1].kind != "mark":
                 near = tuple(each for each in near if each not in no_nouns(language))  # "Milch"
@@ -268,6 +288,31 @@ def misspelt_little(word: str, language: Language, lexicon: Lexicon) -> tuple[st
             and any(each[:at] + each[at + 1 :] == word for at in range(1, len(each)))
         ]
     return tuple(near[:3])
+
+
+def misspelt_beside(
+    tokens: tuple[Token, ...], at: int, language: Language, lexicon: Lexicon
+) -> tuple[str, ...]:
+    """Words with one letter that is another one here, which stand beside one of its neighbours in
+    a name: "living toom"."""
+    word = tokens[at].norm
+    beside = _pairs(language, lexicon)
+    before = tokens[at - 1].norm if at else ""
+    after = tokens[at + 1].norm if at + 1 < len(tokens) else ""
+    named = {second for first, second in beside if first == before}
+    named |= {first for first, second in beside if second == after}
+    return tuple(
+        each
+        for each in sorted(named)
+        if len(each) == len(word) and sum(map(operator.ne, each, word)) == 1
+    )
+
+
+@functools.lru_cache(maxsize=16)
+def _pairs(language: Language, lexicon: Lexicon) -> frozenset[tuple[str, str]]:
+    """Words that stand one after the other in a name."""
+    named = map(language.tokens_of, names_of(language, lexicon).spelled)
+    return frozenset(pair for words in named for pair in itertools.pairwise(words))
 
 
 @functools.lru_cache(maxsize=2048)

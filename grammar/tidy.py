@@ -213,6 +213,8 @@ def _returning(steps: tuple[Step, ...], here: Value) -> tuple[Step, ...]:
             else:
                 step = msgspec.structs.replace(step, steps=(*step.steps, back))
         if isinstance(step, Call) and step.method == "goto" and "place" in step.arguments:
+            if result[-1:] == [step]:
+                continue  # "go to the hall, and when you see Bob there, ..."
             here = step.arguments["place"]
         result.append(step)
     return tuple(result)

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 from grammar.lexicon import Lexicon
-from grammar.plan import Ask, Call, Choice, If, Not, Plan, Recall, Remember, Text, Value
+from grammar.plan import Ask, Call, Choice, If, Not, Plan, Recall, Remember, Text, Value, While
 
 Form = str | list["Form"]
 """A logical form: an atom, or a list of forms."""
@@ -54,6 +54,9 @@ POSES: Final = ("lying", "sitting", "standing")
 GESTURES: Final = ("waving", "raising", "pointing")
 DESCRIBED: Final = frozenset({"pose", "gender"})
 """What the description of a person tells."""
+
+NAME_ASKED: Final = "What is your name?"
+"""The question that finds out somebody's name; the form says only that the name is told."""
 
 TOLD: Final = frozenset({"count", "describe", "people"})
 """Methods whose result is what is told."""
@@ -236,6 +239,10 @@ class _Walk:
                 for ask in _asks(step.condition):
                     self.call(ask.method, ask.arguments, None)
                 self.steps(step.otherwise if isinstance(step.condition, Not) else step.then)
+            elif isinstance(step, While):  # "all cups in the kitchen": as long as one is found
+                for ask in _asks(step.condition):
+                    self.call(ask.method, ask.arguments, None)
+                self.steps(step.steps)
             elif isinstance(step, Remember):
                 for ask in _asks(step.value):
                     self.call(ask.method, ask.arguments, step.name)
@@ -338,7 +345,14 @@ class _Walk:
         self._speak(Frame("say", frozenset({"what=answer"})))
 
     def _ask(self, arguments: dict[str, Value], save_as: str | None) -> None:
-        self._speak(Frame("ask"))
+        if save_as is None or _text(arguments["question"]) != NAME_ASKED:
+            self._speak(Frame("ask"))
+            return
+        whom = self._here() - {"me"}
+        self._arrive()
+        self._met()
+        self.results[save_as] = _frame("say", {"asked=name"}, (f"thing.{each}" for each in whom))
+        self.whom = None
 
     def _tells_sights(self, step: If) -> bool:
         """Whether it says whether something was seen, and nothing else."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing
+from grammar.doubts import NotUnderstood
 from grammar.meanings.finding import speak_to
 from grammar.meanings.persons import guest_for
 from grammar.meanings.questions import turn_to_you
@@ -21,6 +22,8 @@ def ask_to(d: Discourse, node: Node) -> Steps:
     # Whoever else is spoken of is not the one who is asked: "sie soll ihn mir bringen".
     person: Thing | None = guest_for(d, node.parts.get("person_ref"), d.get(node, "person_ref"))
     d.message = node
+    if part is not None and verb_never(d, part.start):
+        raise NotUnderstood(d.language.phrase("not_understood", part=d.words(part.start, part.end)))
     kinds = ("to_you_asked", "to_you_who", "to_you")
     you = next(each for each in kinds if each in d.language.speech)
     text = turn_to_you(d, part.start, part.end, you, person) if part is not None else ""
@@ -52,6 +55,11 @@ def ask_to(d: Discourse, node: Node) -> Steps:
     if "phrase" not in node.production.fixed and isinstance(words, Text):
         d.request = Request(saying, words.value, person)
     return steps
+
+
+def verb_never(d: Discourse, at: int) -> bool:
+    """Whether no request begins with this word: "tell the man to the left a joke"."""
+    return d.norms(at, at + 1)[0] in d.language.speech.get("requests_never_begin", ())
 
 
 def _infinitive(d: Discourse, verb: Leaf | Node) -> str:

@@ -57,6 +57,7 @@ from grammar.meanings.searches import (
     searching_at,
     thing_sought,
 )
+from grammar.meanings.speaking import clause_of
 from grammar.meanings.turns import in_their_turn, of_whoever_says_so
 from grammar.plan import (
     Ask,
@@ -268,7 +269,7 @@ def only_told(part: Leaf | Node | None) -> bool:
 def found_out_either_way(d: Discourse, node: Node, before_it: Steps, condition: Condition) -> Steps:
     """ "see if there is a mug, then come back and tell me": also if there is none."""
     met, part = d.met, node.parts["condition"]
-    clause = d.words(part.start, part.end)
+    clause = clause_of(d, part)
     yes = found_claim(d, condition, met) or d.say("so_it_is", clause=clause)
     no = found_claim(d, condition, turned(met)) or d.say("not_so", clause=clause)
     name = d.variable("seen")

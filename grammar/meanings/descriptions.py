@@ -26,9 +26,9 @@ def mods(d: Discourse, node: Node) -> list[Where | str]:
     if isinstance(first, list):
         found = first
     words = d.norms(node.parts["first"].start, node.parts["first"].end)
-    beside = what_it_means(part) == "relation" and words[0] not in d.language.speech.get(
-        "on_it", ()
-    )
+    kind = what_it_means(part)
+    on_it = words[0] in d.language.speech.get("on_it", ())
+    beside = kind == "descriptor_fixed" or (kind == "relation" and not on_it)
     if words[-1] in d.language.speech.get("pointing", ()) and not beside:  # but "behind it"
         found = []  # "the woman there": nothing that tells her from others
     return [*found, *(d.get(node, "rest") or [])]

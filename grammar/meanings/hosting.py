@@ -69,7 +69,9 @@ def led_to(d: Discourse, person: Thing | None, other: Thing) -> Steps:
         raise NotUnderstood(d.language.phrase("where_is_person", person=words))
     if person.value == d.with_person:
         leave_out_fetching(d)
-    steps = [*meet(d, person), lead(d, person, place)]
+    steps: Steps = [*meet(d, person), lead(d, person, place)]
+    if other.place is not None and not other.plural:  # "to the man waving in the hall": up to him
+        steps.append(Call("find", {"thing": other.value, "place": place}))
     d.person_on_arrival = d.person  # "take the visitor to Clara and tell her ...": it is her place
     return steps
 

@@ -52,13 +52,21 @@ def names_here(d: Discourse, node: Node) -> Report | Steps:
         person = replace(person, place=None)
     elif person.here or d.with_person == person.value:  # wherever that is by now
         person = replace(person, place=None)
-    told_apart = person.noun not in ("", ANYONE, person.text) and not person.pronoun
-    if told_apart and not (
-        person.known or person.plural
-    ):  # "the woman at the sofa": a description says her name
+    if is_told_apart(d, person):  # "the woman at the sofa": a description says her name
         look = Ask("describe", {"thing": sought(d, person)})
         return Report("only", look, person.place, name="description")
     return Report("people_seen", Ask("people"), person.place, name="names")
+
+
+def is_told_apart(d: Discourse, person: Thing) -> bool:
+    """Whether one person is meant, and not only by the place they are at: "the woman at the sofa",
+    "the person sitting there"."""
+    if person.known or person.plural or person.pronoun:
+        return False
+    if person.noun not in ("", ANYONE, person.text):
+        return True
+    before, _, behind = person.text.partition(ANYONE)
+    return bool(before) or not d.language.closed.issuperset(behind.split()[:1])
 
 
 def names_whom(d: Discourse, node: Node) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from grammar.chart import Node
+from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, capital
 from grammar.doubts import NotUnderstood
 from grammar.freetext import words_for
@@ -78,6 +78,15 @@ def spoken(d: Discourse, node: Node) -> Value:
 def sentence_form(text: str) -> str:
     text = text.strip().strip('"“”„«»').strip()
     return capital(text) if text[-1:] in ".!?…" else capital(text) + "."
+
+
+def clause_of(d: Discourse, part: Leaf | Node) -> str:
+    """What is or is not so, of a condition that is checked: "Bob is asleep" of "see whether Bob is
+    asleep"."""
+    opens = d.language.speech.get("whether", ())
+    norms = d.norms(part.start, part.end)
+    at = next((at for at, word in enumerate(norms[:-1]) if word in opens), -1)
+    return d.words(part.start + at + 1, part.end)
 
 
 def put_for(d: Discourse, words: str, text: str) -> str:

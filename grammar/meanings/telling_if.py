@@ -33,6 +33,7 @@ from grammar.meanings.news import go_back
 from grammar.meanings.persons import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import coming_back, told_again
+from grammar.meanings.speaking import clause_of
 from grammar.plan import (
     Condition,
     If,
@@ -101,6 +102,6 @@ def told_either_way(d: Discourse, node: Node, condition: Condition) -> Steps:
     """ "tell me if it is the same": also if it is not."""
     person: Thing = d.get(node, "person_ref")
     part = node.parts["condition"]
-    clause = d.words(part.start, part.end)
+    clause = clause_of(d, part)
     told = If(condition, (d.say("so_it_is", clause=clause),), (d.say("not_so", clause=clause),))
     return [*go_back(d, []), told] if is_me(person) else speak_to(d, person, [told])

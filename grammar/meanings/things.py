@@ -436,6 +436,8 @@ def bring_each(d: Discourse, node: Node) -> Steps:
 def goes_on(d: Discourse, at: int) -> bool:
     """Whether the words before a token belong to the same clause: no mark and no "and" parts
     them."""
+    while at and (d.tokens[at - 1].norm,) in d.language.fillers:  # "robot which cup is blue"
+        at -= 1
     before = d.tokens[at - 1] if at else None
     joins = d.language.speech.get("joins", ())
     return before is not None and before.kind != "mark" and before.norm not in joins
@@ -460,10 +462,11 @@ def statement(d: Discourse, node: Node) -> Steps:
     posture = node.parts.get("activity")
     if posture is not None and not thing.known:
         thing = replace(thing, value=Text(f"{thing.text} {d.described_by(posture)}"))
-    if not (thing.person and thing.known):  # "behind the bowl is a cup", "a man here is waving"
-        more = described(d, thing.text, node)
-        thing = replace(thing, value=more.value, place=more.place or thing.place)
-        thing = replace(thing, furniture=more.furniture or thing.furniture)
+    more = described(d, thing.text, node)  # "behind the bowl is a cup", "Bob is waiting at the door"
+    thing = replace(thing, place=more.place or thing.place)
+    thing = replace(thing, furniture=more.furniture or thing.furniture)
+    if not (thing.person and thing.known):  # "a man here is waving"
+        thing = replace(thing, value=more.value)
     if spot is not None:
         thing = replace(thing, place=spot.place, furniture=spot.furniture)
     thing = all_there_are(thing)
