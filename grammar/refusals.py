@@ -131,12 +131,13 @@ def out_of_range(plan: Plan, language: Language) -> str | None:
 
 
 def _headed(words: tuple[str, ...], name: tuple[str, ...], language: Language) -> bool:
-    """Whether a noun phrase speaks of this: "blood pressure of Bob" of blood pressure."""
+    """Whether a noun phrase speaks of this: "blood pressure of Bob" of blood pressure. Only whole
+    words count: pasta is no past."""
     ends = language.closed | set(language.speech.get("beside", ()))
     head = next((at for at, word in enumerate(words) if at and word in ends), len(words))
     first = 0 if language.speech.get("head_first") else max(0, head - len(name))
     return len(words) >= first + len(name) and all(
-        each in (word, singular(word, language))  # "pasta" is no past
+        each in (word, singular(word, language))
         for word, each in zip(words[first:], name, strict=False)
     )
 

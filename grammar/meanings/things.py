@@ -462,7 +462,7 @@ def statement(d: Discourse, node: Node) -> Steps:
     posture = node.parts.get("activity")
     if posture is not None and not thing.known:
         thing = replace(thing, value=Text(f"{thing.text} {d.described_by(posture)}"))
-    more = described(d, thing.text, node)  # "behind the bowl is a cup", "Bob is waiting at the door"
+    more = described(d, thing.text, node)  # "behind the bowl is a cup", "Bob waits at the door"
     thing = replace(thing, place=more.place or thing.place)
     thing = replace(thing, furniture=more.furniture or thing.furniture)
     if not (thing.person and thing.known):  # "a man here is waving"
