@@ -88,7 +88,9 @@ def not_said(plan: Plan, lexicon: Lexicon, language: Language) -> str | None:
 def _is_somebody(name: str, lexicon: Lexicon, language: Language) -> bool:
     """Whether something is a person by name, or as the language calls them."""
     named = any(each.name == name for each in lexicon.people)
-    return named or name in language.lists.get("person_kind", {})
+    kinds = language.lists.get("person_kind", {})
+    called = language.tokens_of(name)
+    return named or name in kinds or any(called in ways for ways in kinds.values())
 
 
 def _is_dangerous(words: Sequence[str], language: Language) -> bool:

@@ -22,6 +22,7 @@ import grammar.meanings.chosen
 import grammar.meanings.conditions
 import grammar.meanings.control
 import grammar.meanings.conversation
+import grammar.meanings.counts
 import grammar.meanings.descriptions
 import grammar.meanings.driving
 import grammar.meanings.exceptions
@@ -29,6 +30,7 @@ import grammar.meanings.exchanges
 import grammar.meanings.facts
 import grammar.meanings.found_places
 import grammar.meanings.further
+import grammar.meanings.gaps
 import grammar.meanings.holders
 import grammar.meanings.hosting
 import grammar.meanings.inquiries

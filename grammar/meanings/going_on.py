@@ -55,7 +55,17 @@ SPOKEN: Final = frozenset({"say", "ask", "gesture", "wait_for", "emotion"})
 STAYS_OUTSIDE: Final = frozenset(
     {
         *("news", "round_count", "compared"),
-        *("come_back", "go", "go_places", "go_person", "go_find", "dock", "stop", "bring_too"),
+        *(
+            "come_back",
+            "go",
+            "go_places",
+            "go_person",
+            "go_find",
+            "dock",
+            "stop",
+            "bring_too",
+            "bring_as_many",
+        ),
         *("for_each_place", "for_each_place_such", "check_each_place"),
         *("do_that_times", "do_that_again"),
         *("skip_empty", "ended", "tour", "tour_goes_on", "look_now", "round_check"),

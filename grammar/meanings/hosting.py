@@ -70,7 +70,8 @@ def led_to(d: Discourse, person: Thing | None, other: Thing) -> Steps:
     if person.value == d.with_person:
         leave_out_fetching(d)
     steps: Steps = [*meet(d, person), lead(d, person, place)]
-    if other.place is not None and not other.plural:  # "to the man waving in the hall": up to him
+    told_apart = other.known or " " in other.text
+    if other.place is not None and told_apart and not other.plural:  # "to the man waving there"
         steps.append(Call("find", {"thing": other.value, "place": place}))
     d.person_on_arrival = d.person  # "take the visitor to Clara and tell her ...": it is her place
     return steps

@@ -376,7 +376,11 @@ def where_is(d: Discourse, node: Node) -> Where:
 
 def home_of(d: Discourse, furniture: str) -> Value | None:
     """The place a piece of furniture stands in: where the robot is, or where the world says."""
-    homes = {each.inside for each in d.lexicon.furniture if each.name == furniture and each.inside}
+    homes = {
+        each.inside
+        for each in d.lexicon.furniture
+        if furniture in (each.name, *each.aliases) and each.inside
+    }
     if isinstance(d.at, Text) and d.at.value in homes:
         return d.at
     return Text(homes.pop()) if len(homes) == 1 else None

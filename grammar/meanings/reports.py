@@ -50,7 +50,7 @@ class Report:
     """What the phrase tells, found out when it is spoken."""
     place: Value | None = None
     """Where to find it out."""
-    words: tuple[tuple[str, str], ...] = ()
+    words: tuple[tuple[str, Value | str], ...] = ()
     """Fixed words of the phrase."""
     otherwise: str | None = None
     """The phrase for a value that is false; then `phrase` is for one that is true."""

@@ -36,6 +36,7 @@ from grammar.plan import (
     Value,
     While,
 )
+from grammar.tidy import LOOPS
 
 HANDED: Final = frozenset({"bring", "grab", "put"})
 """Commands that change where things are."""
@@ -49,8 +50,9 @@ def over_things(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
     if thing.place is None and d.taken_from is not None:
         thing = replace(thing, place=d.taken_from.place, furniture=d.taken_from.furniture)
     thing = where_told(d, thing)
-    if thing.place is None and d.at is not None:
-        thing = replace(thing, place=d.at)
+    put = last_deed(d)
+    if thing.place is None and d.at is not None and (put is None or put.method != "put"):
+        thing = replace(thing, place=d.at)  # but "..., and three pillows to ward b"
     at = d.at
     single = thing.single
     if thing.count is None:  # "them" are all of them
@@ -75,6 +77,15 @@ def over_things(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
         steps = [structs.replace(around, steps=(*around.steps[:-1], *steps))]
     d.thing, d.thing_last = thing, True
     return steps
+
+
+def last_deed(d: Discourse) -> Call | None:
+    """The last step, or that of the last round, if something was handed over or put down in it."""
+    said = d.done or next((steps for steps in reversed(d.around) if steps), [])
+    last: Step | None = said[-1] if said else None
+    while isinstance(last, LOOPS):
+        last = last.steps[-1]
+    return last if isinstance(last, Call) and last.method in ("give", "put") else None
 
 
 def rounds(d: Discourse, node: Node, thing: Thing, single: Thing, body: Steps) -> Steps:

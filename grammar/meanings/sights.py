@@ -65,8 +65,8 @@ def is_told_apart(d: Discourse, person: Thing) -> bool:
         return False
     if person.noun not in ("", ANYONE, person.text):
         return True
-    before, _, behind = person.text.partition(ANYONE)
-    return bool(before) or not d.language.closed.issuperset(behind.split()[:1])
+    before, someone, behind = person.text.partition(ANYONE)
+    return bool(someone) and (bool(before) or not d.language.closed.issuperset(behind.split()[:1]))
 
 
 def names_whom(d: Discourse, node: Node) -> bool:
@@ -77,8 +77,12 @@ def names_whom(d: Discourse, node: Node) -> bool:
 
 @meaning("who_came")
 def who_came(d: Discourse, node: Node) -> Report:
-    """ "who has come"."""
+    """ "who has come"; "there is somebody in the hall, see who it is"."""
     come = who_has_come(d)
+    if come is None and d.person is not None and d.person.place is not None:
+        d.person = replace(d.person, pronoun=False)
+        look = Ask("describe", {"thing": sought(d, d.person)})
+        return Report("only", look, d.person.place, name="description")
     if come is None:
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
@@ -284,8 +288,11 @@ def counted_info(d: Discourse, node: Node) -> Report | Steps:
         furniture=thing.furniture or more.furniture or (first.furniture if first else None),
     )
     d.last_counted = thing
+    if not thing.person:
+        d.thing = replace(thing, plural=True)  # "..., and which one is the smallest"
     if thing.person and d.person is not None:
-        d.person = replace(d.person, plural=True)  # those who are counted are several
+        there = d.person.place or thing.place
+        d.person = replace(d.person, plural=True, place=there)  # who are counted are several
     return count_report(d, thing)
 
 

@@ -16,7 +16,7 @@ from grammar.meanings.places import listed, only_taken_apart
 from grammar.meanings.registry import meaning
 from grammar.meanings.several_things import is_grab
 from grammar.meanings.sources import told_where, where_told
-from grammar.plan import ForEach, Items, Recall, Value
+from grammar.plan import Call, ForEach, Items, Recall, Text, Value
 
 
 @dataclass(frozen=True)
@@ -73,6 +73,9 @@ def is_placed(thing: Thing) -> bool:
 def over_thing_list(d: Discourse, node: Node, things: list[Thing], one: One) -> Steps:
     """ "the cup and the book": one after the other."""
     things = [where_told(d, thing) for thing in things]
+    from_here = None if any(map(is_placed, things)) else fetched_from_here(d, things, one)
+    if from_here is not None:
+        return from_here
     if d.only_fetches:
         steps = fetched_for_later(d, things, one)
     elif any(is_placed(thing) for thing in things):
@@ -80,10 +83,28 @@ def over_thing_list(d: Discourse, node: Node, things: list[Thing], one: One) -> 
     else:
         each = Recall(d.variable("thing"))
         d.at = None
+        d.thing, d.thing_last = Thing(each), True  # "them", bound to this one
         body = round_of_steps(d, lambda: one(Thing(each)))
         d.at = d.with_person = None
         steps = [ForEach(each.name, Items(tuple(thing.value for thing in things)), tuple(body))]
     d.thing, d.thing_last = as_list(d, things), True
+    return steps
+
+
+def fetched_from_here(d: Discourse, things: list[Thing], one: One) -> Steps | None:
+    """ "go to the cafeteria and get a sandwich and an apple": from where the robot was just sent,
+    unless that is where they are to be put down."""
+    last = d.done[-1] if d.done else None
+    here = d.at
+    if d.only_fetches or not isinstance(here, Text) or last != Call("goto", {"place": here}):
+        return None
+    scene = d.scene()
+    there = [replace(thing, place=here) for thing in things]
+    steps = [step for thing in there for step in for_one(d, thing, one)]
+    if not any(isinstance(each, Call) and each.method == "grab" for each in steps) or d.at == here:
+        d.set_scene(scene)
+        return None
+    d.thing, d.thing_last = as_list(d, there), True
     return steps
 
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 from grammar.chart import Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
-from grammar.freetext import words_for
 from grammar.meanings.carrying import deliver, pick_up, take_back_delivery, the_same
 from grammar.meanings.chosen import handed_already
 from grammar.meanings.deliveries import (
@@ -48,7 +47,6 @@ from grammar.meanings.speaking import sentence_form
 from grammar.meanings.strangers import announced_one
 from grammar.meanings.thing_lists import all_listed, off_the_list, told_where_all_are
 from grammar.plan import Call, ForEach, Items, Recall, Step, Text, Value
-from grammar.slips import command_words
 from grammar.tidy import nodes
 from grammar.wordforms import head_word, singular
 
@@ -400,26 +398,6 @@ def cannot_put(d: Discourse, node: Node) -> Steps:
 def find_to_answer(d: Discourse, node: Node) -> Steps:
     """ "find somebody in the lobby whose question you will answer"."""
     return speak_to(d, d.get(node, "person_ref"), [Call("answer", {})])
-
-
-@meaning("bring_too")
-def bring_too(d: Discourse, node: Node) -> Steps:
-    """ "take the cup to Alice and the blanket to Bob": the second, too."""
-    last = d.done[-1] if d.done else None
-    if not (isinstance(last, Call) and last.method in ("give", "put")) and not whole(d, node):
-        raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
-    if isinstance(last, Call) and last.method == "put":
-        d.at = None  # what goes elsewhere is not where the first one was put
-    return bring(d, node)
-
-
-def whole(d: Discourse, node: Node) -> bool:
-    """Whether a command without a verb says from where and where to: "cup from here to there"."""
-    orders = command_words(d.language) | words_for(d.language).verbs
-    if d.tokens[node.start].norm in orders:  # "go from here to there"
-        return False
-    thing: Thing = d.get(node, "thing")
-    return not d.done and (thing.place is not None or thing.furniture is not None)
 
 
 @meaning("bring_each")
