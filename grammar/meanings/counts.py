@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Thing
+from grammar.doubts import NotUnderstood
 from grammar.meanings.descriptions import described
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
@@ -34,7 +35,18 @@ def counted_both(d: Discourse, node: Node) -> Report:
     )
     d.last_counted = two
     words = (("things", things), ("others", others), ("other", Recall(names[1])))
-    return Report("counted_both", Recall(names[0]), where.place, words, before=looks)
+    return Report("counted_both", Recall(names[0]), where.place, words, name="counts", before=looks)
+
+
+@meaning("those_spoken_of")
+def those_spoken_of(d: Discourse, node: Node) -> Thing:
+    """ "is anybody sitting in the cafeteria? Count them": people or things, where they were said to
+    be."""
+    those = d.thing if d.thing_last or d.person is None else d.person
+    if those is None or (those.person and (those.known or those.me)):
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("not_understood", part=words))
+    return replace(those, pronoun=False, count=None, plural=True)
 
 
 def with_mods(d: Discourse, node: Node, thing: Thing, own: set[str]) -> Thing:

@@ -67,13 +67,20 @@ def best_of_those(d: Discourse, node: Node, found: Thing) -> Thing:
         d.language.speech.get("one_words", ())
     )
     those = d.thing
-    if named or "superlative" not in node.parts or those is None or not those.plural:
+    if named or "superlative" not in node.parts or those is None:
+        return found
+    if not those.plural and not is_best(d, those):  # "... the heaviest and which is the lightest"
         return found
     if found.place is not None or found.furniture is not None:
         return found
     return replace(
         found, place=those.place, furniture=those.furniture, preposition=those.preposition
     )
+
+
+def is_best(d: Discourse, thing: Thing) -> bool:
+    """Whether a thing is the best of several: "biggest cup"."""
+    return not d.language.lists.get("superlative", {}).keys().isdisjoint(thing.text.split())
 
 
 def is_short_for(d: Discourse, words: str, name: str) -> bool:

@@ -32,10 +32,14 @@ WAYS_OUT: Final = frozenset({"entrance", "exit"})
 """Kinds of places where a house ends."""
 
 
+GUESTS: Final = frozenset({"visitor", "patient", "guest", "child"})
+"""Kinds of people who are led, even where somebody only goes with them."""
+
+
 @meaning("guide")
 def guide(d: Discourse, node: Node) -> Steps:
     """Lead a person to a place; go and find them first if they are somebody by name."""
-    if node.production.fixed.get("along") and is_me(d.get(node, "person_ref")):
+    if node.production.fixed.get("along") and knows_the_way(d, d.get(node, "person_ref")):
         return follow(d, node)
     pronoun = node.parts.get("person_ref")
     carried = not leads_people_only(d, node)
@@ -65,6 +69,15 @@ def guide(d: Discourse, node: Node) -> Steps:
         raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
     further: list[Value] = d.get(node, "place_list") or []
     return [*steps, *(lead(d, thing, place) for place in (spot.place, *further))]
+
+
+def knows_the_way(d: Discourse, person: Thing | None) -> bool:
+    """Whether somebody who is gone with leads: the speaker, and whoever is at home here by name,
+    but no visitor and no stranger."""
+    if person is None or is_me(person):
+        return person is not None
+    kinds = {each.kind for each in d.lexicon.people if Text(each.name) == person.value}
+    return bool(kinds) and kinds.isdisjoint(GUESTS)
 
 
 def left_behind(d: Discourse, node: Node, person: Thing) -> Steps:

@@ -279,8 +279,18 @@ def not_chosen(d: Discourse) -> Value | None:
 def place_where(d: Discourse, node: Node) -> Thing:
     """ "where Bob is", "a room with a printer": wherever that is found."""
     only_taken_apart(d, node)
+    spoken_of = d.thing, d.thing_last
     found: Thing = d.get(node, "thing") or d.get(node, "person_ref")
+    if stands_behind_it(d, node):
+        d.thing, d.thing_last = spoken_of
     return found
+
+
+def stands_behind_it(d: Discourse, node: Node) -> bool:
+    """Whether what was spoken of before is what goes there: "get the soap and put it where the
+    towel is"."""
+    before = d.norms(max(0, node.start - 2), node.start)
+    return not {*before}.isdisjoint(d.language.speech.get("things_too", ()))
 
 
 @meaning("where_owned")

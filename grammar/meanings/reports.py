@@ -412,7 +412,7 @@ def counted_alone(d: Discourse) -> bool:
     """Whether the last step is to say a number where nobody is who asked for it: "go to the lab and
     count the people"."""
     found: Report | None = d.report
-    counted = found is not None and found.name == "count" and d.report_counts
+    counted = found is not None and found.name in ("count", "counts") and d.report_counts
     told_here = bool(d.done) and d.done[-1] is d.report_step
     return counted and told_here and d.at not in (None, Recall(START))
 

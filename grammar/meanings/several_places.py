@@ -15,6 +15,7 @@ from grammar.meanings.best_places import Best, Such, first_such, survey
 from grammar.meanings.chosen import by_choice, chosen_of
 from grammar.meanings.finding import found, look_for, not_found
 from grammar.meanings.one_round import One, guarded, round_of_steps
+from grammar.meanings.places import stands_behind_it
 from grammar.meanings.searches import named_places, search_in, searched
 from grammar.meanings.several_things import (
     another_one,
@@ -116,12 +117,25 @@ def over_place_such(d: Discourse, node: Node, such: Such, one: One) -> Steps:
 
 def over_place_where(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
     """ "where Bob is": he is looked for, and that is the place."""
+    spoken_of = d.thing, d.thing_last
+    behind_it = stands_behind_it(d, node)
+    held = d.holding is not None
     searching = look_for(d, thing)
     place = Recall(d.variable("place"))
     d.at = d.place = place
+    if behind_it:
+        d.thing, d.thing_last = spoken_of
+        d.at = place if held else None
     outer, d.at_people = d.at_people, True  # what is brought there need not be there
     body = one(place)
     d.at_people = outer
+    it = spoken_of[0] if behind_it else None
+    if it is not None and body[:1] == [Call("grab", {"thing": it.value})]:
+        if (
+            searched(d.done[-1] if d.done else None) is not None
+        ):  # it was only found, and is elsewhere
+            d.done.pop()
+        body = [found(d, it), *body]
     if body == [Call("goto", {"place": place})]:
         return searching
     here: Step = Remember(place.name, Ask("location"))

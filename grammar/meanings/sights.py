@@ -11,7 +11,7 @@ from grammar.meanings import news
 from grammar.meanings.answered_numbers import number_answered
 from grammar.meanings.descriptions import described
 from grammar.meanings.finding import found, in_state, is_here, not_found, whether_found
-from grammar.meanings.nouns import best_of_those
+from grammar.meanings.nouns import best_of_those, is_best
 from grammar.meanings.places import place_called_after, sought
 from grammar.meanings.polls import polled, told_as_asked
 from grammar.meanings.registry import meaning
@@ -46,6 +46,11 @@ def names_here(d: Discourse, node: Node) -> Report | Steps:
         d.person = Thing(Text(ANYONE), person.place, person=True, plural=True, here=not away)
     elif "mods" in node.parts and not person.known:  # "the man's name in the bedroom"
         person = replace(person, place=described(d, "", node).place or person.place)
+    elif "mods_after" in node.parts and not person.known:  # "which man in the hall is waving"
+        more = described(d, person.text, node)
+        place, furniture = person.place or more.place, person.furniture or more.furniture
+        who = replace(more, place=place, furniture=furniture, person=True)
+        return Report("only", Ask("describe", {"thing": sought(d, who)}), place, name="description")
     elif person.here and isinstance(d.report_asked, Report):
         if d.report_asked.value == Ask("people"):  # those who were seen
             return d.report_asked
@@ -262,7 +267,8 @@ def _best(d: Discourse, node: Node) -> Thing:
     if isinstance(head, Leaf):
         said = str(head.value[0]) if head.value else d.noun_words(head.start, head.end)
         noun = singular(said, d.language)
-    elif d.thing is not None and d.thing.plural:  # "check the drinks and tell me which is biggest"
+    elif d.thing is not None and (d.thing.plural or is_best(d, d.thing)):
+        # "check the drinks and tell me which is biggest"
         noun = d.thing.noun or noun
     return best_of_those(d, node, described(d, noun, node))
 
@@ -279,7 +285,7 @@ def counted_info(d: Discourse, node: Node) -> Report | Steps:
     if answered is not None:
         return answered.words
     thing: Thing = d.get(node, "thing")
-    more = described(d, thing.text, node)
+    more = described(d, thing.text, node, lies_about=not thing.person)
     first: Where | None = d.get(node, "spot_first")
     thing = replace(
         thing,
