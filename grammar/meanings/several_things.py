@@ -83,7 +83,7 @@ def last_deed(d: Discourse) -> Call | None:
     """The last step, or that of the last round, if something was handed over or put down in it."""
     said = d.done or next((steps for steps in reversed(d.around) if steps), [])
     last: Step | None = said[-1] if said else None
-    while isinstance(last, LOOPS):
+    while isinstance(last, LOOPS) and last.steps:
         last = last.steps[-1]
     return last if isinstance(last, Call) and last.method in ("give", "put") else None
 
