@@ -90,6 +90,9 @@ def _is_somebody(name: str, lexicon: Lexicon, language: Language) -> bool:
     named = any(each.name == name for each in lexicon.people)
     kinds = language.lists.get("person_kind", {})
     called = language.tokens_of(name)
+    *before, last = called or ("",)
+    if before and language.lists.get("superlative", {}).keys() >= {*before}:  # "tallest person"
+        called, name = (last,), last
     return named or name in kinds or any(called in ways for ways in kinds.values())
 
 
