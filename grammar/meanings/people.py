@@ -73,9 +73,11 @@ def guide(d: Discourse, node: Node) -> Steps:
 
 def knows_the_way(d: Discourse, person: Thing | None) -> bool:
     """Whether somebody who is gone with leads: the speaker, and whoever is at home here by name,
-    but no visitor and no stranger."""
+    but no visitor, nobody who has just come, and no stranger."""
     if person is None or is_me(person):
         return person is not None
+    if d.visitor is not None:
+        return False
     kinds = {each.kind for each in d.lexicon.people if Text(each.name) == person.value}
     return bool(kinds) and kinds.isdisjoint(GUESTS)
 
