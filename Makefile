@@ -16,6 +16,8 @@ $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
 	$(BIN)/python -m pip install --progress-bar on -e '.[dev]'
+	@# the first start is as fast as any other, also where Python may write no bytecode later
+	@$(BIN)/python -m compileall -q grammar nl2robot robot_api sandbox sim
 	@touch $@
 
 lint: $(STAMP)

@@ -8,9 +8,9 @@ and rules marked as unlikely cost, so that the cheapest reading is the one that 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 from grammar.network import Network, Production
 from grammar.tokens import Token
@@ -29,6 +29,18 @@ Match = tuple[int, float, Any]
 
 Slot = Callable[[int], list[Match]]
 """Finds all matches of a slot that begin at a token."""
+
+
+class SlotSet(Protocol):
+    """The slots over a row of tokens; their names stand in braces."""
+
+    def matches(self, slot: str, at: int) -> list[Match]:
+        """All matches that begin at a token."""
+        ...
+
+    def starting(self, at: int) -> Iterable[str]:
+        """At least those that have matches at a token."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -93,7 +105,7 @@ class Chart:
         self,
         network: Network,
         tokens: tuple[Token, ...],
-        slots: Mapping[str, Slot],
+        slots: SlotSet,
         *,
         skips: Mapping[int, list[tuple[int, float]]],
         corrections: Mapping[int, tuple[str, ...]],
@@ -104,9 +116,12 @@ class Chart:
         self.skips = skips
         self.corrections = corrections
         self.forms = forms
-        self._slots: list[Slot | None] = [slots.get(name) for name in network.names]
-        self._ends: list[dict[int, dict[int, _End]]] = [{} for _ in network.names]
+        self._slots = slots
+        self._numbers = network.slot_numbers
+        self._ends: list[dict[int, dict[int, _End]]] = [{} for _ in range(len(tokens) + 1)]
+        """For each token, of the rules that were tried there."""
         self._matches: dict[tuple[int, int], list[Match]] = {}
+        self._beginning: list[frozenset[int] | None] = [None] * len(tokens)
         self._steps = 0
 
     def best(self, rule: str) -> Node | None:
@@ -127,23 +142,22 @@ class Chart:
     def reached(self) -> int:
         """The furthest token that any rule at the beginning could use."""
         return max(
-            (end for rule in self._ends for ends in rule.values() for end in ends), default=0
+            (end for tried in self._ends for ends in tried.values() for end in ends), default=0
         )
 
     # --- walking
 
     def _spans(self, rule: int, start: int) -> dict[int, _End]:
-        memo = self._ends[rule]
-        known = memo.get(start)
+        known = self._ends[start].get(rule)
         if known is not None:
             return known
         result: dict[int, _End] = {}
-        memo[start] = result
+        self._ends[start][rule] = result
         network, tokens = self.network, self.tokens
-        states, first = network.states, network.first
+        states, starts = network.states, network.starts
         count = len(tokens)
         agenda: dict[int, dict[int, tuple[float, _Way | None]]] = {
-            start: {network.starts[rule]: (0.0, None)}
+            start: {starts[rule]: (0.0, None)}
         }
         at = start
         while agenda:
@@ -161,7 +175,7 @@ class Chart:
                     if at not in result or total < result[at][0]:
                         result[at] = (total, state.final[1], way)
             if at < count:
-                word = tokens[at].norm
+                word, begin, tried = tokens[at].norm, self._begin(at), self._ends[at]
                 spelled, formed = self.corrections.get(at, ()), self.forms.get(at, ())
                 for end, extra in self.skips.get(at, ()):
                     beyond = agenda.setdefault(end, {})
@@ -184,30 +198,44 @@ class Chart:
                         if following is not None:
                             _reach(agenda, at + 1, following, cost + FORM, way)
                     for callee, binding, following in state.calls:
-                        if network.starts[callee] < 0:
+                        if callee not in begin:
+                            continue
+                        if starts[callee] < 0:
                             for end, extra, value in self._slot(callee, at):
                                 step = (way, binding, callee, at, end, value)
                                 _reach(agenda, end, following, cost + extra, step)
                             continue
-                        words = first[callee]
-                        if (
-                            words is not None
-                            and word not in words
-                            and at not in self.skips
-                            and not any(other in words for other in (*spelled, *formed))
-                        ):
-                            continue
-                        for end, inner in self._spans(callee, at).items():
+                        found = tried.get(callee)
+                        if found is None:
+                            found = self._spans(callee, at)
+                        for end, inner in found.items():
                             step = (way, binding, callee, at, end, inner)
                             _reach(agenda, end, following, cost + inner[0], step)
             at += 1
         return result
 
+    def _begin(self, at: int) -> frozenset[int]:
+        """The rules and slots that can begin with a token: of the hundreds that are asked for at
+        each, only they are walked. Where a word may be passed over, those of the next one too."""
+        known = self._beginning[at]
+        if known is None:
+            beginning, word = self.network.beginning, self.tokens[at].norm
+            spelled = (word, *self.corrections.get(at, ()), *self.forms.get(at, ()))
+            known = self._beginning[at] = frozenset().union(
+                *(beginning.get(each, ()) for each in spelled),
+                *(
+                    self.network.beginning_with_slot[slot]
+                    for slot in map(self._numbers.get, self._slots.starting(at))
+                    if slot is not None and self._slot(slot, at)
+                ),
+                *(self._begin(end) for end, _ in self.skips.get(at, ()) if end < len(self.tokens)),
+            )
+        return known
+
     def _slot(self, callee: int, at: int) -> list[Match]:
         key = (callee, at)
         if key not in self._matches:
-            slot = self._slots[callee]
-            self._matches[key] = slot(at) if slot else []
+            self._matches[key] = self._slots.matches(self.network.names[callee], at)
         return self._matches[key]
 
     # --- reading off

@@ -19,6 +19,7 @@ from typing import Any, Final
 
 from grammar.chart import Leaf, Node
 from grammar.language import Language
+from grammar.phrases import Phrases
 from grammar.tokens import COLON, COMMA, STOP, Token
 
 SPOKEN: Final = frozenset({"say", "say_that"})
@@ -80,18 +81,18 @@ class Words:
     """What may stand between "and" and an order: "also", "then"."""
     asking: frozenset[str]
     """Words that an indirect question begins with: "who", "how many"."""
-    exclaimed: tuple[tuple[str, ...], ...]
+    exclaimed: Phrases
     """What begins so and asks nothing: "what a lovely day"."""
     addressing: frozenset[str]
     """Words that turn a question to the listener: "you"."""
     definite: frozenset[str]
     """Words that speak of something known: "the total", "his mind"."""
     that: frozenset[str]
-    messages: tuple[tuple[str, ...], ...]
+    messages: Phrases
     """How a message begins that is no whole sentence: "happy birthday"."""
-    wishes: tuple[tuple[str, ...], ...]
+    wishes: Phrases
     """What sounds like an order and is none: "sleep well", "welcome to"."""
-    greetings: tuple[tuple[str, ...], ...]
+    greetings: Phrases
     """What is complete in itself, so that "to ...", "in ..." behind it are not spoken."""
     not_greeting: frozenset[str]
     """What goes with a greeting as little as with an order: "to", "in", "at"."""
@@ -111,7 +112,7 @@ class Words:
     """Ways to do something that no question is about: "without shouting"."""
     goes_on: frozenset[str]
     """Words that no text ends with: "except", "because"."""
-    back: tuple[tuple[str, ...], ...]
+    back: Phrases
     """Speaking of the robot's return: "when you are back"."""
     clauses: bool
     """Whether a message that does not begin with "that" has to be a clause."""
@@ -125,8 +126,8 @@ def words_for(language: Language) -> Words:
     def single(name: str) -> frozenset[str]:
         return frozenset(word for entry in data.get(name, ()) for word in _tokens(entry, language))
 
-    def phrases(name: str) -> tuple[tuple[str, ...], ...]:
-        return tuple(language.tokens_of(entry) for entry in data.get(name, ()))
+    def phrases(name: str) -> Phrases:
+        return Phrases(language.tokens_of(entry) for entry in data.get(name, ()))
 
     def changed(words: frozenset[str], name: str) -> frozenset[str]:
         return frozenset(
@@ -216,9 +217,11 @@ class Judge:
         self.language = language
         self.words = words_for(language)
         self.joins = {*language.speech.get("joins", ())}
+        self.all_norms = tuple(token.norm for token in tokens)
+        self._greetings: dict[int, int] = {}
 
-    def norms(self, start: int, end: int) -> list[str]:
-        return [token.norm for token in self.tokens[start:end]]
+    def norms(self, start: int, end: int) -> tuple[str, ...]:
+        return self.all_norms[start:end]
 
     def doubt(self, node: Node, leaf: Leaf) -> Doubt | None:
         start, end, words = leaf.start, leaf.end, self.words
@@ -256,7 +259,7 @@ class Judge:
                 elif not self.licensed(node, start, at):
                     return doubt(at - 1, "said_or_done")
         for at in range(start, end):
-            if any(tuple(self.norms(at, at + len(way))) == way for way in self.words.back):
+            if self.begins(words.back, at):
                 return doubt(at, "said_or_done")
         if node.means == "show":
             for at in range(start + 1, end):
@@ -351,16 +354,19 @@ class Judge:
 
     def greeting(self, start: int) -> int:
         """How many tokens of a greeting begin here."""
-        return max(
-            (len(each) for each in self.words.greetings if self.is_at(each, start)), default=0
-        )
+        return self.words.greetings.longest(self.all_norms, start)
 
     def complete_greeting(self, start: int) -> int:
         """How many tokens of a greeting begin here that is said where what follows says: "good
         night" of "good night in ward b"; 0 if it goes on: "welcome to the ward"."""
+        if start not in self._greetings:
+            self._greetings[start] = self._complete_greeting(start)
+        return self._greetings[start]
+
+    def _complete_greeting(self, start: int) -> int:
         length = self.greeting(start)
         behind = self.norms(start + length, start + length + 1)
-        wish = max((len(each) for each in self.words.wishes if self.is_at(each, start)), default=0)
+        wish = self.words.wishes.longest(self.all_norms, start)
         if wish > length or not set(behind) & self.words.not_greeting:
             return 0
         return length
@@ -460,8 +466,5 @@ class Judge:
         direct = start + 1 < end and self.tokens[start + 1].norm in words.finite
         return not (direct and (mark or words.addressing & set(self.norms(start, end))))
 
-    def begins(self, phrases: Sequence[tuple[str, ...]], at: int) -> bool:
-        return any(self.is_at(each, at) for each in phrases)
-
-    def is_at(self, phrase: tuple[str, ...], at: int) -> bool:
-        return tuple(self.norms(at, at + len(phrase))) == phrase
+    def begins(self, phrases: Phrases, at: int) -> bool:
+        return phrases.longest(self.all_norms, at) > 0

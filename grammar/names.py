@@ -9,8 +9,9 @@ from __future__ import annotations
 import functools
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass, field
 from typing import Any, Final
+
+import msgspec
 
 from grammar.language import Language
 from grammar.lexicon import Lexicon, Name
@@ -20,17 +21,18 @@ CALLED: Final = frozenset({"person", "place", "object", "furniture", "contact", 
 """Slots of names that somebody or something goes by."""
 
 
-@dataclass(slots=True)
-class Trie:
-    branches: dict[str, Trie] = field(default_factory=dict)
-    values: list[Any] = field(default_factory=list)
+class Trie(msgspec.Struct, gc=False):
+    """There are thousands, none in a circle: nothing for the garbage collector to look through."""
+
+    branches: dict[str, Trie] = {}
+    values: tuple[Any, ...] = ()
 
     def add(self, words: Iterable[str], value: Any) -> None:
         node = self
         for word in words:
             node = node.branches.setdefault(word, Trie())
         if value not in node.values:
-            node.values.append(value)
+            node.values += (value,)
 
 
 class Names:
@@ -40,6 +42,8 @@ class Names:
         self.language = language
         self.lexicon = lexicon
         self.tries: dict[str, Trie] = {}
+        self.beginning: dict[str, set[str]] = {}
+        """The slots whose names begin with a word."""
         self.words: set[str] = set()
         self.called: set[str] = set()
         """Those of them that people, places and things are called by."""
@@ -163,6 +167,11 @@ class Names:
             for pattern in self.language.speech.get("possessive_forms", ()):
                 yield pattern.format(owner=owner, owned=owned.strip())
 
+    @functools.cached_property
+    def known(self) -> frozenset[str]:
+        """All words that are spelled right: of the rules, of the names, and function words."""
+        return frozenset(self.language.words | self.words | self.language.closed)
+
     def _forms(self, text: str) -> tuple[str, ...]:
         forms = (text, plural(text, self.language))
         return tuple(dict.fromkeys(each for form in forms for each in self._variants(form)))
@@ -174,6 +183,7 @@ class Names:
     def _add_words(self, slot: str, words: tuple[str, ...], value: Any) -> None:
         if words:
             self.tries.setdefault(slot, Trie()).add(words, value)
+            self.beginning.setdefault(words[0], set()).add(slot)
             self.words.update(words)
             if slot in CALLED:
                 self.called.update(words)

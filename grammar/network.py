@@ -9,9 +9,12 @@ at the left edge (`compile_rules` says which rule breaks that).
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any, Final, TypeVar
+
+import msgspec
 
 from grammar.templates import Choice, Part, Template, Word, parse_template
 from grammar.templates import Sequence as TemplateSequence
@@ -19,6 +22,9 @@ from grammar.templates import Sequence as TemplateSequence
 INLINED: Final = 20
 """Words and references that a rule that stands for some words may have to be put in place wherever
 it is named; a longer one is kept once and called."""
+
+
+_Key = TypeVar("_Key")
 
 
 class RuleError(ValueError):
@@ -44,8 +50,9 @@ class Production:
         return tuple(map(parse_template, self.source))
 
 
-@dataclass(slots=True)
-class State:
+class State(msgspec.Struct, frozen=True, gc=False):
+    """There are thousands, none in a circle: nothing for the garbage collector to look through."""
+
     words: dict[str, int]
     calls: tuple[tuple[int, str | None, int], ...]
     """(callee, binding, next state)"""
@@ -60,12 +67,19 @@ class Network:
     """Of the callees: rules, then slots in braces."""
     starts: tuple[int, ...]
     """The first state of each rule; -1 for a slot."""
-    first: tuple[frozenset[str] | None, ...]
-    """The words a rule can begin with; None where a slot makes that open."""
+    beginning: Mapping[str, frozenset[int]]
+    """The rules that can begin with a word."""
+    beginning_with_slot: Mapping[int, frozenset[int]]
+    """The rules that can begin with a slot, and the slot itself."""
     productions: tuple[Production, ...]
 
     def rule(self, name: str) -> int:
         return self.names.index(name)
+
+    @functools.cached_property
+    def slot_numbers(self) -> Mapping[str, int]:
+        """Of the slots, by their names in braces."""
+        return {self.names[slot]: slot for slot in self.beginning_with_slot}
 
 
 def compile_rules(
@@ -96,9 +110,12 @@ class _Compiler:
         starts = [self._rule(name, productions) for name, productions in self.rules.items()]
         starts += [-1] * (len(self.numbers) - len(starts))
         self._refuse_left_recursion(starts)
-        first = self._first_words(starts)
         return Network(
-            tuple(self.states), tuple(self.numbers), tuple(starts), first, tuple(self.productions)
+            tuple(self.states),
+            tuple(self.numbers),
+            tuple(starts),
+            *self._beginnings(starts),
+            tuple(self.productions),
         )
 
     # --- one rule
@@ -288,22 +305,37 @@ class _Compiler:
         for rule in range(len(starts)):
             visit(rule, ())
 
-    def _first_words(self, starts: list[int]) -> tuple[frozenset[str] | None, ...]:
-        found: dict[int, frozenset[str] | None] = {}
+    def _beginnings(
+        self, starts: list[int]
+    ) -> tuple[dict[str, frozenset[int]], dict[int, frozenset[int]]]:
+        """Which rules can begin with a word or a slot."""
+        words: dict[int, frozenset[str]] = {}
+        slots: dict[int, frozenset[int]] = {}
 
-        def visit(rule: int) -> frozenset[str] | None:
-            if rule not in found:
-                if starts[rule] < 0:
-                    return None
-                state = self.states[starts[rule]]
-                words: frozenset[str] | None = frozenset(state.words)
-                for callee, _, _ in state.calls:
-                    more = visit(callee)
-                    words = None if more is None or words is None else words | more
-                found[rule] = words
-            return found[rule]
+        def visit(rule: int) -> None:
+            if rule in words:
+                return
+            if starts[rule] < 0:
+                words[rule], slots[rule] = frozenset(), frozenset((rule,))
+                return
+            state = self.states[starts[rule]]
+            below = {callee for callee, _, _ in state.calls}
+            for callee in below:
+                visit(callee)
+            words[rule] = frozenset(state.words).union(*(words[each] for each in below))
+            slots[rule] = frozenset().union(*(slots[each] for each in below))
 
-        return tuple(visit(rule) for rule in range(len(starts)))
+        for rule in range(len(starts)):
+            visit(rule)
+        return _inverted(words), _inverted(slots)
+
+
+def _inverted(sets: Mapping[int, Iterable[_Key]]) -> dict[_Key, frozenset[int]]:
+    found: defaultdict[_Key, set[int]] = defaultdict(set)
+    for number, keys in sets.items():
+        for key in keys:
+            found[key].add(number)
+    return {key: frozenset(numbers) for key, numbers in found.items()}
 
 
 def _size(template: Template) -> int:

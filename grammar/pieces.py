@@ -168,5 +168,5 @@ def pieces_at(reader: Reader, start: int) -> Iterator[Piece]:
                     for each in sorted(THINGS):  # tables can be counted, too
                         yield Piece(each, node.start, node.end, "thing")
         else:
-            for end, _, _ in reader.slots[f"{{{rule}}}"](start):
+            for end, _, _ in reader.slots.matches(f"{{{rule}}}", start):
                 yield Piece(rule, start, end)

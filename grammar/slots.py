@@ -8,31 +8,18 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any, Final
 
 from grammar.chart import CORRECTION, Corrected, Match, Slot
 from grammar.freetext import Judge
 from grammar.names import Names, Trie
 from grammar.numerals import Numerals
+from grammar.open_text import FREE_WORD, OpenText
 from grammar.slips import command_words, plain_forms
-from grammar.tokens import COLON, COMMA, STOP, Token
+from grammar.tokens import Token
 from grammar.wordforms import singular
 
-FREE_WORD: Final = 1.0
-"""Cost of a word that only an open slot understands."""
-REST_WORD: Final = 0.2
-"""Cost of a word of what is read once more by itself."""
-SWALLOWED_COMMAND: Final = 40.0
-"""Cost of a text that goes on over what begins like another command."""
-ASKED_IN_TEXT: Final = 12.0
-"""Cost of a text that begins as a question put to the robot does: "who is there"."""
-BEHIND_GREETING: Final = 8.0
-"""Cost of a text that goes on where a greeting ends: "good night in ward b" is said there."""
-ASKED_ON: Final = 6.0
-"""Cost of a text that goes on over a second question: "... and how much"."""
-RECEIVER_IN_TEXT: Final = 4.0
-"""Cost of a text that begins with the one it is told to: "ihr ihre Proben sind fertig"."""
 WHERE_TO: Final = 2.5
 """Cost of reading words that tell where something goes as where it is."""
 UNKNOWN_NAME: Final = 30.0
@@ -61,21 +48,14 @@ class Slots:
         self.tokens = tokens
         self.corrections = corrections
         self._command_words = command_words(self.language)
-        self._joins = frozenset(self.language.speech.get("joins", ()))
         self._judge = Judge(tokens, self.language)
+        self._first: dict[int, tuple[str, ...]] = {}
+        self._open_text = OpenText(tokens, self.language, self._judge)
         self._numerals = Numerals(tokens, self.language)
         self._adverb = re.compile(self.language.speech.get("adverbs", r"(?!)")).search
         self._possessive = str(self.language.speech.get("possessive", "")).strip()
         self._no_nouns = frozenset(self.language.speech.get("no_nouns", ()))
         self._noun_joins = frozenset(self.language.speech.get("noun_joins", ()))
-        self._spoken_fillers = frozenset(self.language.speech.get("spoken_fillers", ()))
-        self._fillers = {word for filler in self.language.fillers for word in filler}
-        self._noun_fillers = frozenset(self.language.speech.get("noun_fillers", ()))
-        self._time_fillers = frozenset(self.language.speech.get("time_fillers", ()))
-        self._filler_words = self._inside_fillers()
-        self._unfinished = frozenset(self.language.speech.get("unfinished", ()))
-        self._news_at: dict[int, bool] = {}
-        self._not_kept = self._joins.union(self.language.speech.get("text_ends", ()))
         clause = self.language.speech.get("clause", {})
         no_verbs = ("pronouns", "determiners", "prepositions", "and", "subordinating", "reflexive")
         fillers = {filler[0] for filler in self.language.fillers if len(filler) == 1}
@@ -83,12 +63,24 @@ class Slots:
         joins = self.language.speech.get("joins", ())
         self._no_verbs = fillers.union(ends, joins, *(clause.get(each, ()) for each in no_verbs))
 
-    def all(self) -> dict[str, Slot]:
-        slots: dict[str, Slot] = {
-            "{" + name + "}": functools.partial(self._name, trie)
-            for name, trie in self.names.tries.items()
-        }
-        slots |= {
+    def matches(self, slot: str, at: int) -> list[Match]:
+        """All matches of a slot, named in braces, that begin at a token."""
+        if slot in self._open:
+            return self._open[slot](at)
+        trie = self.names.tries.get(slot[1:-1])
+        return self._name(trie, at) if trie is not None else []
+
+    def starting(self, at: int) -> Iterable[str]:
+        """The slots that may have matches at a token, in braces. Most slots are lists of names,
+        and few names begin with a word: the others need not be tried."""
+        beginning = self.names.beginning
+        listed = {slot for word in self._first_words(at) for slot in beginning.get(word, ())}
+        return (*self._open, *("{" + slot + "}" for slot in listed))
+
+    @functools.cached_property
+    def _open(self) -> dict[str, Slot]:
+        """The slots that are no lists of names."""
+        return {
             "{number}": self._number,
             "{count}": self._count,
             "{clock}": functools.partial(self._kind, "time"),
@@ -96,18 +88,17 @@ class Slots:
             "{selector}": functools.partial(self._kind, "selector"),
             "{quote}": self._quote,
             "{text}": self._text,
-            "{rest}": self._rest,
+            "{rest}": self._open_text.rest,
             "{noun}": self._noun,
             "{word}": self._word,
             "{verb}": self._verb,
             "{zu_infinitive}": self._zu_infinitive,
             "{located}": functools.partial(self._preposition, "located"),
             "{towards}": functools.partial(self._preposition, "towards"),
-            "{remark}": self._remark,
+            "{remark}": self._open_text.remark,
             "{unknown}": self._unknown,
             "{stranger}": self._stranger,
         }
-        return slots
 
     # --- names
 
@@ -130,6 +121,19 @@ class Slots:
         self._walk(trie, at, 0.0, (), matches)
         return matches
 
+    def _first_words(self, at: int) -> tuple[str, ...]:
+        """The words that a name which stands at a token may begin with; the same for all tries."""
+        known = self._first.get(at)
+        if known is None:
+            known = ()
+            if at < len(self.tokens):
+                word = self.tokens[at].norm
+                joined = [word + self.tokens[at + 1].norm] if at + 1 < len(self.tokens) else []
+                cuts = [word[:cut] for cut in self._cuts(word)]
+                known = (word, *joined, *cuts, *self.corrections.get(at, ()))
+            self._first[at] = known
+        return known
+
     def _walk(
         self,
         trie: Trie,
@@ -139,7 +143,7 @@ class Slots:
         matches: list[Match],
     ) -> None:
         if trie.values:
-            value: Any = tuple(trie.values)
+            value: Any = trie.values
             matches.append((at, cost, Corrected(value, corrected) if corrected else value))
         if at >= len(self.tokens):
             return
@@ -160,12 +164,16 @@ class Slots:
             joined = trie.branches.get(word + self.tokens[at + 1].norm)
             if joined is not None and word.isalpha():
                 yield at + 2, joined
-        if len(word) >= SHORTEST_JOINED_NAME and word not in self.language.words:
-            for cut in range(2, len(word) - 1):
-                first = trie.branches.get(word[:cut])
-                second = first.branches.get(word[cut:]) if first is not None else None
-                if second is not None:
-                    yield at + 1, second
+        for cut in self._cuts(word):
+            first = trie.branches.get(word[:cut])
+            second = first.branches.get(word[cut:]) if first is not None else None
+            if second is not None:
+                yield at + 1, second
+
+    def _cuts(self, word: str) -> range:
+        """Where an unknown word may lack a space."""
+        long = len(word) >= SHORTEST_JOINED_NAME and word not in self.language.words
+        return range(2, len(word) - 1) if long else range(0)
 
     # --- numbers
 
@@ -232,163 +240,7 @@ class Slots:
     # --- open slots
 
     def _text(self, at: int) -> list[Match]:
-        """Free text of any length; it costs more where it goes on over another command."""
-        if at in self._inside_names:
-            return []
-        matches: list[Match] = []
-        cost = ASKED_IN_TEXT if self._judge.asks(at, len(self.tokens)) else 0.0
-        if self._judge.given_to(at) or self._never_first(at):
-            cost += RECEIVER_IN_TEXT
-        greeted = {at + self._judge.complete_greeting(at)} - {at}
-        for position in range(at, len(self.tokens)):
-            token = self.tokens[position]
-            if position in greeted:
-                cost += BEHIND_GREETING
-            if position > at and self._judge.joined(position, at):  # "3, 2, 1, happy new year"
-                greeted.add(position + self._judge.complete_greeting(position))
-            if token.kind == "mark":
-                if position == at:
-                    return []
-                if self._goes_on(position + 1):
-                    break
-                if token.norm == STOP:
-                    if position + 1 < len(self.tokens) and self._condition(position + 1):
-                        break
-                    cost += 4.0
-                continue
-            if position > at and (self._begins_news(position) or self._only_if(position)):
-                break
-            if position > at and (self._begins_command(position) or self._condition(position)):
-                cost += SWALLOWED_COMMAND
-            if self._asks_on(at, position):
-                cost += ASKED_ON
-            if token.norm in self._unfinished:
-                cost += FREE_WORD
-                continue
-            if token.norm in self._fillers:  # part of the text only if more text follows
-                ends = 0.0 if token.norm in self._spoken_fillers else 0.3
-                if self._keeps_filler(at, position):
-                    ends, matches = 0.0, [match for match in matches if match[0] != position]
-                matches.append((position + 1, cost + ends, None))
-                continue
-            cost += 0.0 if token.kind == "quote" else FREE_WORD
-            matches.append((position + 1, cost, None))
-            if token.kind == "quote" and position == at:
-                break  # what is quoted is the whole text
-        return matches
-
-    def _asks_on(self, at: int, position: int) -> bool:
-        """Whether a question that begins another goes on here: "... and how much it hurts"."""
-        joined = position > at + 1 and self.tokens[position - 1].norm in self._joins
-        words = self._judge.words
-        return joined and self.tokens[position].norm in words.asking | words.that
-
-    def _never_first(self, at: int) -> bool:
-        """Whether a pronoun stands here that no statement begins with: "mir dann, wer da ist"."""
-        before = self.tokens[at - 1] if at else None
-        told = before is not None and before.kind != "mark"
-        reported = before is not None and before.norm in self._judge.words.that
-        return told and not reported and self.tokens[at].norm in self._judge.words.never_first
-
-    def _inside_fillers(self) -> frozenset[int]:
-        """The tokens that belong to whole fillers: "tout" in "tout de suite", not in "tout va"."""
-        norms = tuple(token.norm for token in self.tokens)
-        return frozenset(
-            at + more
-            for at in range(len(norms))
-            for filler in self.language.fillers
-            if norms[at] == filler[0] and norms[at : at + len(filler)] == filler
-            for more in range(len(filler))
-        )
-
-    def _keeps_filler(self, at: int, position: int) -> bool:
-        """Whether a filler is part of the text that it ends: "the new robot", "dinner is ready
-        right now", and anything after a colon ("show: back right now")."""
-        norm = self.tokens[position].norm
-        if position == at or norm in self._not_kept or position not in self._filler_words:
-            return False
-        if self.tokens[at - 1].norm == COLON:
-            return True
-        if norm in self._time_fillers and self._judge.is_clause(at, position):
-            return True
-        before = {token.norm for token in self.tokens[max(at, position - 2) : position]}
-        return norm in self._noun_fillers and not before.isdisjoint(self._judge.words.definite)
-
-    def _remark(self, at: int) -> list[Match]:
-        """Words up to the end of a clause: no punctuation, and nothing that is to be done."""
-        matches: list[Match] = []
-        duties = self.language.speech.get("duties", ())
-        for position in range(at, len(self.tokens)):
-            token = self.tokens[position]
-            if token.norm in duties:
-                return []
-            if token.kind in ("mark", "quote") or self._begins_command(position):
-                break
-            matches.append((position + 1, FREE_WORD * (position + 1 - at), None))
-        return matches
-
-    def _rest(self, at: int) -> list[Match]:
-        """Any words at all, for what is read once more by itself."""
-        return [
-            (end, REST_WORD * (end - at), None)
-            for end in range(at + 1, len(self.tokens) + 1)
-            if self.tokens[end - 1].kind != "mark" and self.tokens[at].kind != "mark"
-        ]
-
-    def _begins_news(self, at: int) -> bool:
-        """Whether something is said that is never part of a text: "... and tell me"."""
-        if at not in self._news_at:
-            self._news_at[at] = self._tells_news(at)
-        return self._news_at[at]
-
-    def _tells_news(self, at: int) -> bool:
-        before = self.tokens[at - 1].norm
-        if before not in (COMMA, STOP, COLON, *self._joins):
-            return False
-        begins = self.language.speech.get("news_begins", ())
-        return any(self._stands_here(at, words.split()) for words in begins)
-
-    def _stands_here(self, at: int, words: Sequence[str]) -> bool:
-        """Whether these are the words from a token on, "*" being any word."""
-        return at + len(words) <= len(self.tokens) and all(
-            word in ("*", self.tokens[at + more].norm) for more, word in enumerate(words)
-        )
-
-    def _only_if(self, at: int) -> bool:
-        """Whether it is said at the end of a clause for which answer it is: "... if not"."""
-        tails = [tail.split() for tail in self.language.speech.get("answer_tails", ())]
-        return any(
-            self._stands_here(at, tail) and self._clause_ends(at + len(tail)) for tail in tails
-        )
-
-    def _clause_ends(self, at: int) -> bool:
-        if at >= len(self.tokens):
-            return True
-        return self.tokens[at].kind == "mark" or self.tokens[at].norm in self._joins
-
-    def _goes_on(self, at: int) -> bool:
-        """Whether after a comma or full stop something else is said to be done: ", then"."""
-        ends = self.language.speech.get("text_ends", ())
-        return at < len(self.tokens) and self.tokens[at].norm in ends
-
-    def _condition(self, at: int) -> bool:
-        """Whether a condition of its own begins: "and if so, ...", "Otherwise ..."."""
-        begins = self.language.speech.get("condition_words", ())
-        joins = self.language.speech.get("joins", ())
-        before = self.tokens[at - 1]
-        return self.tokens[at].norm in begins and (before.norm in joins or before.kind == "mark")
-
-    def _begins_command(self, at: int) -> bool:
-        before = self.tokens[at - 1].norm
-        if before not in (COMMA, STOP, COLON) and before not in self._joins:
-            return False
-        infinitive = self.language.speech.get("infinitive")  # "s'il préfère jouer ou lire"
-        offered = before in self.language.speech.get("or", ())
-        if infinitive and offered and re.search(infinitive, self.tokens[at].norm):
-            return False
-        if self.tokens[at].norm in self._command_words:
-            return not self._judge.wished(at)
-        return self._judge.order(at, len(self.tokens))
+        return [] if at in self._inside_names else self._open_text.text(at)
 
     def _noun(self, at: int) -> list[Match]:
         """Any noun with its adjectives: words that are no function words."""
@@ -425,10 +277,9 @@ class Slots:
         """Whether this is what somebody does, and no noun: "are getting on my nerves"."""
         word, before = self.tokens[at].norm, self.tokens[at - 1].norm if at else ""
         ending = str(self.language.speech.get("gerunds", {}).get("ending", "-"))
-        verbs = self._command_words - self._judge.words.nouns_too
         followed = at + 1 < len(self.tokens) and self.tokens[at + 1].norm in self.language.closed
         doing = word.endswith(ending) and any(
-            base in verbs for base in plain_forms(word[: -len(ending)])
+            self._only_orders(base) for base in plain_forms(word[: -len(ending)])
         )
         return doing and followed and before in self.language.speech.get("being", ())
 
@@ -451,12 +302,16 @@ class Slots:
         branch = trie.branches.get(token.norm) if trie is not None and written else None
         return branch is not None and bool(branch.values)
 
+    def _only_orders(self, norm: str) -> bool:
+        """Whether a command can begin with the word, and it is no noun besides."""
+        return norm in self._command_words and norm not in self._judge.words.nouns_too
+
     def _noun_over(self, at: int, position: int) -> bool:
         """Whether a small letter shows that the noun before is at an end: "Tasse leer"; or, where
         nouns begin with their heads, an order: "la salle d'attente préviens"."""
         norm = self.tokens[position].norm
-        ordered = norm in self._command_words - self._judge.words.nouns_too
-        if position > at and ordered and self.language.speech.get("head_first"):
+        head_first = self.language.speech.get("head_first")
+        if position > at and head_first and self._only_orders(norm):
             return True
         if position == at or not self.language.speech.get("capital_nouns"):
             return False

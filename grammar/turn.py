@@ -102,7 +102,7 @@ class Turn:
         return known or self.is_number(new) or self._is_times(new)
 
     def is_number(self, new: Reader) -> bool:
-        return any(end == new.last_word for end, _, _ in new.slots["{number}"](0))
+        return any(end == new.last_word for end, _, _ in new.slots.matches("{number}", 0))
 
     def there(self, new: Reader) -> str | None:
         """ "in ward b": the command before, there."""

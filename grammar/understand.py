@@ -16,7 +16,7 @@ from typing import Final
 
 from grammar.accounts import in_manner, left_out, unheeded, unspoken
 from grammar.bringing_back import told_when_all_are_asked
-from grammar.chart import CORRECTION, Chart, Node, Slot, TooMuch
+from grammar.chart import CORRECTION, Chart, Node, TooMuch
 from grammar.company import in_company
 from grammar.discourse import Discourse
 from grammar.doubts import Ambiguous, NotUnderstood
@@ -83,7 +83,7 @@ class Reader:
         self.language = language
         self.context = context
         self.names: Names = names_of(language, lexicon)
-        known = language.words | self.names.words | language.closed
+        known = self.names.known
         commands = command_words(language)
         self.text, self.slips = swapped_back(text, language, known)
         self.tokens = mended(tokenise(self.text, language.spelling), language, known, commands)
@@ -267,8 +267,8 @@ class Reader:
             return False
 
     @functools.cached_property
-    def slots(self) -> dict[str, Slot]:
-        return Slots(self.names, self.tokens, self.corrections).all()
+    def slots(self) -> Slots:
+        return Slots(self.names, self.tokens, self.corrections)
 
     def chart(self) -> Chart:
         return self._chart

@@ -49,7 +49,7 @@ def test_numbers_of_several_words(said: str, value: float) -> None:
     numbers = {**english.numbers, "compounds": {"eleven twenty": 90, "eleven twenty ten": 99}}
     language = replace(english, numbers=numbers)
     slots = Slots(names_of(language, Lexicon()), tokenise(said, language.spelling), {})
-    end, _, found = max(slots.all()["{number}"](0))
+    end, _, found = max(slots.matches("{number}", 0))
     assert (end, found) == (len(said.split()), value)
 
 
