@@ -12,7 +12,7 @@ from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing, as_value
 from grammar.doubts import NotUnderstood
 from grammar.meanings.asking_until import until_answered
 from grammar.meanings.claims import meet_there
-from grammar.meanings.conditions import FULL_HOUR, condition_of
+from grammar.meanings.conditions import FULL_HOUR, condition_of, negated
 from grammar.meanings.deliveries import first_clause
 from grammar.meanings.finding import go, look_for, not_found, noun_of
 from grammar.meanings.going_on import about_places, brought_behind, in_round, told_last
@@ -20,7 +20,14 @@ from grammar.meanings.gone_round import of_those, same_round
 from grammar.meanings.news import BACK
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
-from grammar.meanings.waiting import at_least, awaited, looking_up, there_first, wait_until
+from grammar.meanings.waiting import (
+    at_least,
+    awaited,
+    looked_for_at_pace,
+    looking_up,
+    there_first,
+    wait_until,
+)
 from grammar.plan import (
     Ask,
     Call,
@@ -38,6 +45,7 @@ from grammar.plan import (
     Recall,
     Remember,
     Repeat,
+    Step,
     Text,
     Truth,
     Value,
@@ -155,7 +163,14 @@ def loop(d: Discourse, node: Node) -> Steps:
     ending: Node | None = d.get(node, "ending")
     if ending is not None:  # "every ten minutes ..., until five": that is no end of one round
         often = replace(often, parts={**often.parts, **ending.parts})
-    return looped(d, often, lambda: d.build(part))
+    return looped(d, often, lambda: d.build(part), told_when=_has(part, "tell_when"))
+
+
+def _has(part: Leaf | Node, means: str) -> bool:
+    """Whether a clause of this meaning is in it."""
+    if isinstance(part, Leaf):
+        return False
+    return part.production.means == means or any(_has(each, means) for each in part.parts.values())
 
 
 @meaning("watched")
@@ -194,8 +209,11 @@ def how_often(d: Discourse, node: Node) -> Node:
     return node
 
 
-def looped(d: Discourse, often: Node, build: Callable[[], Steps]) -> Steps:
-    """The steps, as often as that, with the pause that it names."""
+def looped(
+    d: Discourse, often: Node, build: Callable[[], Steps], *, told_when: bool = False
+) -> Steps:
+    """The steps, as often as that, with the pause that it names. `told_when`: what they wait for,
+    to be told of it, is looked for at that pace."""
 
     def make() -> Steps:
         return one_round(build())
@@ -214,7 +232,24 @@ def looped(d: Discourse, often: Node, build: Callable[[], Steps]) -> Steps:
     if "lasting" in often.parts:
         return _lasting(d, often, make)
     body = each_who_comes(d, make, at_once="pause" in often.parts)
+    if told_when and "pause" in often.parts:
+        for at, step in enumerate(body):
+            awaited_here = _awaited(step)
+            if awaited_here is not None:
+                pause = Call("wait", {"seconds": as_value(d.get(often, "pause"))})
+                return [*looked_for_at_pace(body[:at], awaited_here, pause), *body[at + 1 :]]
     return there_first([Forever(tuple(_paced(d, often, body)))])
+
+
+def _awaited(step: Step) -> Condition | None:
+    """What a step waits for that does nothing else."""
+    if isinstance(step, Call) and step.method == "wait_for":
+        return Holds(Ask("sees", {"thing": step.arguments["thing"]}))
+    if isinstance(step, While) and all(
+        isinstance(each, Call) and each.method == "wait" for each in step.steps
+    ):
+        return negated(step.condition)
+    return None
 
 
 def one_round(body: Steps) -> Steps:

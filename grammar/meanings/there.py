@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 from typing import Final
 
@@ -12,7 +13,7 @@ from grammar.meanings.answers import yes
 from grammar.meanings.conditions import negated
 from grammar.meanings.deliveries import delivered_last
 from grammar.meanings.finding import noun_of, whether_found
-from grammar.meanings.news import in_round
+from grammar.meanings.news import BACK, in_round
 from grammar.meanings.places import own_place, owner_of, sought
 from grammar.meanings.polls import counted as counted_answers
 from grammar.meanings.registry import meaning
@@ -282,7 +283,11 @@ def counted(d: Discourse, node: Node) -> Condition:
 
 
 def _so_many(d: Discourse, thing: Thing, number: int, operator: str) -> Compare:
-    """Whether there are so many of somebody or something, where the robot has to go for that."""
+    """Whether there are so many of somebody or something, where the robot has to go for that; what
+    has just been counted, and told, is not counted once more."""
+    known = _just_counted(d, thing)
+    if known is not None:
+        return Compare(known, operator, Number(number))
     if thing.place is not None and thing.place != d.at:
         d.went(thing.place)
         d.pending.append(Call("goto", {"place": thing.place}))
@@ -291,6 +296,22 @@ def _so_many(d: Discourse, thing: Thing, number: int, operator: str) -> Compare:
         d.person = replace(thing, plural=True, place=None, here=True)
         d.last_counted = d.person
     return Compare(Ask("count", {"thing": sought(d, thing)}), operator, Number(number))
+
+
+def _just_counted(d: Discourse, thing: Thing) -> Recall | None:
+    """The number of things that were counted last, if nothing but telling it has been done since.
+    People are met again, for something may be said to them."""
+    since = itertools.takewhile(lambda step: not isinstance(step, Remember), reversed(d.done))
+    if thing.person or not all(
+        step == BACK or (isinstance(step, Call) and step.method == "say") for step in since
+    ):
+        return None
+    kept = next((step for step in reversed(d.done) if isinstance(step, Remember)), None)
+    same = thing.place is None or d.last_counted is None or thing.place == d.last_counted.place
+    if kept is None or not same:
+        return None
+    counted = kept.value == Ask("count", {"thing": sought(d, thing)})
+    return Recall(kept.name) if counted else None
 
 
 def counts_answers(d: Discourse, node: Node) -> bool:
@@ -308,12 +329,16 @@ def so_many_agreed(d: Discourse, number: int, operator: str) -> Compare:
 
 
 def counted_thing(d: Discourse, node: Node) -> Thing:
-    """What a condition counts: what was counted before, where it does not say."""
+    """What a condition counts: what was counted before, where it does not say; "people", too, are
+    those who were counted, if that has just been told elsewhere."""
+    before = d.last_counted
     if node.parts.keys() & COUNTED:
-        return noun_of(d, node)
-    if d.last_counted is None:
+        thing = noun_of(d, node)
+        same = before is not None and thing.text == before.text and thing.place is None
+        return before if before is not None and same and d.at == Recall(START) else thing
+    if before is None:
         raise NotUnderstood(d.language.phrase("count_what"))
-    return d.last_counted
+    return before
 
 
 @meaning("counted_between")

@@ -341,17 +341,36 @@ def tell_when(d: Discourse, node: Node) -> Steps:
     before_it, condition = condition_of(d, node)
     claim = claim_of(d, node, condition, d.met)
     meet_there(d, d.met)
-    waiting = awaited(before_it, condition)
+    waiting = _at_the_pace_before(d, [*before_it], condition) or awaited(before_it, condition)
     if waiting and d.done[-1:] == waiting[-1:]:
         waiting = waiting[:-1]  # "wait for her, and when she comes, tell Bob"
     away = d.at is not None or moved(waiting)
     person: Thing = d.get(node, "person_ref")
+    d.looked_in = d.at  # whoever is to be told is not there, or would know
     told = speak_to(d, person, known_words(d) if claim is None else [claim])
     if is_me(person) and away:
         told = [Call("goto", {"place": d.start()}), *told]
     if node.production.fixed.get("always"):
         return each_time(before_it, condition, told)
     return [*waiting, *told]
+
+
+def _at_the_pace_before(d: Discourse, looking: Steps, condition: Condition) -> Steps | None:
+    """ "check the kitchen every ten minutes and tell me when it is empty": looked for at that pace,
+    and no more once it is so."""
+    rounds = d.done[-1] if d.done else None
+    if not isinstance(rounds, Forever):
+        return None
+    *body, pause = rounds.steps
+    if not body or not isinstance(pause, Call) or pause.method != "wait":
+        return None
+    d.done.pop()
+    return looked_for_at_pace([*body, *looking], condition, pause)
+
+
+def looked_for_at_pace(looking: Steps, condition: Condition, pause: Call) -> Steps:
+    """Look whether something is so, and wait before the next look, until it is."""
+    return [*looking, While(negated(at_least(condition)), (pause, *looking))]
 
 
 def wait_before_going_back(d: Discourse, node: Node) -> None:
