@@ -25,7 +25,10 @@ def _with_nouns(d: Discourse, node: Node, options: tuple[str, ...]) -> tuple[str
     one", "the red or the blue pen", "which pen: the red one or the blue one"."""
     ones = d.language.words_called("one_words")
     words = [option.split() for option in options]
-    stands_for = [len(each) > 1 and d.language.tokens_of(each[-1])[0] in ones for each in words]
+    stands_for = [
+        len(each) > 1 and not each[-1].isdigit() and d.language.tokens_of(each[-1])[0] in ones
+        for each in words  # "hall 1" is no "red one"
+    ]
     named = [
         each[-1] for each, one in zip(words, stands_for, strict=True) if len(each) > 1 and not one
     ]
