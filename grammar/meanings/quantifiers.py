@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from itertools import takewhile
 from typing import Any, Final
 
 from grammar.chart import Leaf, Node
@@ -64,6 +65,7 @@ from grammar.plan import (
     Step,
     Text,
     Value,
+    While,
 )
 from grammar.tidy import nodes
 from grammar.wordforms import head_word, singular
@@ -337,6 +339,9 @@ def each_met(d: Discourse, person: Thing, one: One) -> Steps:
     d.at_people = d.at_people or bool(going)
     body = round_of_steps(d, lambda: one(met))
     d.at_people = outer
+    moment = [*takewhile(_is_moment, body)] if not person.coming and person.count is None else []
+    if len(moment) < len(body):  # "remind everyone at five": that is one time for all of them
+        going, body = [*going, *moment], body[len(moment) :]
     if person.but is not None:
         body = [If(Not(Compare(who, "in", person.but)), tuple(body))]
     meeting: Steps = [] if by_name else [Call("wait_for", {"thing": who})]
@@ -361,6 +366,13 @@ def each_met(d: Discourse, person: Thing, one: One) -> Steps:
         assert isinstance(who, Recall)
         return [*going, ForEach(who.name, Ask("people"), steps)]
     return [*going, Repeat(Ask("count", {"thing": who}), steps)]
+
+
+def _is_moment(step: Step) -> bool:
+    """Whether a step only waits for its time."""
+    if isinstance(step, While):
+        return all(map(_is_moment, step.steps))
+    return isinstance(step, Call) and step.method == "wait"
 
 
 def waited_for(d: Discourse, who: Value) -> Value | None:
