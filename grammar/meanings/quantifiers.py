@@ -27,7 +27,7 @@ from grammar.discourse import (
 )
 from grammar.meanings.answers import wanted
 from grammar.meanings.deliveries import inside
-from grammar.meanings.finding import go
+from grammar.meanings.finding import found, go, not_found
 from grammar.meanings.one_round import Make, One, leaves, round_of_steps
 from grammar.meanings.persons import kind_in_plural
 from grammar.meanings.several_places import (
@@ -54,8 +54,10 @@ from grammar.plan import (
     Call,
     Compare,
     Condition,
+    Either,
     ForEach,
     Forever,
+    Holds,
     If,
     Items,
     Not,
@@ -464,8 +466,15 @@ def over_those_who(d: Discourse, node: Node, person: Thing, one: One) -> Steps:
 
 
 def over_either_person(d: Discourse, node: Node, people: list[Thing], one: One) -> Steps:
-    """ "Alice or Bob": whoever is found first."""
-    return first_found(d, people, one)
+    """ "Alice or Bob": whoever is found first. If they are only looked for, it is that one who is
+    spoken of then: "... and tell them that the car is here"."""
+    looked_for = first_found(d, people, one)
+    if not isinstance(looked_for[-1], If) or not isinstance(looked_for[-1].condition, Not):
+        return looked_for
+    whoever = Thing(Text(ANYONE), person=True, here=True)
+    d.person, d.with_person, d.thing_last = whoever, whoever.value, False
+    anybody = Either(tuple(Holds(Ask("find", found(d, each).arguments)) for each in people))
+    return [If(Not(anybody), (not_found(d, whoever),))]
 
 
 OVER: Final[dict[str, Callable[[Discourse, Node, Any, One], Steps]]] = {
