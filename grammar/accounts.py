@@ -8,6 +8,7 @@ then refused, with the word, rather than obeyed in part.
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 import unicodedata
 from collections.abc import Iterator, Set
@@ -24,6 +25,7 @@ from grammar.tokens import Token
 
 NAMES: Final = frozenset({"noun", "object", "person", "stranger", "place", "furniture"})
 TEXTS: Final = frozenset({"text", "remark", "word", "verb", "quote"})
+OVER_AND_OVER: Final = 3
 FREE: Final = frozenset({"text"})
 NO_PART: Final = frozenset(
     {"corrected", "place_corrected", "statement", "refused"}
@@ -37,6 +39,23 @@ ALIKE: Final = 0.5
 """The part of a word that its form in the plan begins with, too: "cookies" and "cooky"."""
 SHORTEST: Final = 3
 """Letters of that part at least."""
+
+
+def said_over_and_over(tree: Node, tokens: tuple[Token, ...], language: Language) -> list[str]:
+    """The words that stand three times or more in a row where nobody is to say it: "lobby lobby
+    lobby" is noise."""
+    named = {at for leaf in _leaves(tree, NAMES) for at in range(leaf.start, leaf.end)}
+    spoken = {at for leaf in _leaves(tree, TEXTS) for at in range(leaf.start, leaf.end)}
+    rows = itertools.groupby(range(len(tokens)), lambda at: tokens[at].norm)
+    return [
+        tokens[row[0]].norm
+        for row in (list(each) for _, each in rows)
+        if len(row) >= OVER_AND_OVER
+        and tokens[row[0]].kind == "word"
+        and (tokens[row[0]].norm,) not in language.fillers
+        and spoken.isdisjoint(row)
+        and named.intersection(row)
+    ]
 
 
 def left_out(
@@ -56,7 +75,7 @@ def left_out(
     base_forms = language.speech.get("base_forms", {})
     # Who is sent to a piece of furniture is sent to where it stands.
     homes = {each.name: each.inside for each in lexicon.furniture if each.inside}
-    missing: list[str] = []
+    missing = said_over_and_over(tree, tokens, language)
     for leaf in _leaves(tree, slots):
         if isinstance(leaf.value, tuple):
             names = [_name_of(value) for value in leaf.value]

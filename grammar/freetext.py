@@ -243,6 +243,9 @@ class Judge:
             begun = self.tokens[at].norm == STOP and self.tokens[at + 1].norm in self.joins
             if begun and not self.is_clause(at + 2, end):
                 return doubt(at + 1, "said_or_done")
+        asked_to = node.means in REQUESTED and self.tokens[start - 1].norm in words.to
+        if asked_to and self.tokens[start].norm in self.language.speech.get("articles", ()):
+            return doubt(start, "not_understood")  # "tell Bob to the kitchen": no verb
         last = self.tokens[end - 1].norm
         if last in self.joins | self.words.goes_on:
             return doubt(end - 1, "not_understood")  # "..., except"
@@ -282,6 +285,9 @@ class Judge:
         if node.production.fixed.get("wish"):  # "a nice weekend"
             where = [at for at in range(start, end) if self.tokens[at].norm in words.not_greeting]
             return doubt(where[0], "said_or_done") if where else None
+        late = range(start + 1, end) if self.tokens[start].norm in words.not_greeting else ()
+        if spoken and any(self.tokens[at].norm in words.that for at in late):
+            return doubt(start, "said_or_done")  # "every ten minutes that the soup is ready"
         if self.is_clause(start, end):
             return None
         if spoken and self.asks(start, end):

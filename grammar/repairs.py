@@ -38,8 +38,13 @@ def understood(
     reader = Reader(text, lexicon, language, context)
     for start, end in taken_back(reader) if depth < MOST_REPAIRS else ():
         before = Reader(reader.words(0, start), lexicon, language, context)
+        end = _behind_what_was_wrong(reader, end)
         behind = Reader(reader.text[reader.tokens[end].start :], lexicon, language, context)
-        others = itertools.chain(_with_other_look(before, behind), _in_its_place(before, behind))
+        others = itertools.chain(
+            _broken_off(before, behind),
+            _with_other_look(before, behind),
+            _in_its_place(before, behind),
+        )
         for tried, fixed in enumerate(others):
             if tried == MOST_TRIED:
                 break
@@ -62,6 +67,23 @@ def taken_back(reader: Reader) -> Iterator[tuple[int, int]]:
         if end and start and end < len(tokens) and not _said_aloud(reader, start, end):
             yield start, end
         at = max(end, at + 1)
+
+
+def _behind_what_was_wrong(reader: Reader, at: int) -> int:
+    """Where it is said what is meant, if it is said once more what is not: "no, not the pharmacy,
+    the lab"."""
+    rest = reader.tokens[at:]
+    if rest[0].norm not in reader.language.speech["taking_back"].get("not", ()):
+        return at
+    marks = (place for place, token in enumerate(rest, at) if token.kind == "mark")
+    behind = next(marks, reader.last_word - 1) + 1
+    return behind if behind < reader.last_word else at
+
+
+def _broken_off(before: Reader, behind: Reader) -> Iterator[str]:
+    """A sentence broken off at a little word, and gone on with: "go to, no wait, the lab"."""
+    if before.tokens[before.last_word - 1].norm in before.language.speech.get("half_ends", ()):
+        yield f"{before.text.rstrip(' ,')} {behind.text}"
 
 
 def _end_of_term(reader: Reader, at: int, parted: bool) -> int:

@@ -48,7 +48,11 @@ def swapped_back(text: str, language: Language, known: Collection[str]) -> tuple
         word = text[token.start : token.end]
         if token.kind != "word" or not word.islower() or len(word) < SHORTEST_SWAPPED:
             continue
-        if word in real or token.value is not None or is_known(word, language, known):
+        if (
+            {word, singular(word, language)} & {*real}
+            or token.value is not None
+            or is_known(word, language, known)
+        ):
             continue
         meant = {
             each
@@ -79,7 +83,9 @@ def mended(
     verbs: Collection[str],
 ) -> tuple[Token, ...]:
     """The tokens with joined words parted and verbs in the form that commands begin with."""
-    parted = [part for token in tokens for part in _parted(token, language, known)]
+    parted = [
+        part for token in _apart(tokens, language) for part in _parted(token, language, known)
+    ]
     return tuple(_in_plain_form(_opened(parted, language), language, verbs))
 
 
@@ -98,6 +104,18 @@ def _opened(tokens: list[Token], language: Language) -> list[Token]:
         is_verb = token.norm == mark and follow[:1] and follow[0] in data["before"]
         opened.append(replace(token, norm=str(data["verb"])) if is_verb else token)
     return opened
+
+
+def _apart(tokens: tuple[Token, ...], language: Language) -> Iterator[Token]:
+    """ "its in the kitchen" with "it is": words typed without the mark that parts them, where what
+    follows tells that they are two."""
+    run_together = language.speech.get("run_together", {})
+    for token, after in itertools.zip_longest(tokens, tokens[1:]):
+        two = run_together.get(token.norm)
+        if two is None or after is None or after.norm not in two["before"]:
+            yield token
+        else:
+            yield from (replace(token, norm=str(word)) for word in two["words"])
 
 
 def _parted(token: Token, language: Language, known: Collection[str]) -> list[Token]:

@@ -64,7 +64,7 @@ def understand(
 ) -> Understanding:
     """Understand a sentence. Never raises for any text; `UnknownLanguage` for a language that
     there is no folder for."""
-    from grammar import repairs
+    from grammar import in_between, repairs
 
     pack = load_language(language)
     context = context or Context()
@@ -72,7 +72,11 @@ def understand(
         return rejected(text, pack.phrase("empty"), context)
     if len(text) > LONGEST_TEXT or len(text.split()) > MOST_WORDS:
         return rejected(text, pack.phrase("too_long"), context)
-    return repairs.understood(text, lexicon, pack, context)
+    result = repairs.understood(text, lexicon, pack, context)
+    if result.status != "ok":
+        reader = Reader(text, lexicon, pack, context)
+        return in_between.understood(reader, lexicon, pack, context) or result
+    return result
 
 
 class Reader:

@@ -103,6 +103,13 @@ def gesture(d: Discourse, node: Node) -> Steps:
     return speak_to(d, d.get(node, "person_ref"), [call])
 
 
+@meaning("emotion")
+def emotion(d: Discourse, node: Node) -> Steps:
+    """ "look happy"; "smile at Bob" is shown to him."""
+    call = Call("emotion", {"name": as_value(d.get(node, "name"))})
+    return speak_to(d, d.get(node, "person_ref"), [call])
+
+
 @meaning("skill")
 def skill(d: Discourse, node: Node) -> Steps:
     return [Call("do", {"skill": as_value(d.get(node, "skill"))})]

@@ -313,6 +313,8 @@ def on_the_way(d: Discourse, node: Node) -> Steps:
         raise NotUnderstood(d.language.phrase("where_is_there"))
     d.at = None
     stops: Steps = d.build(node.parts["steps"])
+    if "more" in node.parts:  # "stop by Bob's office on the way to the lobby and say hello"
+        stops = [*stops, *d.build(node.parts["more"])]
     if isinstance(going, Call) and going.method == "guide":
         stops = [_guided(each, going) for each in stops]
     d.at = d.place = target

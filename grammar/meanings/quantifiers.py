@@ -165,10 +165,12 @@ def taken_from_there(d: Discourse, node: Node, several: list[Node], make: Make) 
 
 
 def hands_one_of_several(d: Discourse, node: Node) -> bool:
-    """ "get the flyers and give one to everybody": straight there."""
+    """ "get the flyers and give one to everybody", "... put one in each office": straight there."""
     part = node.parts.get("thing")
-    several = d.thing is not None and d.thing.several
-    return several and node.means == "bring" and isinstance(part, Node) and part.means == "thing_it"
+    if d.thing is None or not d.thing.several or not isinstance(part, Node):
+        return False
+    hands = node.means == "bring" or (node.means == "put" and not d.is_plural(part))
+    return hands and part.means == "thing_it"
 
 
 def one_each(d: Discourse, several: list[Node]) -> list[Node]:

@@ -18,6 +18,7 @@ from grammar.discourse import Discourse, Steps, Thing, Where, as_value
 from grammar.doubts import NotUnderstood
 from grammar.freetext import words_for
 from grammar.meanings.genders import gender_of_thing
+from grammar.meanings.options import people_named
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report
 from grammar.meanings.sources import all_there_are, told_where
@@ -49,6 +50,9 @@ def remark(d: Discourse, node: Node) -> Steps:
                 d.build(part)
                 if node.production.fixed.get("coming") and d.person is not None:
                     d.person = expected(d.person)
+    named = people_named(d, node.start, node.end)
+    if len(named) == 1:  # "a letter came for Bob"
+        d.person, d.thing_last = Thing(Text(named[0]), person=True, known=True), False
     if not node.production.fixed.get("own"):
         d.report = Report("only", Text(sentence_form(_said(d, node))), about_here=False)
         d.report_step = None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, as_value
 from grammar.doubts import NotUnderstood
@@ -24,6 +26,7 @@ from grammar.plan import (
     Step,
     Text,
     Value,
+    While,
 )
 from grammar.tidy import nodes, replaced
 
@@ -70,6 +73,18 @@ def do_that_more(d: Discourse, node: Node) -> Steps:
 def do_that_again(d: Discourse, node: Node) -> Steps:
     """ "and again", "repeat that": once more."""
     return [Repeat(as_value(d.get(node, "times", 2)), all_before(d))]
+
+
+@meaning("again_later")
+def again_later(d: Discourse, node: Node) -> Steps:
+    """ "..., and again at half past twelve": once more then, without the wait it began with."""
+    waiting: Steps = d.build(node.parts["delay"])
+    return [*waiting, *itertools.dropwhile(only_waits, all_before(d, keep=True))]
+
+
+def only_waits(step: Step) -> bool:
+    inner = step.steps if isinstance(step, While) else (step,)
+    return all(isinstance(each, Call) and each.method == "wait" for each in inner)
 
 
 @meaning("same_for")

@@ -63,6 +63,10 @@ def over_things(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
     body = round_of_steps(d, lambda: one(single if d.at is None else replace(single, here=True)))
     if not body:
         return []
+    if thing.here and thing.count is not None and thing.place is None and not is_grab(body):
+        back = Call("goto", {"place": d.start()})  # "these two cups": the second is here, too
+        d.thing, d.thing_last = thing, True
+        return [Repeat(Number(thing.count), (back, *body))]
     if is_grab(body):  # "collect the cups": where to is said next
         d.collected, d.thing, d.thing_last = thing, thing, True
         d.at = at

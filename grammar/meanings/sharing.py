@@ -8,25 +8,28 @@ taken from, the others are, too, unless something else is said; and what was to 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.carrying import deliver
 from grammar.meanings.nouns import spoken_of
+from grammar.meanings.places import source_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.several_things import begun_before
 from grammar.meanings.sources import where_told
 from grammar.meanings.thing_lists import off_the_list, other_of_two
-from grammar.plan import Items, Text
+from grammar.plan import Items, Text, Value
 
 
 @dataclass(frozen=True)
 class Share:
-    """What one of them gets."""
+    """What one of them gets, or what is put in one place."""
 
     thing: Thing
-    person: Thing
+    person: Thing | None
+    where: Where | None = None
 
 
 @meaning("one_more")
@@ -58,8 +61,8 @@ def several_of(d: Discourse, node: Node) -> Thing:
 
 @meaning("share")
 def share(d: Discourse, node: Node) -> Share:
-    """ "a coffee for Alice": who gets what."""
-    return Share(d.get(node, "thing"), d.get(node, "person_ref"))
+    """ "a coffee for Alice": who gets what; "one in the lobby": what is put where."""
+    return Share(d.get(node, "thing"), d.get(node, "person_ref"), d.get(node, "where"))
 
 
 @meaning("receivers")
@@ -135,7 +138,24 @@ def shared_out(
         thing = off_the_list(d, each.thing)
         if thing.place is None and not thing.here:
             thing = replace(thing, place=place, furniture=thing.furniture or furniture)
+        if each.where is not None and thing.place is None and not thing.here and steps:
+            place = source_in(d, steps, thing)  # and not where the share before was put
+            thing = replace(thing, place=place)
         if thing.place is None:
             d.at = None  # nobody says that it is where the share before was brought to
-        steps += d.sequence(lambda t=thing, p=each.person: d.done.extend(deliver(d, t, p, None)))  # type: ignore[misc]
+        steps += d.sequence(partial(hand_out, d, thing, each))
     return steps
+
+
+def source_in(d: Discourse, steps: Steps, thing: Thing) -> Value | None:
+    """Where a thing was taken in steps that are not among those done yet."""
+    outer, d.done = d.done, steps
+    try:
+        return source_of(d, thing)
+    finally:
+        d.done = outer
+
+
+def hand_out(d: Discourse, thing: Thing, share: Share) -> None:
+    """Bring one of them to whom, or where, it is for."""
+    d.done.extend(deliver(d, thing, share.person, share.where))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from grammar.chart import Leaf, Node, what_it_means
-from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
+from grammar.discourse import ANYONE, START, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings import news
 from grammar.meanings.answered_numbers import number_answered
@@ -293,6 +293,9 @@ def counted_info(d: Discourse, node: Node) -> Report | Steps:
         place=thing.place or more.place or (first.place if first else None),
         furniture=thing.furniture or more.furniture or (first.furniture if first else None),
     )
+    nowhere = thing.place is None and d.at in (None, Recall(START))
+    if nowhere and no_kind(node) and d.last_counted is not None:
+        thing = replace(thing, place=d.last_counted.place)  # of those who were counted there
     d.last_counted = thing
     if not thing.person:
         d.thing = replace(thing, plural=True)  # "..., and which one is the smallest"
@@ -300,6 +303,12 @@ def counted_info(d: Discourse, node: Node) -> Report | Steps:
         there = d.person.place or thing.place
         d.person = replace(d.person, plural=True, place=there)  # who are counted are several
     return count_report(d, thing)
+
+
+def no_kind(node: Node) -> bool:
+    """Whether people are spoken of only by what they do: "how many are sitting"."""
+    part = node.parts.get("thing")
+    return isinstance(part, Node) and part.parts.keys() == {"mods"}
 
 
 def count_report(d: Discourse, thing: Thing) -> Report:
@@ -432,9 +441,14 @@ def located(d: Discourse, thing: Thing) -> Steps:
 
 @meaning("counted_too")
 def counted_too(d: Discourse, node: Node) -> news.Told:
-    """ "how many people are in the kitchen and how many in the lobby"."""
+    """ "tell me how many people are in the kitchen and how many in the lobby"."""
+    return told_report(d, counted_there(d, node))
+
+
+@meaning("counted_there")
+def counted_there(d: Discourse, node: Node) -> Report:
+    """ "How many people are in the kitchen, and how many in the lobby?"."""
     if d.last_counted is None:
         raise NotUnderstood(d.language.phrase("count_what"))
     spot: Where = d.get(node, "spot")
-    thing = replace(d.last_counted, place=spot.place, furniture=spot.furniture)
-    return told_report(d, count_report(d, thing))
+    return count_report(d, replace(d.last_counted, place=spot.place, furniture=spot.furniture))

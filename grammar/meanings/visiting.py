@@ -11,7 +11,7 @@ from typing import Final
 
 import msgspec
 
-from grammar.chart import Node
+from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.alternatives import itself
@@ -61,6 +61,25 @@ def tour(d: Discourse, node: Node) -> Steps:
     with_me = node.production.fixed.get("along") and is_me(d.get(node, "person_ref"))
     go_on = followed if with_me else lead
     return [*steps, *(go_on(d, person, place) for place in d.get(node, "stops"))]
+
+
+@meaning("tour_told")
+def tour_told(d: Discourse, node: Node) -> Steps:
+    """ "give them a tour: in the lab tell them ..., then go on to the library and say ..."."""
+    person = led(d, node)
+
+    def make() -> None:
+        d.done.extend(meet(d, person))
+        stops: Leaf | Node | None = node.parts["stops"]
+        while isinstance(stops, Node):
+            stop = stops.parts["first"]
+            assert isinstance(stop, Node)
+            d.done.append(lead(d, person, d.get(stop, "place")))
+            if "steps" in stop.parts:
+                d.done.extend(d.build(stop.parts["steps"]))
+            stops = stops.parts.get("rest")
+
+    return d.sequence(make)
 
 
 @meaning("tour_goes_on")
