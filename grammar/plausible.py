@@ -154,7 +154,10 @@ def _repeats(steps: tuple[Step, ...]) -> bool:
             among = (step.items, here) if step.items == PRESENT else step.items
             if any(asked & before and among in (those, EVERYWHERE) for those, before in done):
                 return True
-            done.append((among, asked))
+            if _changes_something(step):
+                done.clear()
+            else:
+                done.append((among, asked))
         elif _changes_something(step):
             done.clear()
     return False

@@ -120,6 +120,8 @@ class Round:
     which one"."""
     present: Any = None
     """The news of who of several people is in (`grammar.meanings.presence`)."""
+    present_found: Any = None
+    """The variable with which of them are in, and who they are."""
     such: str | None = None
     """The variable with the place that was looked for, as the first that is so."""
     told_of: bool = False

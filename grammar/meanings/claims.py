@@ -42,7 +42,7 @@ COUNT: Final = "count"
 def claim_of(d: Discourse, node: Node, condition: Condition, met: Meeting | None) -> Step | None:
     """What a condition says, as a sentence of its own: "if there is a cup, tell me"."""
     part = node.parts["condition"]
-    if what_it_means(part) == "some_places" and d.round.claims is not None:
+    if what_it_means(part) in ("some_places", "present_so_many") and d.round.claims is not None:
         claims = d.round.claims
         said: Step = claims.yes if condition == claims.condition else claims.no
         return said

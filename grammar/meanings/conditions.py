@@ -34,6 +34,9 @@ from grammar.plan import (
 )
 from grammar.tidy import nodes
 
+TELLING: Final = frozenset({"tell_that", "tell_me_that"})
+"""Clauses that only say whom to tell of what was found out."""
+
 
 @meaning("and")
 def and_(d: Discourse, node: Node) -> Condition:
@@ -98,7 +101,7 @@ def only_told_of(node: Node) -> bool:
     if then is None:
         return node.means == "tell_condition"
     means = {each.means for each in inside(then)}
-    return bool(means & {"tell_that", "tell_me_that"}) and "place_there" not in means
+    return bool(means & TELLING) and "place_there" not in means
 
 
 def named_before(d: Discourse, node: Node, name: str) -> None:

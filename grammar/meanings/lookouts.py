@@ -341,6 +341,12 @@ def told_at_last(d: Discourse) -> Steps:
     if lookout is None or lookout.depth != d.depth:
         return []
     at = lookout.at(d)
+    if at is not None and at != len(d.done) - 1 and lookout.tell == "all" and not lookout.definite:
+        # "check that nobody is in the labs, then go to the charger": told in between
+        d.start()
+        told = lookout.told(d).words
+        d.done[at + 2 : at + 2] = [BACK, *told]
+        return []
     if at != len(d.done) - 1 or lookout.definite:
         lookout.until_found(d)
         return []

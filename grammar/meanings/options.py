@@ -6,6 +6,7 @@ from typing import Final
 
 from grammar.chart import Node
 from grammar.discourse import Discourse
+from grammar.doubts import NotUnderstood
 from grammar.plan import Ask, Items, Text, Value
 from grammar.tokens import COLON, COMMA
 from grammar.wordforms import singular
@@ -62,7 +63,12 @@ def _offered(d: Discourse, node: Node) -> tuple[str, ...]:
     fixed = node.production.fixed
     listed = node.parts.get("options")
     if listed is not None:
-        return split_options(d, listed.start, listed.end)
+        named = split_options(d, listed.start, listed.end)
+        if len(named) == 1 and d.tokens[listed.start].norm == COMMA:
+            # "ask her what she wants, get it and ...": no choice
+            said = d.words(listed.start, listed.end)
+            raise NotUnderstood(d.language.phrase("not_understood", part=said))
+        return named
     if fixed.get("choices") and "rest" in node.parts:
         return split_options(d, node.parts["rest"].start, node.parts["rest"].end)
     numbers = numbers_offered(d, node.start, node.end)

@@ -127,7 +127,8 @@ def place_there(d: Discourse, node: Node) -> Value:
 def taken_elsewhere(d: Discourse, node: Node) -> bool:
     """ "take the visitor from the lobby there": whether the place that was named last is where the
     command itself takes somebody or something from, so that it is not meant by "there"."""
-    words = " ".join(d.norms(max(node.start - 6, 0), node.start))
+    end = node.end - 1 if d.tokens[node.end - 1].kind == "word" else node.end - 2
+    words = " ".join(d.norms(max(end - 6, 0), end))
     called = d.place.value.lower() if isinstance(d.place, Text) else None
     return bool(called) and d.place != d.place_before and words.endswith(str(called))
 

@@ -9,17 +9,19 @@ from msgspec.structs import replace
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.doubts import NotUnderstood
-from grammar.meanings.finding import go
+from grammar.meanings.finding import go, together
 from grammar.meanings.gone_round import last_round, places_of, round_of, round_of_visits
-from grammar.meanings.news import News, Told, go_back, last_found
+from grammar.meanings.news import News, Told, go_back, last_found, take_back
 from grammar.meanings.places import unknown_place
 from grammar.meanings.registry import meaning
+from grammar.meanings.some_places import Claims
 from grammar.meanings.surveys import replacing
 from grammar.plan import (
     Ask,
     Call,
     Collect,
     Compare,
+    Condition,
     ForEach,
     Holds,
     If,
@@ -63,6 +65,7 @@ def presence_told(d: Discourse, node: Node) -> Told:
         first.append(Call("goto", {"place": Text(place)}))
         first.append(If(here, (Collect(found, person.value),)))
     d.at = d.with_person = None
+    d.round.present_found = found, people
     none = d.say("nobody_of_them")
     some = d.say("these_are_there", names=Recall(found))
     return Told([if_any(found, none, some)], first)
@@ -91,6 +94,8 @@ def those_met(
         d.done.insert(0, first.pop())
     else:
         first += notes
+    if not missing:
+        d.round.present_found = found, people
     none, some = ("nobody_missing", "who_missing") if missing else NONE_AND_SOME
     return Told([if_any(found, d.say(none), d.say(some, names=Recall(found)))], first)
 
@@ -119,6 +124,38 @@ def presence(d: Discourse, node: Node) -> Steps:
     d.news, d.told = News(told.words, True), told.words[-1]
     d.round.present = d.news
     return [*told.first, *back, *told.words]
+
+
+@meaning("present_so_many")
+def present_so_many(d: Discourse, node: Node) -> Condition:
+    """ "see if Alice and Bob are in. If both are there, ...", "if neither is in"."""
+    if d.round.present_found is None or d.news is None or d.news is not d.round.present:
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("cannot_check", what=words))
+    found, people = d.round.present_found
+    take_back(d, d.news)
+    d.news = None
+    d.person, d.thing_last = together(people), False
+    d.group, d.met = d.person.group, None
+    how = str(node.production.fixed["how"])
+    operator, number = {
+        "all": ("==", len(people)),
+        "not_all": ("<", len(people)),
+        "none": ("==", 0),
+        "some": (">", 0),
+        "one": ("==", 1),
+    }[how]
+    condition = Compare(Length(Recall(found)), operator, Number(number))
+    none = d.say("who_missing", names=Text(joined_by(d, people)))
+    some = d.say("these_are_there", names=Recall(found))
+    either = if_any(found, none, some)
+    so: Step = none if how == "none" else either if how == "not_all" else some
+    d.round.claims = Claims(condition, so, either)
+    return condition
+
+
+def joined_by(d: Discourse, people: list[Thing]) -> str:
+    return ", ".join(d.called(each.text) for each in people)
 
 
 @meaning("who_where")

@@ -319,16 +319,26 @@ def places_told(d: Discourse, node: Node) -> Told:
     told_of = trait.condition
     if node.production.fixed.get("as_it_is"):  # "are all labs empty?": where they are not is told
         told_of = negated(told_of)
-    noted: Step = If(told_of, (Collect(found, Recall(place)),))
+    others = d.variable("others") if tell == "both" else ""
+    rest = (Collect(others, Recall(place)),) if tell == "both" else ()
+    noted: Step = If(told_of, (Collect(found, Recall(place)),), rest)
     going: Steps = [Remember(found, Items(()))]
     if at is not None and isinstance(loop, ForEach):
         loop = without_check(d, loop)
         d.done[at] = replace(loop, steps=(*loop.steps, *trait.first, noted))
         d.done.insert(0, going.pop())
+        if rest:
+            d.done.insert(0, Remember(others, Items(())))
     else:
+        if rest:
+            going.append(Remember(others, Items(())))
         going.append(round_of(d, places_of(d, node), [*trait.first, noted], place))
     gone_round = loop.items if isinstance(loop, ForEach) else places_of(d, node)
-    return Told(found_places(d, tell, found, gone_round), going)
+    words = found_places(d, tell, found, gone_round)
+    if rest:
+        left = Compare(Length(Recall(others)), ">", Number(0))
+        words.append(If(left, (d.say("not_such_places", places=Recall(others)),)))
+    return Told(words, going)
 
 
 def without_check(d: Discourse, loop: ForEach) -> ForEach:

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import Final
 
 from grammar.chart import Node
-from grammar.discourse import ANYONE, Discourse, Steps, Thing, as_value
+from grammar.discourse import ANYONE, Claim, Discourse, Steps, Thing, as_value
 from grammar.meanings.best_places import Such, first_such
-from grammar.meanings.conditions import negated
+from grammar.meanings.conditions import TELLING, negated
 from grammar.meanings.deliveries import inside
 from grammar.meanings.gone_round import last_round, round_of
 from grammar.meanings.news import in_round
@@ -19,7 +19,6 @@ from grammar.meanings.registry import meaning
 from grammar.meanings.rounds import how_many
 from grammar.meanings.traits import for_each_place_such
 from grammar.plan import (
-    Call,
     Collect,
     Compare,
     Condition,
@@ -30,6 +29,7 @@ from grammar.plan import (
     Recall,
     Remember,
     Share,
+    Step,
     Value,
 )
 
@@ -41,8 +41,8 @@ class Claims:
     """What is so if a condition on several places holds, and what if not."""
 
     condition: Condition
-    yes: Call
-    no: Call
+    yes: Step
+    no: Step
 
 
 @meaning(SOME_PLACES)
@@ -135,9 +135,13 @@ def enough(d: Discourse, node: Node, how: str, number: Value, places: Value) -> 
 def if_any_such(d: Discourse, node: Node) -> Steps:
     """ "if any lab has no stapler, bring one there": to each of them; "if any lab is free, take the
     visitor there": to one."""
-    if not any(each.means == "guide" for each in inside(node.parts["steps"])):
+    means = {each.means for each in inside(node.parts["steps"])}
+    told_of = bool(means & TELLING)
+    if not told_of and "guide" not in means:
         return for_each_place_such(d, node)
-    outer, d.pending = d.pending, []
-    condition = one_such(d, places_in_question(d, node))
+    outer, d.pending, d.round.told_of = d.pending, [], told_of
+    condition = so_in(d, node, "some")
     before, d.pending = d.pending, outer
+    if told_of:
+        d.claim = Claim(d.round.claims.yes, d.known_by_now())
     return [*before, If(condition, tuple(d.build(node.parts["steps"])))]
