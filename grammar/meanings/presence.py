@@ -18,10 +18,12 @@ from grammar.meanings.some_places import Claims
 from grammar.meanings.surveys import replacing
 from grammar.plan import (
     Ask,
+    Both,
     Call,
     Collect,
     Compare,
     Condition,
+    Either,
     ForEach,
     Holds,
     If,
@@ -130,8 +132,7 @@ def presence(d: Discourse, node: Node) -> Steps:
 def present_so_many(d: Discourse, node: Node) -> Condition:
     """ "see if Alice and Bob are in. If both are there, ...", "if neither is in"."""
     if d.round.present_found is None or d.news is None or d.news is not d.round.present:
-        words = d.words(node.start, node.end)
-        raise NotUnderstood(d.language.phrase("cannot_check", what=words))
+        return seen_here(d, node)
     found, people = d.round.present_found
     take_back(d, d.news)
     d.news = None
@@ -152,6 +153,20 @@ def present_so_many(d: Discourse, node: Node) -> Condition:
     so: Step = none if how == "none" else either if how == "not_all" else some
     d.round.claims = Claims(condition, so, either)
     return condition
+
+
+def seen_here(d: Discourse, node: Node) -> Condition:
+    """The same of those who were spoken of, where nobody has looked for them yet."""
+    group = d.person.group if d.person is not None else None
+    how = str(node.production.fixed["how"])
+    if not isinstance(group, Items) or how == "one":
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("cannot_check", what=words))
+    seen = tuple(Holds(Ask("sees", {"thing": each})) for each in group.items)
+    if how in ("all", "not_all"):
+        every: Condition = Both(seen)
+        return every if how == "all" else Not(every)
+    return Either(seen) if how == "some" else Not(Either(seen))
 
 
 def joined_by(d: Discourse, people: list[Thing]) -> str:
