@@ -154,10 +154,7 @@ def _repeats(steps: tuple[Step, ...]) -> bool:
             among = (step.items, here) if step.items == PRESENT else step.items
             if any(asked & before and among in (those, EVERYWHERE) for those, before in done):
                 return True
-            if _changes_something(step):
-                done.clear()
-            else:
-                done.append((among, asked))
+            done.append((among, asked))
         elif _changes_something(step):
             done.clear()
     return False

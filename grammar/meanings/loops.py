@@ -20,7 +20,6 @@ from grammar.meanings.gone_round import of_those, same_round
 from grammar.meanings.news import BACK
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
-from grammar.meanings.searches import named_places
 from grammar.meanings.waiting import (
     at_least,
     awaited,
@@ -29,7 +28,7 @@ from grammar.meanings.waiting import (
     there_first,
     wait_until,
 )
-from grammar.meanings.whereabouts import looked_further
+from grammar.meanings.whereabouts import looked_on_in
 from grammar.plan import (
     Ask,
     Call,
@@ -347,10 +346,8 @@ def for_each_place(d: Discourse, node: Node) -> Steps:
     goes, body = bool(node.production.fixed.get("go")), node.parts.get("steps")
     if goes and body is None and same_round(d, items):
         return []
-    if goes and body is None and d.missing is not None and (named := named_places(d, items)):
-        looked = looked_further(d, named)  # "if he is not in his office, look in the labs"
-        if looked is not None:
-            return looked
+    if goes and body is None and (looked := looked_on_in(d, items)) is not None:
+        return looked  # "if he is not in his office, look in the labs"
     if goes and isinstance(body, Node) and comes_back(body):
         d.done += each_place(d, items, None, goes)
         told = told_on_return(body)

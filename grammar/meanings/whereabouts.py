@@ -80,6 +80,12 @@ def look_on(d: Discourse, node: Node) -> Steps:
     return [ForEach(place.name, places, (Call("goto", {"place": place}),))]
 
 
+def looked_on_in(d: Discourse, places: Value) -> Steps | None:
+    """The steps that look in places for what was just not found; None if nothing was."""
+    named = named_places(d, places) if d.missing is not None else None
+    return looked_further(d, named) if named else None
+
+
 def looked_further(d: Discourse, places: list[Value]) -> Steps | None:
     """The steps that look in more places for what was not found, or may not be found, before; None
     if nothing was looked for."""
