@@ -7,6 +7,7 @@ are moved to the beginning of their clause, and the sentence is understood anew.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator
 from typing import Final
 
@@ -42,7 +43,10 @@ def understood(
 def _moved(reader: Reader) -> Iterator[tuple[str, int]]:
     """The sentence with a time from the middle of a clause at its beginning, and where it stood."""
     tokens, text = reader.tokens, reader.text
+    begins = _begins(reader.language)
     for at in range(1, len(tokens) - 1):
+        if tokens[at].value is None and tokens[at].kind == "word" and tokens[at].norm not in begins:
+            continue
         end = _end_of_time(reader, at)
         begin = _begin_of_clause(reader, at)
         if not end or end >= reader.last_word or begin == at or _parts(reader, end):
@@ -51,6 +55,14 @@ def _moved(reader: Reader) -> Iterator[tuple[str, int]]:
         time = text[tokens[at].start : last]
         lead = f"{text[:first]}{time}, {text[first : tokens[at].start].rstrip()}"
         yield f"{lead} {text[last:].lstrip()}", len(lead)
+
+
+@functools.cache
+def _begins(language: Language) -> frozenset[str]:
+    """The words that such a time can begin with."""
+    network = language.network
+    rules = {network.rule(rule) for rule in WHEN}
+    return frozenset(word for word, those in network.beginning.items() if rules & those)
 
 
 def _end_of_time(reader: Reader, at: int) -> int:

@@ -18,7 +18,7 @@ from grammar.meanings.places import (
 )
 from grammar.meanings.registry import meaning
 from grammar.meanings.thing_lists import other_of_two
-from grammar.plan import Text
+from grammar.plan import Text, Value
 from grammar.tokens import Token
 from grammar.wordforms import head_word, singular
 
@@ -221,7 +221,10 @@ def thing_it(d: Discourse, node: Node) -> Thing:
 @meaning("thing_opening")
 def thing_opening(d: Discourse, node: Node) -> Thing:
     """ "the key to the supply room": the supply room key, wherever that is."""
-    place: Text = d.get(node, "place")
+    place: Value = d.get(node, "place")
+    if not isinstance(place, Text):  # "this room", wherever that is
+        word = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("what_is_it", word=word), gap=(node.start, node.end))
     found = d.thing = Thing(Text(f"{d.called(place.value)} {d.get(node, 'opener')}"))
     d.thing_last = True
     return found
