@@ -132,7 +132,7 @@ class Discourse:
     """How it is taken from whoever has it, before it is said where to."""
     wondered: tuple[Step, ...] = ()
     """The steps that ask what the speaker would like to know, before it is said whom to ask."""
-    wonder: str | None = None
+    wonder: tuple[str, Thing | None] | None = None
     """The variable with the answer."""
     brought: tuple[Step, ...] = ()
     """How a thing was handed over last, if nobody was named to bring it to."""
@@ -219,8 +219,8 @@ class Discourse:
     """Things that were said to be somewhere (`grammar.meanings.sources`)."""
     fetching: Any = None
     """The last command that takes things of which nobody has said where they are."""
-    asking_one: bool = False
-    """Whether a question is put to somebody by name: whether anybody has called is about others."""
+    asking_one: Thing | None = None
+    """To whom a question is put by name: whether anybody has called is about others."""
     asking_each: bool = False
     """Whether a question is put to each of several: who wants tea is then whether they do."""
     checked: str | None = None

@@ -14,6 +14,7 @@ import grammar.meanings.answered_numbers
 import grammar.meanings.answers
 import grammar.meanings.asked_to_do
 import grammar.meanings.asking_until
+import grammar.meanings.besides
 import grammar.meanings.best_places
 import grammar.meanings.body
 import grammar.meanings.branches

@@ -172,15 +172,15 @@ def paired(d: Discourse, wanted: str) -> Condition | None:
     return Compare(one.left, "==", Text(wanted))
 
 
-def yes_no_before(d: Discourse) -> Survey | None:
+def yes_no_before(d: Discourse, *, so: bool = False) -> Survey | None:
     """The last question that was answered with yes or no, if another one was asked since, that is
     not: "if she says yes, ask her when: at 4 or at 5. If she says no, ..."."""
     yes_no = {d.language.phrase("yes"), d.language.phrase("no")}
     surveys = [each for each in asked_so_far(d) if not in_loop(d, each.call)]
     if not surveys or set(surveys[-1].options) == yes_no or surveys[-1].call.save_as != d.answer:
         return None
-    if not surveys[-1].options and d.branched is None:
-        return None  # "no" may be an answer to an open question, too
+    if not surveys[-1].options and d.branched is None and not so:
+        return None  # "no" may be an answer to an open question, too; "she has not" is none
     return next((each for each in reversed(surveys) if set(each.options) == yes_no), None)
 
 
@@ -241,7 +241,7 @@ def said_so(d: Discourse, no: bool, there_is_none: bool = False) -> Condition:
     wanted = d.language.phrase("no" if no else "yes")
     if (pair := paired(d, wanted)) is not None:
         return pair
-    if (before := yes_no_before(d)) is not None:
+    if (before := yes_no_before(d, so=True)) is not None:
         return before.said(wanted)
     for option in d.answer_options:
         if option.lower() == wanted.lower():

@@ -19,6 +19,7 @@ from grammar.meanings.finding import (
     meet,
     particular,
     visits_only,
+    waited_for,
     where_sent,
 )
 from grammar.meanings.persons import is_me
@@ -93,6 +94,7 @@ def put(
         call = _to(call, person.value)
     if person is not None and person.count is not None:
         asking = asked(d, call, options, None, nouns)
+        waited_for(d, person.value)
         waiting = Call("wait_for", {"thing": person.value})
         return [*steps, Repeat(Number(person.count), (waiting, asking))]
     if whom.many:

@@ -78,7 +78,7 @@ from grammar.tidy import mentions, nodes
 ABOUT_ANSWERS: Final = frozenset(
     {
         *("so", "answered", "answer_counts", "answers_many", "answers_same", "unanswered"),
-        *("answer_is", "answers_reached"),
+        *("answer_is", "answers_reached", "answered_besides"),
         *("code_is", "cannot_check"),
     }
 )
@@ -130,6 +130,9 @@ def if_(d: Discourse, node: Node) -> Steps:
     d.set_scene(start)
     asked = d.answer is not None and d.answer != known
     denied = node.parts.get("otherwise_denied")
+    openly = bool(d.surveys) and not d.surveys[-1].options
+    if asked and denied is not None and openly and isinstance(condition, Compare):
+        asked, d.answer = False, known  # "ask her where; if she has not, ..."
     none, found = node.parts.get("otherwise_none"), node.parts.get("otherwise_so")
     if asked and denied is None and denies(d, condition):
         # "if not, ask Bob, and if he doesn't have one either, ask Clara": it is Bob who denies it

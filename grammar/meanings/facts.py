@@ -36,6 +36,9 @@ def about_robot(d: Discourse, node: Node) -> Report:
     fixed = node.production.fixed
     survey = survey_named(d, node.end - 1, node.end) if d.surveys else None
     answer = answer_to(d, survey) if survey is not None else None
+    asked = asked_for_that(d, node)
+    if asked is not None:
+        return Report("only", asked, about_here=False)
     if answer is not None and node.end - node.start == 2:
         return Report(
             "only", answer, about_here=False
@@ -44,6 +47,21 @@ def about_robot(d: Discourse, node: Node) -> Report:
     if fixed.get("field") == "weekday" and names_of_days(d) != WEEK:
         value = Weekday(names_of_days(d))
     return Report(str(fixed["phrase"]), value, about_here=False)
+
+
+def asked_for_that(d: Discourse, node: Node) -> Value | None:
+    """ "which day it is", after somebody was asked for a day, and not what day it is now."""
+    norms = d.norms(node.start, node.end)
+    if not d.surveys or set(norms) & set(d.language.speech.get("of_now", ())):
+        return None
+    survey = next(
+        (each for at in range(node.start, node.end) if (each := survey_named(d, at, at + 1))), None
+    )
+    if survey is None:
+        return None
+    question = survey.call.arguments["question"]
+    words = d.language.tokens_of(question.value) if isinstance(question, Text) else ()
+    return answer_to(d, survey) if survey.options or set(norms) & survey.nouns & {*words} else None
 
 
 def names_of_days(d: Discourse) -> tuple[str, ...]:

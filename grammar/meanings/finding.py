@@ -174,6 +174,7 @@ def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
         return [*going, Forever((Call("wait_for", {"thing": person.value}), *steps))]
     if person is not None and person.count is not None:
         going = go(d, person.place) if person.place is not None else []
+        waited_for(d, person.value)
         meeting = Call("wait_for", {"thing": person.value})
         return [*going, Repeat(Number(person.count), (meeting, *steps))]
     if person is not None and isinstance(person.group, Items):
@@ -190,6 +191,29 @@ def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
     d.at = None if isinstance(person.place, Items) else person.place
     d.with_person = person.value
     return [If(whether_found(d, person), tuple(steps), (not_found(d, person),))]
+
+
+def waited_for(d: Discourse, who: Value) -> Value | None:
+    """How many of them the step before has waited for, one after the other: it is taken out of the
+    steps, for each of them is met in the round that is for them."""
+    for steps in (d.done, *d.around[-1:]):
+        match steps[-1:]:
+            case [Repeat(times, (Call(method="wait_for", arguments=arguments),))]:
+                if arguments == {"thing": who}:
+                    steps.pop()
+                    return times
+            case [_]:
+                return None
+            case _:
+                pass
+    return None
+
+
+def meet_several(d: Discourse, person: Thing) -> Steps:
+    """ "find two visitors and ask them ...": one after the other, whoever they are."""
+    going = go(d, person.place) if person.place is not None else []
+    waiting = Call("wait_for", {"thing": person.value})
+    return [*going, Repeat(Number(person.count or 1), (waiting,))]
 
 
 def each_of(d: Discourse, group: Value, steps: Steps) -> Steps:

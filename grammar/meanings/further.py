@@ -9,10 +9,11 @@ from grammar.discourse import Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.absences import undelivered
 from grammar.meanings.asking import Audience, audience, put, remember_answer
-from grammar.meanings.questions import ask_one, base_form, worded
+from grammar.meanings.questions import ask_one, worded
 from grammar.meanings.references import nouns_of
 from grammar.meanings.registry import MEANINGS, meaning
 from grammar.meanings.surveys import Survey, in_line, in_loop, note
+from grammar.meanings.verb_forms import base_form
 from grammar.plan import Call, Items, Text, Value
 from grammar.tidy import nodes
 from grammar.tokens import COMMA
@@ -33,6 +34,8 @@ def ask_again(d: Discourse, node: Node) -> Steps:
         d.done[:] = [each for each in d.done if not any(each is other for other in wondered)]
         d.surveys = d.surveys[:-1]
         d.variables.discard(str(last.call.save_as))
+        if d.at is None:
+            d.with_person, person = None, replace(person, here=False)
     if not person.known and isinstance(last.who, Text):  # "ask them again"
         person = Thing(last.who, known=True, person=True)
     spot: Where | None = d.get(node, "from")
@@ -74,8 +77,11 @@ def ask_more(d: Discourse, node: Node) -> Steps:
 def follows(d: Discourse, node: Node) -> bool:
     """Whether it is joined to the question before: not "go | where he tells you"."""
     before = d.tokens[node.start - 1] if node.start else None
-    joins = d.language.speech.get("joins", ())
-    return before is not None and (before.kind == "mark" or before.norm in joins)
+    if before is None:
+        return False
+    if d.depth > 1 and not d.done:  # "if he has seen it, and if so where"
+        return True
+    return before.kind == "mark" or before.norm in d.language.speech.get("joins", ())
 
 
 def asked_just_now(d: Discourse) -> bool:

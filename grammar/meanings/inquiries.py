@@ -10,12 +10,14 @@ from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.carrying import deliver
+from grammar.meanings.finding import speak_to
 from grammar.meanings.news import go_back
 from grammar.meanings.places import only_taken_apart
 from grammar.meanings.questions import ask_one
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import tell_speaker
 from grammar.meanings.surveys import Survey, each_asked, in_loop
+from grammar.meanings.whom_asked import several_of_a_kind
 from grammar.plan import Call, Recall, Repeat, Text, Value
 from grammar.tidy import mentions, nodes
 from grammar.wordforms import head_word, singular
@@ -28,11 +30,16 @@ def ask_topic(d: Discourse, node: Node) -> Steps:
     assert isinstance(question, Node)
     person: Thing | None = d.get(question, "person_ref") or d.get(node, "person_ref")
     place: Value | None = d.get(question, "asked_at")
+    kind = question.production.fixed.get("kind")
+    person = several_of_a_kind(d, question, person)
     if person is None:  # "how many people in the lobby want coffee?"
         person = Thing(Text(ANYONE), person=True, plural=True)
+    if person.text == ANYONE and not person.known:  # "does anybody in the lounge have a charger?"
+        person = replace(person, plural=True)
+        kind = question.production.fixed.get("kind", "who")
     steps = ask_one(d, node, replace(person, place=place or person.place))
     d.put = d.surveys[-1]
-    d.polled_for = question.production.fixed.get("kind")
+    d.polled_for = kind
     if node.production.fixed.get("told"):  # "I wonder whether Bob has time, go and ask him"
         d.done.extend(steps)
         d.done.extend(tell_speaker(d))
@@ -42,18 +49,24 @@ def ask_topic(d: Discourse, node: Node) -> Steps:
 
 @meaning("wondered")
 def wondered(d: Discourse, node: Node) -> Steps:
-    """ "I want to know whether Bob has time": he is asked; where it is said next how ("go to his
-    office and ask him"), then so."""
+    """ "I want to know whether Bob has time", "Alice wants to know whether ...": he is asked; where
+    it is said next how ("go to his office and ask him"), then so."""
+    whom: Thing | None = d.get(node, "whom")
     steps = ask_topic(d, node)
-    d.wondered, d.wonder = tuple(steps), d.answer
+    if whom is not None:
+        d.put = None
+    if d.answer is not None:
+        d.wondered, d.wonder = tuple(steps), (d.answer, whom)
     return steps
 
 
 def wonder_told(d: Discourse) -> Steps:
-    """What the speaker wants to know, if nobody is told of it."""
-    if d.wonder is None or mentions(tuple(d.done), Recall(d.wonder)):
+    """What somebody wants to know, if nobody is told of it."""
+    if d.wonder is None or mentions(tuple(d.done), Recall(d.wonder[0])):
         return []
-    return [*go_back(d, []), Call("say", {"text": Recall(d.wonder)})]
+    answer, whom = d.wonder
+    saying = Call("say", {"text": Recall(answer)})
+    return [*go_back(d, []), saying] if whom is None else speak_to(d, whom, [saying])
 
 
 def owed(d: Discourse) -> Steps:

@@ -18,10 +18,11 @@ from grammar.meanings.genders import gender_of_thing
 from grammar.meanings.news import back_to_speaker
 from grammar.meanings.options import people_named
 from grammar.meanings.persons import guest_for, is_me, person_me
-from grammar.meanings.questions import base_form, turn_to_you
+from grammar.meanings.questions import turn_to_you
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning
 from grammar.meanings.speaking import put_for, sentence_form
+from grammar.meanings.verb_forms import base_form
 from grammar.names import names_of
 from grammar.plan import Call, Recall, Text
 from grammar.tokens import COMMA, STOP, Token

@@ -63,17 +63,17 @@ def _offered(d: Discourse, node: Node) -> tuple[str, ...]:
     fixed = node.production.fixed
     listed = node.parts.get("options")
     if listed is not None:
-        named = split_options(d, listed.start, listed.end)
+        named = split_options(d, listed.start, listed.end, whole=True)
         if len(named) == 1 and d.tokens[listed.start].norm == COMMA:
             # "ask her what she wants, get it and ...": no choice
             said = d.words(listed.start, listed.end)
             raise NotUnderstood(d.language.phrase("not_understood", part=said))
         return named
-    if fixed.get("choices") and "rest" in node.parts:
-        return split_options(d, node.parts["rest"].start, node.parts["rest"].end)
     numbers = numbers_offered(d, node.start, node.end)
     if numbers:
         return numbers
+    if fixed.get("choices") and "rest" in node.parts:
+        return split_options(d, node.parts["rest"].start, node.parts["rest"].end)
     joins = set(d.language.speech.get("or", ()))
     rest, tail = node.parts.get("rest"), node.parts.get("tail")
     if rest is not None and tail is not None and d.tokens[tail.start].norm in joins:
@@ -114,11 +114,12 @@ def _end_of_question(d: Discourse, start: int, end: int) -> int:
     return marks[0] + 1 if marks else start
 
 
-def split_options(d: Discourse, start: int, end: int) -> tuple[str, ...]:
+def split_options(d: Discourse, start: int, end: int, *, whole: bool = False) -> tuple[str, ...]:
     """ "to go to radiology or to the pharmacy" -> radiology, pharmacy.
 
     What stands between the joining words is an option, without the little words before it; of the
-    first, only as many words at its end as the others have. Places go by their names."""
+    first, only as many words at its end as the others have, unless the choices are all that is
+    said (`whole`). Places go by their names."""
     joins = (
         set(d.language.speech.get("or", ())) | set(d.language.speech.get("joins", ())) | {",", ":"}
     )
@@ -145,7 +146,7 @@ def split_options(d: Discourse, start: int, end: int) -> tuple[str, ...]:
             if row:
                 options += row
                 continue
-            begin = max(begin, last - longest)
+            begin = begin if whole else max(begin, last - longest)
             while begin < last - 1 and d.tokens[begin].norm in _words_of(d, "wishes"):
                 begin += 1  # "like tea"
             begin, last = without_little_words(d, begin, last)

@@ -27,7 +27,7 @@ from grammar.discourse import (
 )
 from grammar.meanings.answers import wanted
 from grammar.meanings.deliveries import inside
-from grammar.meanings.finding import found, go, not_found
+from grammar.meanings.finding import found, go, not_found, waited_for
 from grammar.meanings.one_round import Make, One, leaves, round_of_steps
 from grammar.meanings.persons import kind_in_plural
 from grammar.meanings.several_places import (
@@ -49,6 +49,7 @@ from grammar.meanings.sources import keep_fetching, sourced
 from grammar.meanings.surveys import Survey, each_asked, uses_answer
 from grammar.meanings.thing_lists import list_before, over_list_before, over_thing_list
 from grammar.meanings.volunteers import over_willing
+from grammar.meanings.who_agreed import for_who_agreed, who_agreed
 from grammar.plan import (
     Ask,
     Call,
@@ -77,9 +78,10 @@ LIST_PARTS: Final = frozenset({"more_names", "either_names", "more_things"})
 
 TOGETHER: Final = frozenset(
     {
-        "answer", "answers_reached", "ask", "ask_again", "ask_to", "find", "greet", "offer",
-        "phrase", "report", "said_with", "same_for", "say", "say_it", "say_that", "shared_with",
-        "shares", "statement", "swap", "swap_owned", "tell", "tell_joke", "tell_that", "wait_for",
+        "answer", "answers_reached", "ask", "ask_again", "ask_to", "ask_topic", "find", "greet",
+        "offer", "phrase", "report", "said_with", "same_for", "say", "say_it", "say_that",
+        "shared_with", "shares", "statement", "swap", "swap_owned", "tell", "tell_joke",
+        "tell_that", "wait_for",
     }
 )  # fmt: skip
 """Commands that know themselves what to do with several people."""
@@ -112,6 +114,10 @@ def distributed(d: Discourse, node: Node, make: Make) -> Steps:
     within = setting_of(node) or node
     several = [part for part in phrases(within) if speaks_of_several(d, node, part)]
     several.sort(key=lambda part: part.production.rule == "thing")  # things change hands inside
+    agreed = next((part for part in several if who_agreed(d, node, part)), None)
+    if agreed is not None:
+        several.remove(agreed)
+        make = for_who_agreed(d, agreed, make)
     if hands_one_of_several(d, node):
         begun_before(d)
     several = one_each(d, several)
@@ -215,6 +221,8 @@ def speaks_of_several(d: Discourse, node: Node, part: Node) -> bool:
         return False
     if (node.means, part.means) in KNOWN_TO:
         return False
+    if who_agreed(d, node, part):
+        return True
     by_name = node.means == "greet" and part.means in ("person_group", "person_group_kind")
     if together and part.means not in ALWAYS and "but" not in part.parts and not by_name:
         return False
@@ -377,22 +385,6 @@ def _is_moment(step: Step) -> bool:
     if isinstance(step, While):
         return all(map(_is_moment, step.steps))
     return isinstance(step, Call) and step.method == "wait"
-
-
-def waited_for(d: Discourse, who: Value) -> Value | None:
-    """How many of them the step before has waited for, one after the other: it is taken out of the
-    steps, for each of them is met in the round that is for them."""
-    for steps in (d.done, *d.around[-1:]):
-        match steps[-1:]:
-            case [Repeat(times, (Call(method="wait_for", arguments=arguments),))]:
-                if arguments == {"thing": who}:
-                    steps.pop()
-                    return times
-            case [_]:
-                return None
-            case _:
-                pass
-    return None
 
 
 def fetched_before(body: Steps, who: Value, here: Value | None) -> int:

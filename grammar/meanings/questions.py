@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, Final
 
@@ -27,16 +28,29 @@ from grammar.meanings.options import (
     without_little_words,
 )
 from grammar.meanings.persons import guest_for, is_me
+from grammar.meanings.pronouns import (
+    NOBODY_ELSE,
+    about_another,
+    called_as_asked,
+    meant_in,
+    named_themselves,
+    none_for,
+    of_each,
+)
 from grammar.meanings.references import nouns_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import tell_speaker
 from grammar.meanings.speaking import put_for
+from grammar.meanings.verb_forms import base_form, in_past, one_each, past_base, perfect_form
+from grammar.meanings.who_agreed import asks_for_some
 from grammar.meanings.whom_asked import (
     all_meant,
+    asked_in_each,
     gone_to,
     just_visited,
     several_of_a_kind,
     spoken_of,
+    told_in_each,
 )
 from grammar.naming import some, the
 from grammar.plan import (
@@ -65,6 +79,9 @@ def ask(d: Discourse, node: Node) -> Steps:
     question = node.parts.get("question")
     if person is None and isinstance(question, Node) and "asked_one" in question.parts:
         person = d.build(question.parts["asked_one"])  # "find out what Bob wants"
+    there = told_in_each(d, node, person)
+    if there is not None:
+        return asked_in_each(d, there, lambda everybody: ask_one(d, node, everybody))
     if person is None:
         person = just_visited(d) or all_meant(d, node) or gone_to(d) or spoken_of(d)
     nobody = person is None and d.with_person is None and d.at is None and not d.in_loop
@@ -89,7 +106,7 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
     assert isinstance(question, Node)
     text, options = worded(d, question, whom)
     if whom.person is not None:
-        d.called_so(whom.person, question.start, question.end)
+        called_as_asked(d, question, whom.person)
     scale = node.parts.get("scale")
     if scale is not None:  # "ask from one to ten how bad it is"
         options = numbers_offered(d, scale.start, scale.end)
@@ -112,7 +129,7 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
         d.place = Text(spoken_of[0])  # "ask whether they want to see the lab; take them there"
     # "ask Bob whether Alice is in; if so, tell her ..."
     d.named.extend(people_named(d, question.start, question.end))
-    if whom.many and "each" in question.production.fixed:
+    if whom.many and asks_for_some(d, question):
         d.polled_for = "who"
     if node.production.fixed.get("vote"):
         d.polled_for = "each"  # nobody asks who voted for what
@@ -125,10 +142,10 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
 def worded(d: Discourse, question: Node, whom: Audience) -> tuple[str, tuple[str, ...]]:
     """The words of a question for those who are asked, and the answers that it offers."""
     d.asking_each = whom.many
-    d.asking_one = whom.person is not None and whom.person.known and not whom.many
+    d.asking_one = None if whom.many else whom.person
     text: str = capital(put_for(d, "asked_singly", d.build(question)))
-    options = options_of(d, question)
-    d.asking_each = d.asking_one = False
+    options = named_themselves(d, options_of(d, question), whom.person)
+    d.asking_each, d.asking_one = False, None
     return text, options
 
 
@@ -291,33 +308,48 @@ def question(d: Discourse, node: Node) -> str:
     past = node.production.fixed.get("past")
     turned_each = d.asking_each and "each" in node.production.fixed
     if turned_each:
-        form, past = str(node.production.fixed["each"]), None
+        fixed = node.production.fixed
+        form, past = str(fixed["each"]), fixed.get("each_past")
     asked = node.parts.get("asked")
     else_ = set(d.language.speech.get("somebody_else", ()))
     another = (
         "another" in node.production.fixed
         and asked is not None
         and bool(else_ & set(d.norms(asked.start, asked.end)))
-        and d.asking_one
+        and d.asking_one is not None
+        and d.asking_one.known
     )
+    meant = meant_in(d, node, d.asking_one)
+    if meant.subject:
+        past = past and about_another(d, str(past), meant)
+        form = about_another(d, form, meant)
     values: dict[str, str] = {}
     you = "to_you_who" if "asked" in node.parts else "to_you"
     for name, part in node.parts.items():
-        values[name] = turn_to_you(d, part.start, part.end, you)
+        values[name] = turn_to_you(d, part.start, part.end, you, instead=meant.words)
+    if to_each := of_each(d, node):
+        values |= {"subject": "you", "aux": base_form(d, values.get("aux", ""))}
     values = {"rest": "", "adverb": "", **values}
     if "tail" not in values:
         values["tail"] = ""
     else:
         values["rest"] = f"{values['rest']} {values['tail']}"
+    if "noun" in values:
+        form, values["noun"] = one_each(d, form, values["noun"])
     if "verb" in values:
         verb, particle = parted(d, values["verb"])
+        if verb.lower() in d.language.speech.get("no_question_verbs", ()):
+            words = d.words(node.start, node.end)
+            raise NotUnderstood(d.language.phrase("not_understood", part=words))
         base = past_base(d, verb) if past else None
-        perfect = perfect_form(d, verb, values["rest"]) if yes_no_asked(node) else None
+        if base is None and past and in_past(d, node, verb):  # "where she put it"
+            base = verb
+        perfect = perfect_form(d, form, verb, values["rest"])
         if perfect is not None:
             form = perfect
         elif base is not None:
             form, verb = str(past), base
-        elif base_form(d, verb) != verb and not turned_each:
+        elif base_form(d, verb) != verb and not (turned_each or to_each):
             form = str(node.production.fixed.get("third", form))
         as_it_is = node.production.fixed.get("as_it_is", False) and not turned_each
         if another:
@@ -344,19 +376,6 @@ def question(d: Discourse, node: Node) -> str:
     return capital(text.replace(" ?", mark).replace(" ,", ",").replace(" .", "."))
 
 
-def yes_no_asked(node: Node) -> bool:
-    return bool(node.production.fixed.get("yes_no"))
-
-
-def perfect_form(d: Discourse, verb: str, rest: str) -> str | None:
-    """The form of a question after what somebody has done: "has sorted the post" -> "Have you
-    sorted the post?"."""
-    forms: dict[str, str] = d.language.speech.get("perfect_questions", {})
-    first, _, more = rest.strip().partition(" ")
-    done = verb.lower() in forms and bool(more) and past_base(d, first) is not None
-    return forms[verb.lower()] if done else None
-
-
 def _ends_phrase(d: Discourse, at: int, end: int) -> bool:
     """Whether no noun follows here."""
     token = d.tokens[at] if at < end else None
@@ -364,11 +383,17 @@ def _ends_phrase(d: Discourse, at: int, end: int) -> bool:
 
 
 def turn_to_you(
-    d: Discourse, start: int, end: int, words: str = "to_you", to: Thing | None = None
+    d: Discourse,
+    start: int,
+    end: int,
+    words: str = "to_you",
+    to: Thing | None = None,
+    instead: Mapping[int, str] = NOBODY_ELSE.words,
 ) -> str:
     """The original words with "they", "their", "her" ... turned to the person spoken to. Where
     that person is the subject, only what is theirs: "ob er ihn mag" asks about somebody else. `to`
-    is who is spoken to, if that is known, for pronouns that stand for others to be told from."""
+    is who is spoken to, if that is known, for pronouns that stand for others to be told from;
+    `instead` is what is said in the place of those that do (`grammar.meanings.pronouns`)."""
     you: dict[str, str] = d.language.speech.get(words) or d.language.speech.get("to_you", {})
     pieces: list[str] = []
     position, whole = start, False
@@ -383,11 +408,13 @@ def turn_to_you(
         opened = " ".join(token.norm for token in d.tokens[position:last])
         if d.parted(position, last):  # "it" of "it's"
             original = opened
-        turned = d.owned_before(to, position) or you.get(first.norm)
+        of_another = to is not None and none_for(d, position, to)
+        turned = d.owned_before(to, position) or (None if of_another else you.get(first.norm))
+        other = d.one_before(to, position) if to is not None else None
         alone = d.language.speech.get(f"{words}_alone", {})
         if first.norm in alone and _ends_phrase(d, position + 1, end):
-            turned = alone[first.norm]  # "better for her", but "her office"
-        other = d.one_before(to, position) if to is not None else None
+            turned = other or alone[first.norm]  # "better for her", but "her office"
+        turned = instead.get(position, turned)
         if turned is not None:
             original = opened.replace(first.norm, turned, 1)
         elif other is not None:
@@ -406,30 +433,6 @@ def turn_to_you(
         whole = turned is not None and len(turned) > 1
         position = last
     return " ".join(pieces).replace(" \b", "").strip(" ,.?!:()")
-
-
-def past_base(d: Discourse, verb: str) -> str | None:
-    """ "liked" -> "like"; None for what is no past form."""
-    low = verb.lower()
-    irregular: dict[str, str] = d.language.speech.get("past_forms", {})
-    if low in irregular:
-        return irregular[low] if irregular[low] != low else None
-    for ending, base in d.language.speech.get("past_endings", ()):
-        if low.endswith(ending) and len(low) > len(ending):
-            return low[: len(low) - len(ending)] + str(base)
-    return None
-
-
-def base_form(d: Discourse, verb: str) -> str:
-    """ "wants" -> "want", "has" -> "have"."""
-    forms = d.language.speech.get("base_forms", {})
-    low = verb.lower()
-    if low in forms:
-        return str(forms[low])
-    for ending, base in d.language.speech.get("base_endings", ()):
-        if low.endswith(ending):
-            return verb[: len(verb) - len(ending)] + str(base)
-    return verb
 
 
 @meaning("ask_in")

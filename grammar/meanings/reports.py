@@ -280,6 +280,15 @@ def tell_that(d: Discourse, node: Node) -> Steps:
     return told_again(d, person)
 
 
+@meaning("tell_why")
+def tell_why(d: Discourse, node: Node) -> Steps:
+    """ "and let Bob know, so that he can go with her": what was found out; why is left as it is."""
+    why = node.parts["why"]
+    d.background.append(d.words(why.start, why.end))
+    d.resolved.update(range(why.start, why.end))
+    return tell_that(d, node)
+
+
 def looks_around(d: Discourse) -> bool:
     """ "look at the desk and tell Bob what you saw": sent there to look, with nothing told."""
     untold = d.report is None and d.answer is None and d.code is None and d.claim is None

@@ -24,6 +24,20 @@ from grammar.tidy import mentions
 from grammar.wordforms import plural, singular
 
 
+def names_answered(d: Discourse, node: Node) -> Report | None:
+    """ "ask Clara which students come and tell Bob their names": what she has answered."""
+    survey = d.surveys[-1] if d.surveys else None
+    if survey is None or d.answer is None or d.answer != survey.call.save_as or survey.options:
+        return None
+    asked = survey.call.arguments["question"]
+    words = d.language.tokens_of(asked.value) if isinstance(asked, Text) else ()
+    of_others = set(words[:1]) & set(d.language.speech.get("asks_for_names", ()))
+    theirs = d.language.words_called("of_them_all") & set(d.norms(node.start, node.end))
+    if not of_others or not theirs or in_loop(d, survey.call):
+        return None
+    return Report("only", Recall(d.answer), about_here=False)
+
+
 @meaning("names_here")
 def names_here(d: Discourse, node: Node) -> Report | Steps:
     """ "who is in the lobby?", "the name of the person in the kitchen"; "their names", behind a
@@ -31,6 +45,8 @@ def names_here(d: Discourse, node: Node) -> Report | Steps:
     of_who_said_so = (d.depth > 1 and d.said is not None) or d.polled_for == "who"
     if of_who_said_so and asked_yet(d) and names_whom(d, node):
         return polled(d, "who", None).words
+    if (theirs := names_answered(d, node)) is not None:
+        return theirs
     person: Thing | None = d.get(node, "person_ref")
     if person is not None and person.coming:  # whoever will come: not who is here now
         raise NotUnderstood(d.language.phrase("one_person"))

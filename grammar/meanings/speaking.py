@@ -23,12 +23,20 @@ from grammar.tidy import nodes
 def say(d: Discourse, node: Node) -> Steps:
     """Speak a text, in the speaker's own words."""
     text = spoken(d, node)
-    arguments: dict[str, Value] = {"text": text}
     language = d.get(node, "language")
-    if language:
-        arguments["language"] = Text(language)
-        arguments["text"] = in_language(d, node, text, str(language))
-    return speak_to(d, d.get(node, "person_ref"), [Call("say", arguments)])
+    said: Steps = []
+    for code in d.get(node, "languages") or [language]:
+        arguments: dict[str, Value] = {"text": text}
+        if code:
+            arguments = {"text": in_language(d, node, text, str(code)), "language": Text(code)}
+        said.append(Call("say", arguments))
+    return speak_to(d, d.get(node, "person_ref"), said)
+
+
+@meaning("languages")
+def several_languages(d: Discourse, node: Node) -> list[str]:
+    """ "say hello in German, French and English"."""
+    return [str(d.get(node, "first")), *(d.get(node, "rest") or [])]
 
 
 SAYINGS: Final = (

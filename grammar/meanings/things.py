@@ -21,6 +21,7 @@ from grammar.meanings.finding import (
     if_missing,
     look_for,
     meet,
+    meet_several,
     noun_of,
     speak_to,
     where_sent,
@@ -66,6 +67,8 @@ def find(d: Discourse, node: Node) -> Steps:
         who = Recall(d.variable("person"))
         d.at = d.with_person = None
         return [ForEach(who.name, thing.group, tuple(if_missing(d, who)))]
+    if thing.person and thing.count is not None:
+        return meet_several(d, thing)
     if thing.several and not (thing.person and thing.every):
         return find_several(d, node, thing)
     if d.found_already:

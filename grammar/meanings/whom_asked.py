@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Final
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import ANYONE, Discourse, Thing
+from grammar.discourse import ANYONE, Discourse, Steps, Thing
 from grammar.meanings.finding import met_just_before, visits_only
+from grammar.meanings.one_round import round_of_steps
 from grammar.meanings.persons import known_by_name
-from grammar.plan import Call, ForEach, Items, Text
+from grammar.plan import Call, ForEach, Items, Recall, Text
 from grammar.wordforms import singular
+
+MET_AND_TOLD: Final = 2
+"""Steps of a round in which people are gone to and told something."""
 
 
 def all_meant(d: Discourse, node: Node) -> Thing | None:
@@ -84,3 +90,31 @@ def several_of_a_kind(d: Discourse, node: Node, person: Thing | None) -> Thing |
         d.group = Items(named)
         return replace(person, known=True, plural=True, group=d.group)
     return replace(person, value=Text(ANYONE), plural=True)
+
+
+def told_in_each(d: Discourse, node: Node, person: Thing | None) -> ForEach | None:
+    """The round in which people were told something, who are then asked: "tell everybody in the
+    meeting rooms that it begins at three and ask whether they have questions"."""
+    last = d.done[-1] if d.done else None
+    part = node.parts.get("person_ref")
+    if isinstance(part, Node):
+        them = part.means == "person_pronoun" and d.is_plural(part)
+    else:
+        them = person is None
+    if not isinstance(last, ForEach) or not them or len(last.steps) < MET_AND_TOLD:
+        return None
+    goes = last.steps[0] == Call("goto", {"place": Recall(last.variable)})
+    told = last.steps[-1]
+    spoken = isinstance(told, Call) and told.method == "say"
+    return last if goes and spoken and d.person is not None and d.person.plural else None
+
+
+def asked_in_each(d: Discourse, told: ForEach, ask: Callable[[Thing], Steps]) -> Steps:
+    """What asks everybody in each of the places where they were told something."""
+    d.done.pop()
+    d.at = d.place = Recall(told.variable)
+    everybody = Thing(Text(ANYONE), person=True, plural=True, here=True)
+    steps = round_of_steps(d, lambda: ask(everybody))
+    d.at = d.with_person = None
+    d.person, d.thing_last = everybody, False
+    return [ForEach(told.variable, told.items, (*told.steps, *steps))]
