@@ -214,6 +214,9 @@ def _delivered(d: Discourse, thing: Thing, person: Thing | None, spot: Where | N
         spot = replace(spot, place=before)  # "on the table" is where the robot was sent
     if person is not None:
         fetch_before_waiting(d, thing, person)
+    named = thing.place is None and not thing.pronoun
+    if spot is not None and spot.place is not None and spot.place == d.at and named:
+        d.at = None  # "go to the lab and bring the microscope there": it is elsewhere
     no_way = spot is not None and spot.place is None and thing.place is None
     if no_way and d.holding != thing.value and not thing.pronoun:
         steps: Steps = [Call("grab", {"thing": sought(d, thing)})]  # both are here
