@@ -40,16 +40,16 @@ def swapped_back(text: str, language: Language, known: Collection[str]) -> tuple
     """A text without the words that are a known one with two letters swapped, and how many there
     were: "taht her pateint is waiting". No word gets longer, so that everything stays where it is;
     what is to be spoken is put right, too. Only where the language lists what is no slip."""
-    real = language.speech.get("no_swaps")
-    if real is None:
+    if "no_swaps" not in language.speech:
         return text, 0
+    real = frozenset(language.speech["no_swaps"])
     slips = 0
     for token in tokenise(text, language.spelling):
         word = text[token.start : token.end]
         if token.kind != "word" or not word.islower() or len(word) < SHORTEST_SWAPPED:
             continue
         if (
-            {word, singular(word, language)} & {*real}
+            not real.isdisjoint((word, singular(word, language)))
             or token.value is not None
             or is_known(word, language, known)
         ):
@@ -244,7 +244,8 @@ def spellings(
                 or misspelt_beside(tokens, at, language, lexicon)
             )
             if capital_nouns and token.capital and at and tokens[at - 1].kind != "mark":
-                near = tuple(each for each in near if each not in no_nouns(language))  # "Milch"
+                nouns = no_slips_of_nouns(language)  # "Milch"
+                near = tuple(each for each in near if each not in nouns)
             if near:
                 found[at] = near
     return found
@@ -273,7 +274,7 @@ def command_words(language: Language) -> frozenset[str]:
 
 
 @functools.cache
-def no_nouns(language: Language) -> frozenset[str]:
+def no_slips_of_nouns(language: Language) -> frozenset[str]:
     """Words that a noun cannot be a slip of: "die Leiter" is no "leider", and no "leite"."""
     looks = (words for each in ("attribute", "superlative") for words in _listed(language, each))
     said_anywhere = (word for words in (*language.fillers, *looks) for word in words)

@@ -65,7 +65,7 @@ def audience(d: Discourse, person: Thing | None) -> Audience:
         way = go(d, person.place) if person.place is not None else []
         d.person = replace(person, here=True)
         return Audience(person, way, several=True)
-    if person.plural and person.text == ANYONE:
+    if person.plural and (person.text == ANYONE or person.every):  # "ask each of them"
         way = go(d, person.place) if person.place is not None else []
         return Audience(person, way, everybody=True)
     if is_me(person):

@@ -11,6 +11,7 @@ from grammar.discourse import Discourse, Steps
 from grammar.meanings.best_places import Such, first_such
 from grammar.meanings.lookouts import Lookout
 from grammar.meanings.news import BACK, News, go_back
+from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.traits import Trait
 from grammar.plan import Collect, Compare, ForEach, If, Recall, Step, Text
@@ -70,8 +71,10 @@ def told_round(d: Discourse) -> tuple[int | None, Such | None]:
 
 
 def sought_place(d: Discourse, node: Node) -> Such:
+    """The places that are asked about and what they are to be like; what is there is not spoken
+    of yet."""
     part = node.parts.get("place")
-    if part is not None:
+    if part is not None:  # "there is a free meeting room"
         d.taking_apart = True
         try:
             such: Such = d.build(part)
@@ -79,10 +82,11 @@ def sought_place(d: Discourse, node: Node) -> Such:
             d.taking_apart = False
         return such
     place = d.variable("place")
-    before, d.at = d.at, Recall(place)
+    before = d.at, d.person, d.thing, d.thing_last
+    d.at = Recall(place)
     trait = d.get(node, "place_trait")
-    d.at = before
-    return Such(d.get(node, "kinds"), place, trait)
+    d.at, d.person, d.thing, d.thing_last = before
+    return Such(kind_places(d, d.get(node, "kinds")), place, trait)
 
 
 def if_such(d: Discourse, done: Steps) -> Steps:

@@ -12,9 +12,9 @@ from grammar.discourse import ANYONE, Claim, Discourse, Steps, Thing, as_value
 from grammar.meanings.best_places import Such, first_such
 from grammar.meanings.conditions import TELLING, negated
 from grammar.meanings.deliveries import inside
+from grammar.meanings.found_places import sought_place
 from grammar.meanings.gone_round import last_round, round_of
 from grammar.meanings.news import in_round
-from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.rounds import how_many
 from grammar.meanings.traits import for_each_place_such
@@ -58,7 +58,7 @@ def at_none(d: Discourse, node: Node) -> Condition | None:
 
 
 def so_in(d: Discourse, node: Node, how: str) -> Condition:
-    such = places_in_question(d, node)
+    such = sought_place(d, node)
     if how == "some" and not d.round.told_of:
         return one_such(d, such)
     found = d.variable("found")
@@ -82,23 +82,6 @@ def so_in(d: Discourse, node: Node, how: str) -> Condition:
     d.round.claims = Claims(condition, yes, no)
     d.met = None
     return condition
-
-
-def places_in_question(d: Discourse, node: Node) -> Such:
-    part = node.parts.get("place")
-    if part is not None:  # "there is a free meeting room"
-        d.taking_apart = True
-        try:
-            such: Such = d.build(part)
-        finally:
-            d.taking_apart = False
-        return such
-    place = d.variable("place")
-    before = d.at, d.person, d.thing, d.thing_last
-    d.at = Recall(place)
-    trait = d.get(node, "place_trait")
-    d.at, d.person, d.thing, d.thing_last = before
-    return Such(kind_places(d, d.get(node, "kinds")), place, trait)
 
 
 def one_such(d: Discourse, such: Such) -> Condition:
