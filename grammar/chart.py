@@ -138,6 +138,12 @@ class Chart:
         last = max(ends)
         return self._node(start, last, ends[last])
 
+    def ends(self, rule: str, start: int) -> list[int]:
+        """Where readings from this token on end, the cheapest first; of the same cost, the
+        longest."""
+        ends = self._spans(self.network.rule(rule), start)
+        return sorted(ends, key=lambda end: (ends[end][0], -end))
+
     @property
     def reached(self) -> int:
         """The furthest token that any rule at the beginning could use."""

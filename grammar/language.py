@@ -15,6 +15,7 @@ Every file may hold any of these keys; those of all files are put together:
     orders        where they stand in a clause
     phrases       what the robot says or the application answers, by name
     speech        how reported speech becomes direct speech
+    rewordings    other ways to say the same
     help          topics with example phrases
 """
 
@@ -71,6 +72,8 @@ class Language:
     kinds: Mapping[str, Any]
     phrases: Mapping[str, str]
     speech: Mapping[str, Any]
+    rewordings: tuple[Mapping[str, Any], ...]
+    """Other ways to say the same, as they are written down (`grammar.rewordings`)."""
     help: Mapping[str, tuple[str, ...]]
     """topic -> example templates"""
     words: frozenset[str]
@@ -249,6 +252,7 @@ def _language(code: str, compiled: Compiled) -> Language:
         kinds=data.get("kinds", {}),
         phrases=data.get("phrases", {}),
         speech=data.get("speech", {}),
+        rewordings=tuple(data.get("rewordings", ())),
         help={topic: tuple(examples) for topic, examples in data.get("help", {}).items()},
         words=compiled.words,
         spelled_words=compiled.spelled_words,
@@ -294,6 +298,9 @@ def _compiled(data: Mapping[str, Any]) -> Compiled:
         for way in ways
         for word in way
     }
+    words |= {
+        word for template in _other_ways(data) for text in _texts(template) for word in normal(text)
+    }
     return Compiled(
         data={key: value for key, value in data.items() if key not in _COMPILED},
         network=network,
@@ -327,10 +334,17 @@ def _rules(data: Mapping[str, Any]) -> dict[str, tuple[Production, ...]]:
     return rules
 
 
+def _other_ways(data: Mapping[str, Any]) -> Iterator[Template]:
+    """What is said otherwise than the rules say it (`grammar.rewordings`)."""
+    for entry in data.get("rewordings", ()):
+        yield from (_template(say, "rewordings") for say in _entries(entry["say"]))
+
+
 def _spelled(data: Mapping[str, Any], network: Network) -> frozenset[str]:
     """All words as people write and speak them."""
     numbers = data.get("numbers", {})
     templates = [template for each in network.productions for template in each.templates]
+    templates += _other_ways(data)
     templates += [
         _template(way, "lists")
         for values in data.get("lists", {}).values()
