@@ -170,4 +170,6 @@ def told_so(d: Discourse, node: Node, claim: Step | None) -> Steps:
         told = coming_back(d, node, tell_speaker(d))
         d.claim = outer
         return told
-    return speak_to(d, person, known_words(d) if claim is None else [claim])
+    words = known_words(d) if claim is None else [claim]
+    # "Go to the lobby. If nobody is there, tell Bob": he need not be where the robot was sent.
+    return d.sequence(lambda: d.done.extend(speak_to(d, person, words)))

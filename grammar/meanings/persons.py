@@ -97,6 +97,16 @@ def by_furniture(d: Discourse, person: Thing) -> Thing:
     return replace(person, value=Text(f"{person.text} {at}"), furniture=None)
 
 
+@meaning("person_in")
+def person_in(d: Discourse, node: Node) -> Thing:
+    """ "bring it to him in his office": where he is to be found."""
+    person: Thing = d.get(node, "person_ref")
+    d.person = person
+    place = d.get(node, "own_place")
+    d.person = person if d.with_person == person.value else replace(person, place=place, here=False)
+    return d.person
+
+
 @meaning("person_pronoun")
 def person_pronoun(d: Discourse, node: Node) -> Thing:
     """ "him", "her", "them": whose place this is, the person spoken of last, or whoever is here."""

@@ -84,6 +84,10 @@ def place_own(d: Discourse, node: Node) -> Value:
         d.place = named
         return named
     owner = who.text if who is not None and who.known else None
+    if kind is None:  # "her room", whatever it is called here
+        if who is None or not who.known:
+            raise unknown_place(d, d.words(node.start, node.end), node)
+        return place_called_after(d, who.text, node)
     places = d.lexicon.place_kinds[kind]
     own = [each for each in places if owner and is_of(d, each.name, owner)]
     if owner and not own:
@@ -446,6 +450,12 @@ def own_place(d: Discourse, person: Thing) -> Text | None:
     """The one place that is called after somebody."""
     own = [each.name for each in d.lexicon.places if is_of(d, each.name, person.text)]
     return Text(own[0]) if person.text and len(own) == 1 else None
+
+
+def at_own_place(d: Discourse, person: Thing) -> Thing:
+    """Somebody who "is in", before any place was spoken of: where they work."""
+    spoken_of = d.at is not None or d.place is not None or d.in_loop
+    return person if spoken_of else replace(person, place=own_place(d, person))
 
 
 def listed(d: Discourse, node: Node) -> list[Thing]:

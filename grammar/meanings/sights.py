@@ -12,7 +12,7 @@ from grammar.meanings.answered_numbers import number_answered
 from grammar.meanings.descriptions import described
 from grammar.meanings.finding import found, in_state, is_here, not_found, whether_found
 from grammar.meanings.nouns import best_of_those, is_best
-from grammar.meanings.places import place_called_after, sought
+from grammar.meanings.places import at_own_place, place_called_after, sought
 from grammar.meanings.polls import polled, told_as_asked
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report, told_report
@@ -374,6 +374,8 @@ def whether_seen(d: Discourse, node: Node) -> Report | Steps:
         thing = replace(thing, place=place_called_after(d, holder.text, node.parts["holder"]))
     if isinstance(thing.place, Items):  # "in the lobby or in the kitchen"
         return located(d, thing)
+    if node.production.fixed.get("own") and thing.place is None:
+        thing = at_own_place(d, thing)
     named = named_some(d, thing)
     d.get(node, "for_whom")  # "whether there is a letter for Bob": "him"
     return Report(

@@ -14,7 +14,7 @@ from grammar.meanings.conditions import negated
 from grammar.meanings.deliveries import delivered_last
 from grammar.meanings.finding import noun_of, whether_found
 from grammar.meanings.news import BACK, in_round
-from grammar.meanings.places import own_place, owner_of, sought
+from grammar.meanings.places import at_own_place, own_place, owner_of, sought
 from grammar.meanings.polls import counted as counted_answers
 from grammar.meanings.registry import meaning
 from grammar.meanings.searches import (
@@ -80,6 +80,8 @@ def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
     if thing.person and thing.count is not None:  # "five people are there"
         many = _so_many(d, thing, thing.count, ">=")
         return negated(many) if node.production.fixed.get("no") else many
+    if node.production.fixed.get("own") and thing.place is None:
+        thing = at_own_place(d, thing)
     brought = delivered_last(d)
     if said_there and brought is not None and thing.person and thing.place is None:
         thing = replace(thing, place=own_place(d, thing))

@@ -18,6 +18,7 @@ from grammar.meanings.deliveries import (
 )
 from grammar.meanings.descriptions import described
 from grammar.meanings.finding import (
+    go,
     if_missing,
     look_for,
     meet,
@@ -490,9 +491,10 @@ def handed(d: Discourse, node: Node) -> Steps:
 def scan(d: Discourse, node: Node) -> Steps:
     """Scan a code, of a thing or on a person that is looked for first if it is not here; where
     nothing is done with the code, it is read out."""
-    steps: Steps = []
     person: Thing | None = d.get(node, "person_ref")
     thing: Thing | None = d.get(node, "thing")
+    place: Value | None = d.get(node, "at_place")
+    steps = [] if place is None else go(d, place)
     if person is not None:
         steps = meet(d, person)
     elif thing is not None and not thing.here and not thing.pronoun:
