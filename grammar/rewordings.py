@@ -41,6 +41,10 @@ MOST: Final = 4
 MOST_WORDS: Final = 9
 """Words that `{so}` may stand for."""
 
+CLAUSE_BEGINS: Final = ("begin", "clause")
+ANY_WORD: Final = ""
+"""What a part may begin with."""
+
 Spans = Mapping[str, tuple[int, int]]
 """The tokens that each part of a template stands for."""
 
@@ -63,7 +67,7 @@ def said_plainly(text: str, lexicon: Lexicon, language: Language, context: Conte
     from grammar.understand import Reader
 
     listed = _listed(language, always=True)
-    if listed.keys().isdisjoint(language.tokens_of(text)):
+    if ANY_WORD not in listed and listed.keys().isdisjoint(language.tokens_of(text)):
         return text
     reader = Reader(text, lexicon, language, context)
     return [text, *_reworded(reader, listed)][-1]
@@ -97,7 +101,10 @@ def _listed(language: Language, *, always: bool) -> Mapping[str, tuple[Rewording
                 entry["instead"],
                 entry.get("where", "anywhere"),
             )
-            for first in _first_words(one.say):
+            first_words = _first_words(one.say)
+            if ANY_WORD in first_words and one.where not in CLAUSE_BEGINS:
+                raise RuleError(f"the rewording {say!r} has to begin with words, or a clause")
+            for first in first_words:
                 listed[first].append(one)
     return {first: tuple(those) for first, those in listed.items()}
 
@@ -129,8 +136,8 @@ def _begins(template: Template) -> tuple[frozenset[str], bool]:
     match template:
         case Word(text):
             return frozenset({text}), False
-        case Part(name):
-            raise RuleError(f"a rewording begins with words, not with {name!r}")
+        case Part():
+            return frozenset({ANY_WORD}), False
         case Choice(alternatives):
             found = [_begins(each) for each in alternatives]
             words = frozenset(itertools.chain.from_iterable(words for words, _ in found))
@@ -148,8 +155,10 @@ def _begins(template: Template) -> tuple[frozenset[str], bool]:
 def _matches(reader: Reader, rewordings: Mapping[str, tuple[Rewording, ...]]) -> Iterator[str]:
     """The sentence with the first of them replaced."""
     for at, token in enumerate(reader.tokens):
-        for one in rewordings.get(token.norm, ()):
-            if one.where in ("begin", "clause") and not _begins_clause(reader, at):
+        begins = _begins_clause(reader, at)
+        anything = rewordings.get(ANY_WORD, ()) if begins else ()
+        for one in (*rewordings.get(token.norm, ()), *anything):
+            if one.where in CLAUSE_BEGINS and not begins:
                 continue
             for end, spans in _walk(one.say, reader, at, {}):
                 if one.where in ("end", "clause") and not _ends_clause(reader, end):

@@ -7,6 +7,7 @@ somewhere else that is for the speaker is brought back to them.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import takewhile
 
 from grammar.chart import Node
 from grammar.discourse import START, Discourse, Steps, Thing, Where
@@ -204,12 +205,22 @@ def found_out(d: Discourse, found: Report, person: Thing | None, *, back: bool) 
 
 
 def not_yet_back(d: Discourse, found: Report) -> None:
-    """ "go to the lab, come back and tell me who is there": seen there, and told here."""
-    seen_there = found.about_here and found.value is not None and found.place is None
-    gone = d.done[-2] if len(d.done) > 1 and d.done[-1] == news.BACK else None
-    if seen_there and isinstance(gone, Call) and gone.method == "goto" and gone != news.BACK:
+    """ "go to the lab, come back and tell me who is there", "look at the man in the lounge, come
+    back and describe him": seen there, and told here."""
+    if not found.about_here or found.value is None or d.done[-1:] != [news.BACK]:
+        return
+    gone = [
+        step
+        for step in takewhile(
+            lambda step: isinstance(step, Call) and step.method in ("goto", "find"),
+            reversed(d.done[:-1]),
+        )
+        if "place" in step.arguments
+    ]
+    place = gone[0].arguments["place"] if gone else None
+    if place is not None and gone[0] != news.BACK and found.place in (None, place):
         d.done.pop()
-        d.went(gone.arguments["place"])
+        d.went(place)
 
 
 def told(d: Discourse, found: Report, person: Thing | None) -> Steps:

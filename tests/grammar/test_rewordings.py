@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -50,9 +51,11 @@ def test_what_is_quoted_is_spoken_as_it_is() -> None:
     assert "Somebody should go to the kitchen" in (translation.program or "")
 
 
-def test_a_rewording_begins_with_a_word() -> None:
-    with pytest.raises(RuleError, match="begins with words"):
-        rewordings._first_words(rewordings.parse_template("<person_ref> ought to"))
+def test_a_part_stands_first_only_at_the_beginning_of_a_clause() -> None:
+    entry = {"say": "<person_ref> ought to", "instead": "please", "like": {}}
+    odd = replace(load_language("en"), rewordings=(entry,))
+    with pytest.raises(RuleError, match="begin with words"):
+        rewordings._listed(odd, always=False)
 
 
 def test_what_is_refused_for_its_sense_is_not_said_otherwise() -> None:
