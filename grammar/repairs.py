@@ -42,6 +42,7 @@ def understood(
         behind = Reader(reader.text[reader.tokens[end].start :], lexicon, language, context)
         others = itertools.chain(
             _broken_off(before, behind),
+            _named_instead(before, behind),
             _with_other_look(before, behind),
             _in_its_place(before, behind),
         )
@@ -84,6 +85,27 @@ def _broken_off(before: Reader, behind: Reader) -> Iterator[str]:
     """A sentence broken off at a little word, and gone on with: "go to, no wait, the lab"."""
     if before.tokens[before.last_word - 1].norm in before.language.speech.get("half_ends", ()):
         yield f"{before.text.rstrip(' ,')} {behind.text}"
+
+
+def _named_instead(before: Reader, behind: Reader) -> Iterator[str]:
+    """ "Tell Alice ..., no wait, she is away, tell Bob instead": the same for somebody else, where
+    no other word of the last clause is new."""
+    end = behind.last_word - 1
+    if end < 1 or behind.tokens[end].norm not in before.language.speech["taking_back"]["instead"]:
+        return
+    marks = (at for at in range(end, 0, -1) if behind.tokens[at - 1].kind == "mark")
+    begin = next(marks, 0)
+    said = {token.norm for token in before.tokens}
+    for start in range(begin, end):
+        if not behind.is_little(range(begin, start)) and not (behind.content(begin, start) <= said):
+            return
+        for new in pieces_at(behind, start):
+            if new.end != end or not new.known:
+                continue
+            for at in range(before.last_word - 1, -1, -1):
+                for old in pieces_at(before, at):
+                    if old.rule == new.rule and old.known:
+                        yield before.with_words(old.start, old.end, behind.words(new.start, end))
 
 
 def _end_of_term(reader: Reader, at: int, parted: bool) -> int:

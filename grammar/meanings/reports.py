@@ -7,7 +7,6 @@ somewhere else that is for the speaker is brought back to them.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import takewhile
 
 from grammar.chart import Node
 from grammar.discourse import START, Discourse, Steps, Thing, Where
@@ -209,14 +208,12 @@ def not_yet_back(d: Discourse, found: Report) -> None:
     back and describe him": seen there, and told here."""
     if not found.about_here or found.value is None or d.done[-1:] != [news.BACK]:
         return
-    gone = [
-        step
-        for step in takewhile(
-            lambda step: isinstance(step, Call) and step.method in ("goto", "find"),
-            reversed(d.done[:-1]),
-        )
-        if "place" in step.arguments
-    ]
+    looking: list[Call] = []
+    for step in reversed(d.done[:-1]):
+        if not isinstance(step, Call) or step.method not in ("goto", "find"):
+            break
+        looking.append(step)
+    gone = [step for step in looking if "place" in step.arguments]
     place = gone[0].arguments["place"] if gone else None
     if place is not None and gone[0] != news.BACK and found.place in (None, place):
         d.done.pop()
