@@ -255,6 +255,8 @@ class Judge:
                 continue
             if not spoken and self.tokens[at].norm in self.words.conditions:
                 return doubt(at - 1, "not_understood")
+            if self.open_condition(at, end):
+                return doubt(at - 1, "said_or_done")
             if self.order(at, end, strict=greeting > 0):
                 if node.means in REQUESTED:
                     if self.about_addressed(at, end):
@@ -293,6 +295,17 @@ class Judge:
         if spoken and self.asks(start, end):
             return doubt(start, "cannot_say")
         return self.fragment(node, start, end, doubt)
+
+    def open_condition(self, at: int, end: int) -> bool:
+        """Whether a condition begins here of which nothing is said that would then be so: "I am on
+        my way, and if it is later than that, that I will come tomorrow"."""
+        if self.tokens[at].norm not in self.words.conditions:
+            return False
+        if self.tokens[at - 1].norm not in self.joins:
+            return False
+        marks = (place for place in range(at, end) if self.tokens[place].kind == "mark")
+        behind = next(marks, end) + 1
+        return behind >= end or self.tokens[behind].norm in self.words.that
 
     def given_to(self, start: int) -> bool:
         """Whether a pronoun stands here that something is given to, and not the subject of a text:
