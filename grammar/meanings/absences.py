@@ -25,6 +25,15 @@ class Addressed:
 
     condition: Condition
     steps: Steps
+    around: tuple[If, ...] = ()
+    """Where they were looked for before, each the other case of the one before it."""
+
+    def or_else(self, then: Steps, otherwise: Steps) -> If:
+        """What is done if they are there, and if not, as the last of the other cases."""
+        whole = If(self.condition, tuple(then), tuple(otherwise))
+        for outer in reversed(self.around):
+            whole = If(outer.condition, outer.then, (*outer.otherwise[:-1], whole))
+        return whole
 
 
 def addressed_before(d: Discourse, met: Meeting | None) -> Addressed | None:
@@ -35,13 +44,18 @@ def addressed_before(d: Discourse, met: Meeting | None) -> Addressed | None:
     for at in range(len(d.done) - 1, -1, -1):
         step = d.done[at]
         if isinstance(step, If):
-            found = searches(step.condition)
+            tried = [step]  # "if she is not there either": the last of the places
+            while tried[-1].otherwise and isinstance(tried[-1].otherwise[-1], If):
+                tried.append(tried[-1].otherwise[-1])
+            found = [search for each in tried for search in searches(each.condition)[:1]]
             if not found:
                 continue  # what hangs on an answer
-            if not _is_meant(found[0], who) or at != len(d.done) - 1:
+            if not any(_is_meant(each, who) for each in found) or at != len(d.done) - 1:
                 return None
+            *around, last = tried
+            condition = last.condition if around else _there(step.condition, who)
             d.done.pop()
-            return Addressed(_there(step.condition, who), list(step.then))
+            return Addressed(condition, list(last.then), tuple(around))
         if not isinstance(step, Call) or step.method not in ("find", "goto"):
             continue
         spoken = any(_speaks(each) for each in d.done[at + 1 :])

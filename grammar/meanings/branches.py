@@ -50,6 +50,7 @@ from grammar.meanings.searches import (
     Search,
     either_way,
     in_turn,
+    only_told_missing,
     same_search,
     search_of,
     searched,
@@ -373,12 +374,17 @@ def absent(
     claim = claim_of(d, node, Holds(Truth(False)), met)
     d.claim, before = None if claim is None else Claim(claim, d.known_by_now()), d.claim
     meet_there(d, met)
-    otherwise = d.sequence(lambda: d.done.extend(make()))
+    otherwise = tried_there(d, d.sequence(lambda: d.done.extend(make())), met.thing, kept)
+    part = other_branch(d, node, Not(kept.condition)) or node.parts.get("otherwise_denied")
+    last = otherwise[-1] if otherwise else None
+    neither = node.parts.get("otherwise_none")  # "if she is not there either, ..."
+    if neither is not None and part is neither and isinstance(last, If) and only_told_missing(last):
+        in_vain = d.sequence(lambda: d.done.extend(d.build(neither)))
+        otherwise[-1], part = structs_replace(last, otherwise=tuple(in_vain)), None
     d.claim, (d.undelivered, d.instead_of) = before, outer
     elsewhere = d.scene()
     d.set_scene(after)
     then = list(kept.steps)
-    part = other_branch(d, node, Not(kept.condition)) or node.parts.get("otherwise_denied")
     if part is not None:
         answer, d.answer, d.answer_options = d.answer, known, options
         then = d.sequence(lambda: _go_on(d, then, part))
@@ -387,7 +393,19 @@ def absent(
     d.set_scene(elsewhere)
     leave_off(d, after)
     otherwise, told = told_by_either(otherwise, Recall(known) if asked and known else None)
-    return [If(kept.condition, tuple(then), tuple(otherwise)), *told]
+    return [kept.or_else(then, otherwise), *told]
+
+
+def tried_there(d: Discourse, steps: Steps, who: Thing, kept: Addressed) -> Steps:
+    """ "tell Alice ...; if she is not in her office, try the library": if she is there, she is told
+    there."""
+    match steps:
+        case [*before, If(Not(Holds(Ask("find", where)) as found), missing, ())] if (
+            where["thing"] == who.value
+        ):
+            return [*before, If(found, tuple(kept.steps), missing)]
+        case _:
+            return steps
 
 
 def told_by_either(steps: Steps, answer: Recall | None) -> tuple[Steps, Steps]:
