@@ -18,6 +18,7 @@ from grammar.meanings.finding import go, not_found, speak_to
 from grammar.meanings.persons import is_me
 from grammar.meanings.polls import polled
 from grammar.meanings.reports import coming_back, known_words, tell_speaker
+from grammar.meanings.rooms import in_words, room_spoken_of
 from grammar.meanings.sights import named_some
 from grammar.meanings.speaking import put_for, sentence_form
 from grammar.plan import (
@@ -60,7 +61,8 @@ def claim_of(d: Discourse, node: Node, condition: Condition, met: Meeting | None
     end = part.end
     while d.tokens[end - 1].kind == "mark":
         end -= 1
-    clause = as_fact(d, direct_clause(d, part.start, end))
+    room = room_spoken_of(d, part.start, end, checked=what_it_means(part) == "trait_holds")
+    clause = as_fact(d, in_words(d, part.start, end, room))
     return Call("say", {"text": Text(sentence_form(clause))})
 
 

@@ -7,6 +7,7 @@ from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
+from grammar.doubts import NotUnderstood
 from grammar.meanings.genders import gender_of_thing, pronoun_of
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import sought
@@ -29,6 +30,8 @@ from grammar.plan import (
     Value,
 )
 
+ROOM_STATES: Final = frozenset({"empty", "free", "full", "occupied"})
+"""What rooms and seats are seen to be, and people are not."""
 ANYBODY: Final = (ANYONE, "visitor", "patient", "customer")
 """Whoever is there."""
 
@@ -99,6 +102,9 @@ def in_state(d: Discourse, node: Node, thing: Thing) -> Thing:
     state = d.get(node, "state")
     if state is None:
         return thing
+    if thing.person and state in ROOM_STATES:  # "if Bob is free"
+        words, gap = d.words(node.start, node.end), (node.start, node.end)
+        raise NotUnderstood(d.language.phrase("cannot_check", what=words), gap=gap)
     so = Text(d.language.phrase("in_state", state=state, thing=thing.text))
     return replace(thing, value=so)
 

@@ -21,6 +21,7 @@ from grammar.meanings.persons import guest_for, is_me, person_me
 from grammar.meanings.questions import turn_to_you
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning
+from grammar.meanings.rooms import in_words, room_spoken_of
 from grammar.meanings.speaking import put_for, sentence_form
 from grammar.meanings.verb_forms import base_form
 from grammar.names import names_of
@@ -82,6 +83,9 @@ def show_that(d: Discourse, node: Node) -> Steps:
 
 def told_to(d: Discourse, part: Leaf | Node, person: Thing | None) -> str:
     """A reported clause as a sentence to its receiver."""
+    room = room_spoken_of(d, part.start, part.end)
+    if room:
+        return sentence_form(in_words(d, part.start, part.end, room))
     changed = {**indirect(d, part), **turned(d, part.start, part.end, person)}
     ordered = direct_clause(d, part.start, part.end, changed)
     if ordered == d.words(part.start, part.end):

@@ -18,13 +18,7 @@ from itertools import takewhile
 from typing import Any, Final
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import (
-    ANYONE,
-    SETTING,
-    Discourse,
-    Steps,
-    Thing,
-)
+from grammar.discourse import ANYONE, SETTING, Discourse, Steps, Thing
 from grammar.meanings.answers import wanted
 from grammar.meanings.deliveries import inside
 from grammar.meanings.finding import found, go, not_found, waited_for
@@ -40,6 +34,7 @@ from grammar.meanings.several_places import (
 )
 from grammar.meanings.several_things import (
     HANDED,
+    as_many,
     begun_before,
     first_found,
     over_either_thing,
@@ -85,7 +80,7 @@ TOGETHER: Final = frozenset(
     }
 )  # fmt: skip
 """Commands that know themselves what to do with several people."""
-PEOPLE: Final = frozenset({"person_ref", "willing"})
+PEOPLE: Final = frozenset({"person_ref", "somebody", "willing"})
 """Rules for those who get something."""
 FETCHES: Final = HANDED | {"shared_with", "shares"}
 """Commands that take things from somewhere."""
@@ -120,7 +115,7 @@ def distributed(d: Discourse, node: Node, make: Make) -> Steps:
         make = for_who_agreed(d, agreed, make)
     if hands_one_of_several(d, node):
         begun_before(d)
-    several = one_each(d, several)
+    several = one_each(d, node, several)
     if node.means == "go_person" and len(several) == 1 and "then" not in node.parts:
         among = gone_among(d, several[0])
         if among is not None:
@@ -179,18 +174,19 @@ def hands_one_of_several(d: Discourse, node: Node) -> bool:
     return hands and part.means == "thing_it"
 
 
-def one_each(d: Discourse, several: list[Node]) -> list[Node]:
-    """ "hand out the flyers to everybody": not all of them to each, but one."""
+def one_each(d: Discourse, node: Node, several: list[Node]) -> list[Node]:
+    """ "hand out the flyers to everybody", "three to the three of them": one to each."""
     people = [part for part in several if part.production.rule in PEOPLE]
     things = [part for part in several if OVER[part.means] in (over_it, over_things)]
     if not people or len(things) != 1:
         return several
     scene = d.scene()
     thing: Thing = d.build(things[0])
+    enough = thing.count is None or as_many(d, node, d.build(people[0]), thing.count)
     d.set_scene(scene)
-    if thing.count is not None or "every" in things[0].production.fixed:
+    if not enough or "every" in things[0].production.fixed:
         return several
-    d.bound[id(things[0])] = replace(thing, every=False, plural=False, pronoun=False)
+    d.bound[id(things[0])] = replace(thing, every=False, plural=False, pronoun=False, count=None)
     return people
 
 

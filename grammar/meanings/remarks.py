@@ -19,11 +19,12 @@ from grammar.doubts import NotUnderstood
 from grammar.freetext import words_for
 from grammar.meanings.genders import gender_of_thing
 from grammar.meanings.options import people_named
+from grammar.meanings.persons import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report
 from grammar.meanings.sources import all_there_are, told_where
 from grammar.meanings.speaking import sentence_form
-from grammar.plan import Ask, Call, Text, Value
+from grammar.plan import Ask, Call, Items, Text, Value
 from grammar.tidy import replaced
 
 SUBJECTS: Final = ("person_ref", "place", "thing")
@@ -133,6 +134,9 @@ def remark_where(d: Discourse, node: Node) -> Steps:
         person = None
     it = node.production.fixed.get("it") or (person is None and may_be_it(d, node))
     it = it or mislaid(d, who_is) is not None
+    either = isinstance(place, Items) and d.thing is not None  # things are in one place or another
+    if either or (is_me(d.person) and d.gender(node.start, node.start + 2)):
+        it = True  # "hol mir meine Brille, sie ist im Büro": no word for whoever says so
     who = person or (d.person if thing is None and not it else None)
     if thing is None and who is not None:
         d.person, d.thing_last = replace(who, place=place, furniture=spot.furniture), False
@@ -198,7 +202,7 @@ def fetched_there(d: Discourse, who: Thing, place: Value | None) -> None:
 
 def known_to_be(d: Discourse, value: Value, place: Value | None) -> None:
     """Let the steps so far look for somebody or something where they are said to be."""
-    if place is not None:
+    if place is not None and not isinstance(place, Items):  # one of several is looked through
         d.done[:] = [_looking_at(step, value, place) for step in d.done]
 
 

@@ -27,6 +27,7 @@ from grammar.plan import (
     Holds,
     If,
     Increase,
+    Items,
     Not,
     Number,
     Recall,
@@ -40,6 +41,13 @@ from grammar.tidy import LOOPS
 
 HANDED: Final = frozenset({"bring", "grab", "put"})
 """Commands that change where things are."""
+
+
+def as_many(d: Discourse, node: Node, people: Thing, count: int) -> bool:
+    """Whether there are as many things as people who get them: "bring Alice and Bob two coffees",
+    and not "two coffees each"."""
+    each = d.language.words_called("apiece").intersection(d.norms(node.start, node.end))
+    return isinstance(people.group, Items) and len(people.group.items) == count and not each
 
 
 def over_things(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:

@@ -18,7 +18,7 @@ from grammar.language import Language
 from grammar.meanings.deliveries import inside, meant_for
 from grammar.meanings.one_round import Make
 from grammar.meanings.registry import meaning
-from grammar.plan import Ask, Call, Recall, Step, Text, Value
+from grammar.plan import Ask, Call, Items, Recall, Step, Text, Value
 from grammar.tidy import nodes
 from grammar.wordforms import singular
 
@@ -39,7 +39,7 @@ class Fetching:
 def told_where(d: Discourse, thing: Thing) -> None:
     """A thing is said to be at a place: the command before looks for it there, and so do those that
     follow."""
-    if thing.person or not isinstance(thing.place, Text):
+    if thing.person or not isinstance(thing.place, Text | Items):
         return
     d.said_to_be.append(thing)
     source = Where(thing.place)

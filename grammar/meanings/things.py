@@ -129,9 +129,11 @@ def grab(d: Discourse, node: Node) -> Steps:
 def fetch_from(d: Discourse, node: Node) -> Steps:
     """ "get the key from Alice": she is asked for it."""
     person: Thing = where_sent(d, d.get(node, "person_ref"))
-    part = node.parts["noun"]
+    words = node.parts.get("wanted")  # with their article, where it shows the gender
+    part = words.parts["noun"] if isinstance(words, Node) else node.parts["noun"]
     what = singular(d.noun_words(part.start, part.end), d.language)
-    question = Text(str(node.production.fixed["question"]).format(thing=what))
+    called = d.words(words.start, words.end) if words is not None else what
+    question = Text(str(node.production.fixed["question"]).format(thing=called))
     asking: dict[str, Value] = {"question": question}
     if person.known:
         asking["person"] = person.value

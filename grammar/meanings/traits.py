@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from grammar.chart import Node
-from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing, Where
+from grammar.discourse import ANYONE, START, Discourse, Meeting, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.answered import about_answer, so_many_said
 from grammar.meanings.answers import Said
@@ -14,6 +14,7 @@ from grammar.meanings.conditions import negated
 from grammar.meanings.gone_round import round_of
 from grammar.meanings.news import in_round
 from grammar.meanings.nouns import thing_it
+from grammar.meanings.persons import is_me
 from grammar.meanings.places import kind_places, sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.searches import just_looked_for
@@ -109,10 +110,14 @@ def trait_holds(d: Discourse, node: Node) -> Condition:
     if none and asked_yet(d) and not in_round(d):
         part = node.parts["place_trait"]
         return so_many_said(d, node, Said(part.start, part.end))
-    if place is None and d.at is None and d.place is None:  # "if she has a minute"
+    of_them = d.person is not None and d.gender(node.start, node.start + 1) is not None
+    known = d.at is not None or d.place is not None
+    if place is None and (not known or (of_them and may_be_them(d, node))):  # "if she has a minute"
         words = d.words(node.start, node.end)
         gap = (node.start, node.end)
         raise NotUnderstood(d.language.phrase("cannot_check", what=words), gap=gap)
+    if place is None and d.at == Recall(START) and isinstance(d.place, Text):
+        place = d.place  # "is the library free? If it is, ...": told where it was asked
     if place is not None and place != d.at:
         d.went(place)
         d.pending.append(Call("goto", {"place": place}))
@@ -127,6 +132,14 @@ def trait_holds(d: Discourse, node: Node) -> Condition:
     if trait.thing is not None and in_round(d):
         d.met = Meeting(trait.thing, holds=not trait.denied)
     return negated(trait.condition) if none else trait.condition
+
+
+def may_be_them(d: Discourse, node: Node) -> bool:
+    """Whether the pronoun that a condition begins with may be somebody: "if she is free"."""
+    who = d.person
+    if who is None or is_me(who) or who.text == ANYONE:
+        return False
+    return d.may_be(who, node.start, node.start + 1)
 
 
 def checked_just_now(d: Discourse, trait: Trait) -> Condition | None:

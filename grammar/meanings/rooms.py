@@ -1,0 +1,31 @@
+"""Rooms that are spoken of by a pronoun, told to somebody who has not heard of which."""
+
+from __future__ import annotations
+
+from grammar.discourse import ANYONE, Discourse
+from grammar.naming import place_called
+from grammar.plan import Text
+from grammar.wordorder import direct_clause
+
+
+def room_spoken_of(d: Discourse, start: int, end: int, *, checked: bool = False) -> dict[int, str]:
+    """ "if nobody is in meeting room 1, tell Alice that it is free": what the pronoun is to be
+    said as. `checked`: it is what was just looked at."""
+    words = d.norms(start, end)
+    pronoun = words[0] in d.language.words_called("room_pronouns")
+    if not pronoun or not d.language.words_called("room_states").intersection(words):
+        return {}
+    anybody = d.met is not None and d.met.thing.text == ANYONE
+    place = d.met.thing.place if d.met is not None and anybody else None
+    place = d.place if place is None else place
+    if not (anybody or checked) or not isinstance(place, Text):
+        return {}
+    return {start: place_called(place.value, d.lexicon, d.language)}
+
+
+def in_words(d: Discourse, start: int, end: int, changed: dict[int, str]) -> str:
+    """A reported clause as a direct one, with its first word put otherwise."""
+    ordered = direct_clause(d, start, end, changed)
+    if changed and ordered == d.words(start, end):
+        return f"{changed[start]} {d.words(start + 1, end)}"
+    return ordered
