@@ -169,6 +169,8 @@ class Discourse:
     each time, or only "if anybody comes"."""
     met: Meeting | None = None
     """Who or what the last condition was about."""
+    room: Value | None = None
+    """The room of which something was looked at: "if it is free"."""
     branched: Branched | None = None
     """The last condition that was followed by what is done then."""
     missing: Thing | None = None

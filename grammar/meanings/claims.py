@@ -34,7 +34,6 @@ from grammar.plan import (
 )
 from grammar.tidy import mentions
 from grammar.wordforms import plural
-from grammar.wordorder import direct_clause
 
 COUNT: Final = "count"
 """The variable that a number is kept in which a condition is about."""
@@ -61,7 +60,7 @@ def claim_of(d: Discourse, node: Node, condition: Condition, met: Meeting | None
     end = part.end
     while d.tokens[end - 1].kind == "mark":
         end -= 1
-    room = room_spoken_of(d, part.start, end, checked=what_it_means(part) == "trait_holds")
+    room = room_spoken_of(d, part.start, end)
     clause = as_fact(d, in_words(d, part.start, end, room))
     return Call("say", {"text": Text(sentence_form(clause))})
 

@@ -8,19 +8,19 @@ from grammar.plan import Text
 from grammar.wordorder import direct_clause
 
 
-def room_spoken_of(d: Discourse, start: int, end: int, *, checked: bool = False) -> dict[int, str]:
+def room_spoken_of(d: Discourse, start: int, end: int) -> dict[int, str]:
     """ "if nobody is in meeting room 1, tell Alice that it is free": what the pronoun is to be
-    said as. `checked`: it is what was just looked at."""
+    said as."""
     words = d.norms(start, end)
     pronoun = words[0] in d.language.words_called("room_pronouns")
     if not pronoun or not d.language.words_called("room_states").intersection(words):
         return {}
-    anybody = d.met is not None and d.met.thing.text == ANYONE
-    place = d.met.thing.place if d.met is not None and anybody else None
-    place = d.place if place is None else place
-    if not (anybody or checked) or not isinstance(place, Text):
-        return {}
-    return {start: place_called(place.value, d.lexicon, d.language)}
+    place = d.room
+    if d.met is not None and d.met.thing.text == ANYONE:
+        place = d.met.thing.place or d.place
+    return (
+        {start: place_called(place.value, d.lexicon, d.language)} if isinstance(place, Text) else {}
+    )
 
 
 def in_words(d: Discourse, start: int, end: int, changed: dict[int, str]) -> str:

@@ -27,6 +27,8 @@ class FetchedList:
     steps: dict[Value, Steps]
     at: Value | None
     """Where the robot was before."""
+    since: Value | None
+    """Where it was when they were fetched, or when the last one was taken off the list."""
 
 
 @meaning("things")
@@ -94,9 +96,8 @@ def over_thing_list(d: Discourse, node: Node, things: list[Thing], one: One) -> 
 def fetched_from_here(d: Discourse, things: list[Thing], one: One) -> Steps | None:
     """ "go to the cafeteria and get a sandwich and an apple": from where the robot was just sent,
     unless that is where they are to be put down."""
-    last = d.done[-1] if d.done else None
-    here = d.at
-    if d.only_fetches or not isinstance(here, Text) or last != Call("goto", {"place": here}):
+    here = just_sent_to(d)
+    if d.only_fetches or here is None:
         return None
     scene = d.scene()
     there = [replace(thing, place=here) for thing in things]
@@ -108,17 +109,27 @@ def fetched_from_here(d: Discourse, things: list[Thing], one: One) -> Steps | No
     return steps
 
 
+def just_sent_to(d: Discourse) -> Text | None:
+    """Where the robot was sent in the step before."""
+    last = d.done[-1] if d.done else None
+    here = d.at
+    return here if isinstance(here, Text) and last == Call("goto", {"place": here}) else None
+
+
 def fetched_for_later(d: Discourse, things: list[Thing], one: One) -> Steps:
     """ "get a pen and a notebook": to the speaker, unless it is said otherwise then; what is only
     taken has to go somewhere, for a hand holds one thing."""
     at = d.at
+    here = just_sent_to(d)
+    if here is not None and not any(map(is_placed, things)):
+        things = [replace(thing, place=here) for thing in things]
     steps = {thing.value: for_one(d, thing, one) for thing in things}
     if any(map(is_grab, steps.values())):
         d.at = at
         d.holding = None
         d.collected = things[-1]
         steps = {each: [] for each in steps}
-    d.fetched_list = FetchedList(tuple(things), steps, at)
+    d.fetched_list = FetchedList(tuple(things), steps, at, d.at)
     return [step for each in steps.values() for step in each]
 
 
@@ -159,11 +170,13 @@ def off_the_list(d: Discourse, thing: Thing) -> Thing:
     if at is not None:
         del d.done[at : at + len(steps)]
     rest = tuple(each for each in fetched.things if each is not one)
-    d.fetched_list = replace(fetched, things=rest) if rest else None
+    d.fetched_list = replace(fetched, things=rest, since=d.at) if rest else None
     if d.delivered == thing.value:
         d.delivered = None
     if not rest:
-        d.at, d.collected = fetched.at, None
+        d.collected = None
+    if not rest and d.at == fetched.since:  # none of them was brought anywhere yet
+        d.at = fetched.at
     return replace(one, pronoun=False, listed=())
 
 

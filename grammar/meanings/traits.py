@@ -121,6 +121,7 @@ def trait_holds(d: Discourse, node: Node) -> Condition:
     if place is not None and place != d.at:
         d.went(place)
         d.pending.append(Call("goto", {"place": place}))
+    d.room = place or d.at or d.place
     trait: Trait = d.get(node, "place_trait")
     checked = checked_just_now(d, trait) if place is None else None
     if checked is not None:

