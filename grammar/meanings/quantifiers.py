@@ -39,6 +39,7 @@ from grammar.meanings.several_things import (
     first_found,
     over_either_thing,
     over_things,
+    put_more_exactly,
 )
 from grammar.meanings.sources import keep_fetching, sourced
 from grammar.meanings.surveys import Survey, each_asked, uses_answer
@@ -102,7 +103,7 @@ CLAUSES: Final = frozenset({"command", "closing", "clause", "steps", "body", "wh
 
 def distributed(d: Discourse, node: Node, make: Make) -> Steps:
     """The steps of a command, in a loop for each of its noun phrases that speak of several."""
-    again = sourced(d, node)
+    again = [] if put_more_exactly(d, node) else sourced(d, node)
     if again is not None:
         return again
     scene, known = d.scene(), frozenset(d.variables)

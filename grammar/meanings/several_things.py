@@ -8,7 +8,7 @@ from typing import Final
 from msgspec import structs
 
 from grammar.chart import Node
-from grammar.discourse import START, Discourse, Steps, Thing
+from grammar.discourse import START, Discourse, Steps, Thing, Where
 from grammar.doubts import Ambiguous, NotUnderstood
 from grammar.meanings.chosen import by_choice, chosen_of
 from grammar.meanings.deliveries import inside
@@ -34,6 +34,7 @@ from grammar.plan import (
     Remember,
     Repeat,
     Step,
+    Text,
     Value,
     While,
 )
@@ -98,6 +99,32 @@ def last_deed(d: Discourse) -> Call | None:
     while isinstance(last, LOOPS) and last.steps:
         last = last.steps[-1]
     return last if isinstance(last, Call) and last.method in ("give", "put") else None
+
+
+def put_more_exactly(d: Discourse, node: Node) -> bool:
+    """ "bring three folders to the lab and put them on the table": each is put down once, there."""
+    last, where = last_deed(d), node.parts.get("where")
+    they = node.parts.get("thing")
+    them = isinstance(they, Node) and they.means == "thing_it" and d.thing is not None
+    if node.means != "put" or not them or where is None or last is None or not d.done:
+        return False
+    if d.thing is None or not d.thing.several or last.arguments.get("thing") != d.thing.value:
+        return False
+    scene = d.scene()
+    spot: Where = d.build(where)
+    if last.method != "put" or "where" in last.arguments or spot.place or not spot.furniture:
+        d.set_scene(scene)
+        return False
+    there = structs.replace(last, arguments={**last.arguments, "where": Text(spot.furniture)})
+    d.done[-1] = ending(d.done[-1], there)
+    return True
+
+
+def ending(step: Step, last: Step) -> Step:
+    """A step, or a round of steps, with another for its last one."""
+    if not isinstance(step, LOOPS):
+        return last
+    return structs.replace(step, steps=(*step.steps[:-1], ending(step.steps[-1], last)))
 
 
 def rounds(d: Discourse, node: Node, thing: Thing, single: Thing, body: Steps) -> Steps:
@@ -254,6 +281,11 @@ def over_either_thing(d: Discourse, node: Node, things: list[Thing], one: One) -
         steps = by_choice(d, chosen, things, one)
         d.thing, d.thing_last = Thing(Recall(str(d.answer))), True
         return steps
+    # "a tea or a coffee from the kitchen": either is from there, if they are but named
+    unplaced = all(each.place is None and each.furniture is None for each in things[:-1])
+    if unplaced and things[-1].place is not None:
+        last = things[-1]
+        things = [replace(each, place=last.place, furniture=last.furniture) for each in things]
     return first_found(d, things, one)
 
 
