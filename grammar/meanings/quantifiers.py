@@ -493,4 +493,4 @@ OVER: Final[dict[str, Callable[[Discourse, Node, Any, One], Steps]]] = {
 }
 """The noun phrases that may speak of several, by their meaning: what is done with each."""
 
-OF_THINGS: Final = frozenset({over_it, over_things, over_thing_list})
+OF_THINGS: Final = frozenset({over_either_thing, over_it, over_things, over_thing_list})
