@@ -283,9 +283,9 @@ def over_either_thing(d: Discourse, node: Node, things: list[Thing], one: One) -
         return steps
     # "a tea or a coffee from the kitchen": either is from there, if they are but named
     unplaced = all(each.place is None and each.furniture is None for each in things[:-1])
-    source = d.taken_from or Where(things[-1].place, things[-1].furniture)
-    if unplaced and source.place is not None:
-        things = [replace(each, place=source.place, furniture=source.furniture) for each in things]
+    spot = d.taken_from or Where(things[-1].place, things[-1].furniture)
+    if unplaced and spot.place is not None:
+        things = [replace(each, place=spot.place, furniture=spot.furniture) for each in things]
     return first_found(d, things, one)
 
 
