@@ -108,11 +108,13 @@ def put_more_exactly(d: Discourse, node: Node) -> bool:
     them = isinstance(they, Node) and they.means == "thing_it" and d.thing is not None
     if node.means != "put" or not them or where is None or last is None or not d.done:
         return False
-    if d.thing is None or not d.thing.several or last.arguments.get("thing") != d.thing.value:
+    if d.thing is None or not d.thing.several or last.arguments != {"thing": d.thing.value}:
+        return False
+    if last.method != "put":  # and not only fetched
         return False
     scene = d.scene()
     spot: Where = d.build(where)
-    if last.method != "put" or "where" in last.arguments or spot.place or not spot.furniture:
+    if spot.place or not spot.furniture:
         d.set_scene(scene)
         return False
     there = structs.replace(last, arguments={**last.arguments, "where": Text(spot.furniture)})
