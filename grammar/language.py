@@ -42,7 +42,7 @@ from grammar.templates import (
     Word,
     parse_template,
 )
-from grammar.tokens import Spelling, words_of
+from grammar.tokens import Spelling, words_of, words_of_template
 from grammar.verbs import forms, ordered
 
 _FOLDER: Final = Path(__file__).parent / "languages"
@@ -276,8 +276,7 @@ def _spelling(data: Mapping[str, Any]) -> Spelling:
 
 def _compiled(data: Mapping[str, Any]) -> Compiled:
     spelling = _spelling(data)
-    verbatim = frozenset(spelling.endings.values())  # "'s" stands alone in rules only
-    normal = functools.cache(lambda text: (text,) if text in verbatim else words_of(text, spelling))
+    normal = functools.cache(lambda text: words_of_template(text, spelling))
     network = compile_rules(_rules(data), normal)
     lists = {
         name: {

@@ -29,7 +29,7 @@ from grammar.chart import TooMuch
 from grammar.language import Language
 from grammar.network import RuleError
 from grammar.templates import NOTHING, Choice, Part, Sequence, Template, Word, parse_template
-from grammar.tokens import words_of
+from grammar.tokens import words_of_template
 
 if TYPE_CHECKING:
     from grammar.lexicon import Lexicon
@@ -113,7 +113,7 @@ def _normal(template: Template, language: Language) -> Template:
     """A template with its words as they are compared."""
     match template:
         case Word(text):
-            words = tuple(Word(word) for word in words_of(text, language.spelling))
+            words = tuple(map(Word, words_of_template(text, language.spelling)))
             return words[0] if len(words) == 1 else Sequence(words)
         case Sequence(parts):
             return Sequence(tuple(_normal(part, language) for part in parts))

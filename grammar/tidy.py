@@ -340,12 +340,18 @@ def _forget(steps: tuple[Step, ...], used: set[str]) -> tuple[Step, ...]:
 
 
 def _going_once(steps: tuple[Step, ...]) -> tuple[Step, ...]:
-    """Nobody drives to where they have just gone."""
-    return tuple(
-        step
-        for before, step in zip((None, *steps), steps, strict=False)
-        if step != before or not (isinstance(step, Call) and step.method == "goto")
-    )
+    """Nobody drives to where they have just gone, and have only spoken since."""
+    result: list[Step] = []
+    here: Step | None = None
+    for step in steps:
+        going = isinstance(step, Call) and step.method == "goto"
+        if going and step == here:
+            continue
+        calls = (each for each in nodes(step) if isinstance(each, Call | Ask))
+        if going or any(each.method != "say" for each in calls):
+            here = step if going else None
+        result.append(step)
+    return tuple(result)
 
 
 def _forget_in(step: Step, used: set[str]) -> Step | None:

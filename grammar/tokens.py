@@ -96,6 +96,11 @@ def words_of(text: str, spelling: Spelling) -> tuple[str, ...]:
     return tuple(token.norm for token in _tokens(text, spelling))
 
 
+def words_of_template(text: str, spelling: Spelling) -> tuple[str, ...]:
+    """The normal forms of a word of a template, in which "'s" may stand alone."""
+    return (text,) if text in spelling.endings.values() else words_of(text, spelling)
+
+
 def plain(text: str) -> str:
     """Lower case, with composed characters and straight apostrophes."""
     return unicodedata.normalize("NFC", text).lower().replace("’", "'").replace("`", "'")

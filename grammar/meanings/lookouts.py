@@ -347,7 +347,9 @@ def told_at_last(d: Discourse) -> Steps:
         told = lookout.told(d).words
         d.done[at + 2 : at + 2] = [BACK, *told]
         return []
-    if at != len(d.done) - 1 or lookout.definite:
+    if at is not None and d.done[at + 1 :] == [BACK] and not lookout.definite:
+        d.done.pop()  # "..., then come back": to say it
+    elif at != len(d.done) - 1 or lookout.definite:
         lookout.until_found(d)
         return []
     return tell_lookout(d, None) or []

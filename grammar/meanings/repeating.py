@@ -10,7 +10,7 @@ from grammar.doubts import NotUnderstood
 from grammar.meanings.conditions import condition_of
 from grammar.meanings.control import guard_finds
 from grammar.meanings.loops import looped, one_round
-from grammar.meanings.places import kind_places
+from grammar.meanings.places import kind_places, owner_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.waiting import awaited
 from grammar.plan import (
@@ -28,7 +28,7 @@ from grammar.plan import (
     Value,
     While,
 )
-from grammar.tidy import nodes, replaced
+from grammar.tidy import mentions, nodes, replaced
 
 
 def all_before(d: Discourse, *, keep: bool = False) -> tuple[Step, ...]:
@@ -155,13 +155,28 @@ def same_at(d: Discourse, node: Node) -> Steps:
         raise NotUnderstood(d.language.phrase("repeat_what"))
     assert isinstance(old, Text)
     if kinds is None:
-        place: Value = d.get(node, "place")
-        d.went(place)
-        return [replaced(step, old, place) for step in steps]
+        more = d.get(node, "place_list") or ()
+        return [
+            step for place in (d.get(node, "place"), *more) for step in done_at(d, steps, old, place)
+        ]
     variable = d.variable("place")
     d.at = d.with_person = None
     body = tuple(replaced(step, old, Recall(variable)) for step in steps)
     return [ForEach(variable, kind_places(d, kinds), body)]
+
+
+def done_at(d: Discourse, steps: Steps, old: Text, place: Value) -> Steps:
+    """The steps at one place once more at another; with whoever works there, where they were with
+    whoever works at the one."""
+    d.place = old
+    before = owner_of(d)
+    d.went(place)
+    d.place = place
+    person = owner_of(d)
+    if before is not None and person is not None and mentions(tuple(steps), before):
+        steps = [replaced(step, before, person) for step in steps]
+        d.person, d.thing_last = Thing(person, known=True, person=True), False
+    return [replaced(step, old, place) for step in steps]
 
 
 def _is_place(d: Discourse, value: object) -> bool:
