@@ -155,6 +155,10 @@ class Speech(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     lists: tuple[Kept, ...] = ()
     names: dict[str, str] = {}
     """What else is remembered, by the name that the program has for it."""
+    findings: dict[str, tuple[str, str]] = {}
+    """Names for what is found out on the way: how it is said that it is so, and that it is not."""
+    records: dict[str, str] = {}
+    """Names for the highest number so far, and the like: how a number is said to be the next."""
     joined: tuple[tuple[str, str], ...] = ()
     """Little words that run together ("à le" -> "au"), as patterns and what stands for them."""
 

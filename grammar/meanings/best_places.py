@@ -72,7 +72,7 @@ def place_such(d: Discourse, node: Node) -> Such:
 
 def first_such(d: Discourse, such: Such) -> tuple[Steps, Recall, Condition]:
     """The round that finds the place, its name, and whether there is none."""
-    found = d.variable("found")
+    found = d.variable("found_place")
     noting = If(such.trait.condition, (Remember(found, Recall(such.variable)), End()))
     going = round_of(d, such.places, [*such.trait.first, noting], such.variable)
     d.at = d.with_person = None

@@ -157,7 +157,9 @@ def same_at(d: Discourse, node: Node) -> Steps:
     if kinds is None:
         more = d.get(node, "place_list") or ()
         return [
-            step for place in (d.get(node, "place"), *more) for step in done_at(d, steps, old, place)
+            step
+            for place in (d.get(node, "place"), *more)
+            for step in done_at(d, steps, old, place)
         ]
     variable = d.variable("place")
     d.at = d.with_person = None

@@ -89,7 +89,7 @@ def over_willing(d: Discourse, node: Node, wanted: Willing, one: Callable[[Any],
 
 def search_for(d: Discourse, wanted: Willing) -> tuple[Steps, Recall]:
     """The steps that ask one after the other, and the name of who has said yes, or nothing."""
-    found = Recall(d.variable("found"))
+    found = Recall(d.variable("found_person"))
     person = wanted.person
     answer = remember_answer(d, wanted.options, "answer")
     arguments: dict[str, Value] = {
@@ -206,5 +206,5 @@ def _found_by(step: object) -> Recall | None:
     if not isinstance(step, If) or not isinstance(step.condition, Compare):
         return None
     left, right = step.condition.left, step.condition.right
-    is_it = isinstance(left, Recall) and left.name.startswith("found") and right == Text("")
+    is_it = isinstance(left, Recall) and left.name.startswith("found_person") and right == Text("")
     return left if is_it and isinstance(left, Recall) else None

@@ -360,7 +360,7 @@ def test_an_edited_program_is_explained_line_by_line() -> None:
         (3, 0, "three times:"),
         (4, 1, "go to the pharmacy"),
         (7, 1, "if I do not see a person:"),
-        (8, 2, "leave this loop"),
+        (8, 2, "go no further"),
         (9, 0, "remember `[robot.battery()] * 2` as “x”"),
         (10, 0, "whenever `greet` is called:"),
         (11, 1, "say “Hello [“name”]!”"),
@@ -404,3 +404,26 @@ def test_no_line_is_told_of_twice_or_out_of_order(plan: p.Plan) -> None:
     lines = [each.line for each in explain_program(source)]
     assert lines == sorted(lines)
     assert all(1 <= line <= len(source.splitlines()) + 1 for line in lines)
+
+
+def test_what_is_found_out_on_the_way_is_told_without_bookkeeping() -> None:
+    yes = p.Compare(p.Recall("answer"), "==", text("yes"))
+    asking = p.ForEach(
+        "person",
+        p.Ask("people"),
+        (
+            call("ask", "answer", question=text("Can you help?"), person=p.Recall("person")),
+            p.If(yes, (p.Remember("found_person", p.Recall("person")), p.End())),
+        ),
+    )
+    nobody = p.Compare(p.Recall("found_person"), "==", text(""))
+    told = explained(p.Remember("found_person", text("")), asking, p.If(nobody, (say("No."),)))
+    assert told.startswith("For each of the people I see")
+    assert "remember this person as the person who said yes and then go no further" in told
+    assert told.endswith("Then, if nobody said yes, I will say “No.”")
+
+
+def test_one_who_is_left_out_is_called_by_name() -> None:
+    but = p.Not(p.Compare(p.Recall("person"), "in", p.Items((text("Clara"),))))
+    told = explained(p.ForEach("person", p.Ask("people"), (p.If(but, (say("Hello."),)),)))
+    assert "if this person is not “Clara”, I will say “Hello.”" in told
