@@ -162,6 +162,8 @@ class Discourse:
     """Somebody nobody knows who was met or waited for: "they", told to somebody by name."""
     guest: Thing | None = None
     """Who without a name was spoken of before the receiver of the message that is made."""
+    others: bool = False
+    """Whether several people were spoken of before the message that is made."""
     host: Thing | None = None
     """Whom a guest was said to be for."""
     on_duty: str = ""

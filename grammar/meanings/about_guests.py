@@ -21,6 +21,12 @@ def guest_spoken_of(d: Discourse) -> Thing | None:
     return last
 
 
+def others_spoken_of(d: Discourse) -> bool:
+    """Whether several people were spoken of last, whom "they" stands for in a message to one."""
+    last = d.person
+    return last is not None and not last.me and (last.plural or last.group is not None)
+
+
 def guest_in(d: Discourse, receiver: Thing, start: int, end: int) -> dict[int, str]:
     """The word of a message that stands for the guest spoken of before, by its token, and the
     words for them: "he" of "he is there" is "the courier"."""

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, capital
-from grammar.meanings.about_guests import guest_in, guest_spoken_of, host_told
+from grammar.meanings.about_guests import guest_in, guest_spoken_of, host_told, others_spoken_of
 from grammar.meanings.finding import go, speak_to
 from grammar.meanings.genders import gender_of_thing
 from grammar.meanings.news import back_to_speaker
@@ -45,7 +45,7 @@ NOBODY_ELSE: Final[dict[str, Any]] = {
 def say_that(d: Discourse, node: Node) -> Steps:
     """ "tell her that lunch is ready" -> "Lunch is ready."; to somebody, "they" becomes "you"."""
     part = node.parts["text"]
-    d.guest = guest_spoken_of(d)
+    d.guest, d.others = guest_spoken_of(d), others_spoken_of(d)
     host_told(d, node)
     person: Thing | None = guest_for(d, node.parts.get("person_ref"), d.get(node, "person_ref"))
     d.message = node
@@ -327,7 +327,7 @@ def _of_others(d: Discourse, person: Thing, word: str, data: Mapping[str, Any]) 
     several = word in data.get("plural", ())
     alone = person.known and person.group is None and not person.plural
     asked = [each.who for each in d.surveys if isinstance(each.who, Recall)]
-    others = d.visitor is not None or any(who != person.value for who in asked)
+    others = d.others or d.visitor is not None or any(who != person.value for who in asked)
     return several and alone and others
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from grammar.chart import Node, what_it_means
+from dataclasses import replace
+
+from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import (
     Branched,
     Discourse,
@@ -34,6 +36,7 @@ from grammar.meanings.persons import is_me
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import coming_back, told_again
 from grammar.meanings.speaking import clause_of
+from grammar.meanings.surveys import in_loop
 from grammar.plan import (
     Condition,
     If,
@@ -45,6 +48,7 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
     """ "if there are more than three people, tell Alice": that there are more than three people."""
     if "condition" not in node.parts:  # "..., if not, let me know"
         return told_so(d, node, d.claim.saying if d.claim is not None else None)
+    node = of_all_asked(d, node)
     before_it, condition = condition_of(d, node)
     met = turned(d.met) if node.production.fixed.get("unless") else d.met
     kept = addressed_before(d, met) if not before_it else None
@@ -89,6 +93,27 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
     whole = If(condition, tuple(then), tuple(otherwise))
     d.branched = Branched(whole, start, met, d.answer)
     return [*before_it, *counted, whole]
+
+
+def of_all_asked(d: Discourse, node: Node) -> Node:
+    """ "ask everyone whether they need help. If so, tell David": he is told once, if any of them
+    does, and not of each."""
+    part = node.parts["condition"]
+    only_so = only_means(part, "so")
+    several = bool(d.surveys) and d.answer is not None and in_loop(d, d.surveys[-1].call)
+    if only_so is None or only_so.production.fixed or not several:
+        return node
+    if d.language.phrase("yes") not in d.surveys[-1].options:
+        return node
+    means = replace(only_so.production, means="answers_many", fixed={"how": "some"})
+    return replace(node, parts={**node.parts, "condition": replace(only_so, production=means)})
+
+
+def only_means(part: Leaf | Node, means: str) -> Node | None:
+    """The node that a part comes down to, if that is what it means."""
+    while isinstance(part, Node) and part.means != means and len(part.parts) == 1:
+        part = next(iter(part.parts.values()))
+    return part if isinstance(part, Node) and part.means == means else None
 
 
 def is_so(d: Discourse, node: Node) -> bool:
