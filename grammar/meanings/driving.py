@@ -51,6 +51,8 @@ def go_to(d: Discourse, node: Node) -> Steps:
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
     if "place" in node.parts and place == d.at and d.done:
+        if not d.language.words_called("returning").intersection(d.norms(node.start, node.end)):
+            return []  # "knock at office 1, go in"
         place = place_before(d)  # "take them there, then go back there": to where you were
     with_them = goes_on_with_somebody(d, node) or (bare_way(node) and just_led(d))
     if with_them and d.person is not None:

@@ -137,6 +137,10 @@ def told_after_round(d: Discourse, loop: ForEach) -> Steps:
     if d.after_round is None:
         return [loop]
     (person, kind), d.after_round = d.after_round, None
+    if not _holds(
+        loop, d.report_step
+    ):  # "..., and if it is missing, bring one": that is done instead
+        return [loop]
     if d.report.name == "count":
         d.done.append(loop)
         words, steps = summed_up(d, kind).words, [d.done.pop()]
