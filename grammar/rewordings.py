@@ -10,10 +10,11 @@ template language of the rules:
         like: {"Should Bob be out, come back": "If Bob is out, come back"}
 
 `<rule>` is whatever a rule understands, as much of it as it can; `{so}` are words up to the next
-mark, as few as will do. A sentence that cannot be understood is said in the other words and
-understood anew, so that all rules apply, and everything that is asked of a sentence is asked of it
-again. With `always`, a sentence is said so before it is first read: for words that would otherwise
-be taken for something else. `like` shows what it is good for, and the tests hold it to that.
+mark, as few as will do. Behind one of the words `unless` it does not hold. A sentence that cannot
+be understood is said in the other words and understood anew, so that all rules apply, and
+everything that is asked of a sentence is asked of it again. With `always`, a sentence is said so
+before it is first read: for words that would otherwise be taken for something else. `like` shows
+what it is good for, and the tests hold it to that.
 """
 
 from __future__ import annotations
@@ -55,6 +56,8 @@ class Rewording:
     instead: str
     where: Literal["anywhere", "begin", "end", "clause"]
     """Whether it begins a clause, ends one, or is one."""
+    unless: frozenset[str]
+    """Words that may not stand before it."""
 
 
 def said_otherwise(reader: Reader) -> Iterator[str]:
@@ -89,7 +92,7 @@ def _listed(language: Language, *, always: bool) -> Mapping[str, tuple[Rewording
     """The rewordings by the words that they begin with."""
     listed: dict[str, list[Rewording]] = defaultdict(list)
     for entry in language.rewordings:
-        unknown = entry.keys() - {"say", "instead", "where", "always", "like"}
+        unknown = entry.keys() - {"say", "instead", "where", "unless", "always", "like"}
         if unknown:
             raise RuleError(f"a rewording has {', '.join(sorted(unknown))}")
         if entry.get("always", False) != always:
@@ -100,6 +103,7 @@ def _listed(language: Language, *, always: bool) -> Mapping[str, tuple[Rewording
                 _normal(parse_template(say), language),
                 entry["instead"],
                 entry.get("where", "anywhere"),
+                frozenset(entry.get("unless", ())),
             )
             first_words = _first_words(one.say)
             if ANY_WORD in first_words and one.where not in CLAUSE_BEGINS:
@@ -159,6 +163,8 @@ def _matches(reader: Reader, rewordings: Mapping[str, tuple[Rewording, ...]]) ->
         anything = rewordings.get(ANY_WORD, ()) if begins else ()
         for one in (*rewordings.get(token.norm, ()), *anything):
             if one.where in CLAUSE_BEGINS and not begins:
+                continue
+            if one.unless.intersection(each.norm for each in reader.tokens[:at]):
                 continue
             for end, spans in _walk(one.say, reader, at, {}):
                 if one.where in ("end", "clause") and not _ends_clause(reader, end):

@@ -146,6 +146,8 @@ def guard_finds(d: Discourse, done: Steps) -> Steps:
         # One of several who is not found must not keep the others from it.
         one_of_them = isinstance(step.arguments["thing"], Recall)
         needs_it = NEEDS_IT - LED if one_of_them else NEEDS_IT
+        if taken_to_them(done[number : number + 3]):
+            return [*result, done[number + 1], step, *guard_finds(d, done[number + 2 :])]
         if isinstance(following, Call) and following.method in needs_it:
             result.append(step)
             continue
@@ -169,6 +171,15 @@ def guard_finds(d: Discourse, done: Steps) -> Steps:
             result.append(If(Not(found), (missing,)))
         return [*result, *guard_finds(d, done[number + 1 + len(body) :])]
     return result
+
+
+def taken_to_them(steps: Steps) -> bool:
+    """ "find Alice and give her this letter": whether it is taken along to who is looked for."""
+    calls = [each for each in steps if isinstance(each, Call)]
+    return [each.method for each in calls] == ["find", "grab", "give"] and (
+        calls[0].arguments["thing"] == calls[2].arguments.get("person")
+        and calls[1].arguments["thing"] == calls[2].arguments["thing"]
+    )
 
 
 def asked_last(steps: Steps) -> bool:

@@ -58,5 +58,10 @@ def test_a_part_stands_first_only_at_the_beginning_of_a_clause() -> None:
         rewordings._listed(odd, always=False)
 
 
+def test_who_was_asked_is_not_asked_again_in_other_words() -> None:
+    asked = "Ask Clara whether she can see the visitor. If she is busy, tell the visitor to wait"
+    assert "busy" not in (translate(asked, knowledge("building.yaml")).program or "")
+
+
 def test_what_is_refused_for_its_sense_is_not_said_otherwise() -> None:
     assert translate("Somebody should hit Bob", knowledge("building.yaml")).program is None
