@@ -122,7 +122,7 @@ def meet_there(d: Discourse, met: Meeting | None) -> None:
     """The scene where a condition holds that is about somebody or something."""
     if met is None:
         return
-    thing = replace(met.thing, here=met.holds, pronoun=False)
+    thing = replace(met.thing, here=met.holds, pronoun=False, first=False)
     d.missing = None if met.holds else replace(met.thing, place=met.thing.place or d.at)
     d.lacking = None if met.holds or met.sought else d.missing
     if isinstance(thing.place, Items):  # wherever it was found

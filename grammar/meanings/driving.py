@@ -357,7 +357,7 @@ def wait_for(d: Discourse, node: Node) -> Steps:
     d.get(node, "from")  # "wait in Bob's office until he comes"
     thing = noun_of(d, node)
     timeout = d.get(node, "seconds")
-    announced = announced_one(d, node) if timeout is None else None
+    announced = announced_one(d, node, thing.place) if timeout is None else None
     if announced is not None:
         return announced
     steps = go(d, thing.place) if thing.place is not None else []

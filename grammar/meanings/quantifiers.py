@@ -234,7 +234,8 @@ def speaks_of_several(d: Discourse, node: Node, part: Node) -> bool:
         return bool(several) and d.is_plural(part)
     if part.means == "person_pronoun":
         each = node.means in HANDED and each_asked(d) is not None
-        group = d.person is not None and d.person.group is not None
+        last = d.person
+        group = last is not None and (last.group is not None or last.count is not None)
         return (group or each) and d.is_plural(part)
     if part.means == "thing" and part.production.rule == "simple_thing":
         return False

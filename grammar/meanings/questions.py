@@ -379,7 +379,10 @@ def question(d: Discourse, node: Node) -> str:
 def _ends_phrase(d: Discourse, at: int, end: int) -> bool:
     """Whether no noun follows here."""
     token = d.tokens[at] if at < end else None
-    return token is None or token.kind == "mark" or token.norm in d.language.closed
+    if token is None or token.kind == "mark":
+        return True
+    words: tuple[str, ...] = tuple(d.language.speech.get("no_noun_begins", ()))
+    return token.norm in d.language.closed or token.norm in words
 
 
 def turn_to_you(

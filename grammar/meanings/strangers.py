@@ -34,6 +34,7 @@ def stranger_comes(d: Discourse, node: Node) -> Steps:
     spot: Where | None = d.get(node, "from")
     place = None if spot is None else spot.place
     d.announced = Announced(called(d, node), place)
+    d.host = d.get(node, "host") or d.host
     d.person = Thing(Text(ANYONE), person=True, first=True, place=place)
     d.thing_last = False
     if place is not None:
@@ -52,6 +53,13 @@ def announced_one(d: Discourse, node: Node, place: Value | None = None) -> Steps
     return asked_for(d, guest.name, place or guest.place)
 
 
+def as_announced(d: Discourse, going: Steps) -> Steps:
+    """Whoever was announced is waited for, where the robot goes for that or where they come to."""
+    guest: Announced = d.announced
+    d.announced = None
+    return [*going, *asked_for(d, guest.name, None if going else guest.place)]
+
+
 def asked_for(d: Discourse, name: str, place: Value | None) -> Steps:
     """Whoever comes to a place, one after the other, is asked until one is who was expected."""
     going = go(d, place) if place is not None else []
@@ -68,4 +76,5 @@ def asked_for(d: Discourse, name: str, place: Value | None) -> Steps:
 def called(d: Discourse, node: Node) -> str:
     """The name that somebody is announced by."""
     part = node.parts["name"]
+    part = part.parts.get("own", part) if isinstance(part, Node) else part  # "a visitor called Max"
     return d.words(part.start, part.end).title()

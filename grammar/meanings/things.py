@@ -59,7 +59,7 @@ def find(d: Discourse, node: Node) -> Steps:
     if d.round.such is not None and isinstance(sought_for, Node) and sought_for.means == "thing_it":
         return []  # "I need an empty office. Go and find one": that is being done
     thing = noun_of(d, node)
-    announced = announced_one(d, node)
+    announced = announced_one(d, node, thing.place)
     if announced is not None:
         return announced
     if thing.first:  # "we expect a visitor. Meet her in the lobby"

@@ -24,6 +24,7 @@ from grammar.meanings.persons import is_me, kind_in_plural
 from grammar.meanings.polls import told_as_asked
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import known_words
+from grammar.meanings.strangers import as_announced
 from grammar.meanings.surveys import asked_without_end, moved
 from grammar.plan import (
     Ask,
@@ -108,6 +109,10 @@ def when(d: Discourse, node: Node) -> Steps:
         d.person = person  # "wait for a visitor. When somebody comes, ..."
         met: Steps = d.build(node.parts["then"])
         return met
+    *going, waiting = wait_until(condition)
+    if d.announced is not None and not always and waiting == ANY:
+        coming = as_announced(d, [*before, *going])  # "Mr Keller is coming. When he arrives, ..."
+        return [*coming, *d.build(node.parts["then"])]
     if not before and waited_for_them(d, node, condition):
         done: Steps = d.build(node.parts["then"])
         return done
