@@ -453,9 +453,11 @@ def own_place(d: Discourse, person: Thing) -> Text | None:
 
 
 def at_own_place(d: Discourse, person: Thing) -> Thing:
-    """Somebody who "is in", before any place was spoken of: where they work."""
-    spoken_of = d.at is not None or d.place is not None or d.in_loop
-    return person if spoken_of else replace(person, place=own_place(d, person))
+    """Somebody who "is in", unless the robot was just sent to a place: where they work."""
+    last = d.done[-1] if d.done else None
+    sent = last is None or (isinstance(last, Call) and last.method in ("goto", "guide"))
+    spoken_of = (d.at is not None or d.place is not None) and sent
+    return person if spoken_of or d.in_loop else replace(person, place=own_place(d, person))
 
 
 def listed(d: Discourse, node: Node) -> list[Thing]:
