@@ -24,7 +24,22 @@ from grammar.meanings.things import goes_on
 from grammar.meanings.visiting import with_each_asked
 from grammar.meanings.volunteers import guard_found
 from grammar.meanings.waiting import until_then
-from grammar.plan import Ask, Call, Holds, If, Items, Not, Recall, Remember, Step, Text, Try, Value
+from grammar.plan import (
+    Ask,
+    Call,
+    Collect,
+    Holds,
+    If,
+    Increase,
+    Items,
+    Not,
+    Recall,
+    Remember,
+    Step,
+    Text,
+    Try,
+    Value,
+)
 from grammar.tidy import mentions, nodes
 
 NEEDS_IT: Final = frozenset({"grab", "put", "give", "guide", "follow", "describe"})
@@ -33,6 +48,8 @@ WAYS: Final = frozenset({"goto", "find", "location"})
 """Methods that only lead to where something is done."""
 SAID: Final = frozenset({"statement", "remark", "remark_name", "remark_where"})
 """Clauses that say how something is, and ask for nothing."""
+KEPT_WITH: Final = (Call, Remember, Collect, Increase, Try)
+"""Steps that are done with who was found, if they follow."""
 LED: Final = frozenset({"guide", "follow"})
 
 
@@ -162,7 +179,7 @@ def guard_finds(d: Discourse, done: Steps) -> Steps:
                 later.method in ("goto", "find", "dock") or later.method in needs_it
             ):
                 break
-            if not isinstance(later, Call | Remember | Try) and not only_speaks(later):
+            if not isinstance(later, KEPT_WITH) and not only_speaks(later):
                 break
             body.append(later)
         if body:
