@@ -194,7 +194,8 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
         what = singular(d.noun_words(asked_for.start, asked_for.end), d.language)
         if isinstance(asked_for, Node):  # "the key to the supply room"
             what = d.build(asked_for).text
-        d.asked_for = d.held = Text(what)
+        d.asked_for = Text(what)
+        d.held = d.asked_for if d.language.phrase("yes") in options else None
         d.thing, d.thing_last = Thing(d.asked_for, noun=head_word(what, d.language)), True
         return
     counted = question.parts.get("wh")
