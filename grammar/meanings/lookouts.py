@@ -36,7 +36,20 @@ from grammar.meanings.rounds import found_places, summed_up
 from grammar.meanings.searches import named_places, search_in, searched, searches
 from grammar.meanings.sights import named_some, told_where
 from grammar.meanings.traits import Trait
-from grammar.plan import Ask, Call, Collect, End, ForEach, Holds, If, Items, Recall, Remember, Value
+from grammar.plan import (
+    Ask,
+    Call,
+    Collect,
+    End,
+    ForEach,
+    Holds,
+    If,
+    Items,
+    Recall,
+    Remember,
+    Text,
+    Value,
+)
 
 ABOUT_IT: Final = frozenset(
     {"news", "tell_that", "tell_me_that", "tell_condition", "come_back", "look_now", "report"}
@@ -189,7 +202,7 @@ def lookout_told(d: Discourse, node: Node) -> Told:
     if d.news is not None:
         return last_found(d)
     if d.round.such is None:
-        return told_of_search(d, tell)
+        return where_met(d, another_meant(d, node)) or told_of_search(d, tell)
     return Told([d.say("it_is_there", place=Recall(d.round.such))], [])
 
 
@@ -226,6 +239,36 @@ def looked_on_visits(d: Discourse, node: Node) -> Lookout | None:
         raise NotUnderstood(d.language.phrase("which_places"))
     seen = Trait(Holds(Ask("sees", {"thing": sought(d, thing)})), [], thing)
     return Lookout(visits.variable, visits.items, seen, thing, d.depth, True, "any")
+
+
+def another_meant(d: Discourse, node: Node) -> Thing | None:
+    """ "tell Alice that ..., then tell Bob where she is": who but the one spoken of last is meant
+    by the pronoun; None if it may be that one."""
+    last, gender = d.person, d.gender(node.start, node.end)
+    if last is None or d.thing_last or gender is None or d.may_have(last, gender):
+        return None
+    names = [name for name in d.named if d.gender_of(name) == gender]
+    return Thing(Text(names[-1]), known=True, person=True) if names else None
+
+
+def where_met(d: Discourse, person: Thing | None) -> Told | None:
+    """Where somebody was found before, noted there."""
+    if person is None:
+        return None
+    place = d.variable("place")
+    noted = Remember(place, Ask("location"))
+    for at in range(len(d.done) - 1, -1, -1):
+        match d.done[at]:
+            case Call(method="find", arguments={"thing": who}) if who == person.value:
+                d.done.insert(at + 1, noted)
+                break
+            case If(condition=Holds(value=Ask(method="find", arguments={"thing": who}))) as met:
+                if who == person.value:
+                    d.done[at] = replace(met, then=(noted, *met.then))
+                    break
+    else:
+        raise NotUnderstood(d.language.phrase("which_places"))
+    return Told([d.say("it_is_at", thing=named_some(d, person), place=Recall(place))], [])
 
 
 def told_of_search(d: Discourse, tell: str) -> Told:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from grammar.chart import Node, what_it_means
-from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
+from grammar.discourse import ANYONE, START, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.carrying import deliver, pick_up, take_back_delivery, the_same
 from grammar.meanings.chosen import handed_already
@@ -82,7 +82,8 @@ def find(d: Discourse, node: Node) -> Steps:
         return look_for(d, replace(thing, place=Items(tuple(visited))))
     missed = d.missing is not None and (d.missing.value, d.missing.place) == (thing.value, d.at)
     everywhere = node.production.fixed.get("everywhere", missed)
-    if thing.place is None and d.at is not None and not everywhere:
+    back = thing.person and d.at == Recall(START)  # they are not with the speaker
+    if thing.place is None and d.at is not None and not everywhere and not back:
         thing = replace(thing, place=d.at)  # "go to the kitchen and find the cup"
     return look_for(d, thing)
 
