@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from grammar.chart import Leaf, Node, what_it_means
+from grammar.chart import Node, what_it_means
 from grammar.discourse import (
     Branched,
     Discourse,
@@ -12,6 +12,7 @@ from grammar.discourse import (
     Thing,
 )
 from grammar.meanings.absences import addressed_before
+from grammar.meanings.alternatives import itself
 from grammar.meanings.branches import absent, as_before, branch, failing, other_branch
 from grammar.meanings.claims import (
     TELL,
@@ -98,22 +99,15 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
 def of_all_asked(d: Discourse, node: Node) -> Node:
     """ "ask everyone whether they need help. If so, tell David": he is told once, if any of them
     does, and not of each."""
-    part = node.parts["condition"]
-    only_so = only_means(part, "so")
+    condition = node.parts["condition"]
+    so = itself(condition) if isinstance(condition, Node) else None
     several = bool(d.surveys) and d.answer is not None and in_loop(d, d.surveys[-1].call)
-    if only_so is None or only_so.production.fixed or not several:
+    if so is None or so.means != "so" or so.production.fixed or not several:
         return node
     if d.language.phrase("yes") not in d.surveys[-1].options:
         return node
-    means = replace(only_so.production, means="answers_many", fixed={"how": "some"})
-    return replace(node, parts={**node.parts, "condition": replace(only_so, production=means)})
-
-
-def only_means(part: Leaf | Node, means: str) -> Node | None:
-    """The node that a part comes down to, if that is what it means."""
-    while isinstance(part, Node) and part.means != means and len(part.parts) == 1:
-        part = next(iter(part.parts.values()))
-    return part if isinstance(part, Node) and part.means == means else None
+    means = replace(so.production, means="answers_many", fixed={"how": "some"})
+    return replace(node, parts={**node.parts, "condition": replace(so, production=means)})
 
 
 def is_so(d: Discourse, node: Node) -> bool:

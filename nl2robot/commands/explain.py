@@ -59,6 +59,8 @@ def _show(translation: Translation, understood: Understanding, language: str) ->
 
     terminal = Terminal()
     console, plain = terminal.console, terminal.plain
+    if understood.utterance != translation.utterance:
+        console.print(f"{plain(translation.utterance)}\n[dim]in other words[/]")
     console.print(_marked(understood), end="\n\n")
     if understood.parts:
         console.print(_tree(understood, language), end="\n\n")

@@ -87,3 +87,11 @@ def test_a_routine_is_read_as_one(explained, capsys) -> None:
     status, data = explained("do the tea dance")
     assert status == 0
     assert reading(data)["tea dance"] == ("routine", "tea dance")
+
+
+def test_it_tells_in_which_other_words_it_was_read(capsys) -> None:
+    assert main(["explain", "Keep Alice company"]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("Keep Alice company\nin other words\nstay with Alice\n")
+    main(["explain", "go to the pharmacy"])
+    assert "in other words" not in capsys.readouterr().out
