@@ -127,12 +127,12 @@ class Chart:
     def best(self, rule: str) -> Node | None:
         """The cheapest reading of all tokens as this rule. Raises `TooMuch`."""
         number = self.network.rule(rule)
-        end = self._spans(number, 0).get(len(self.tokens))
+        end = self._walked(number, 0).get(len(self.tokens))
         return None if end is None else self._node(0, len(self.tokens), end)
 
     def longest(self, rule: str, start: int) -> Node | None:
         """The longest reading from this token on; of the same length, the cheapest."""
-        ends = self._spans(self.network.rule(rule), start)
+        ends = self._walked(self.network.rule(rule), start)
         if not ends:
             return None
         last = max(ends)
@@ -141,7 +141,7 @@ class Chart:
     def ends(self, rule: str, start: int) -> list[int]:
         """Where readings from this token on end, the cheapest first; of the same cost, the
         longest."""
-        ends = self._spans(self.network.rule(rule), start)
+        ends = self._walked(self.network.rule(rule), start)
         return sorted(ends, key=lambda end: (ends[end][0], -end))
 
     @property
@@ -152,6 +152,17 @@ class Chart:
         )
 
     # --- walking
+
+    def _walked(self, rule: int, start: int) -> dict[int, _End]:
+        """What a rule finds at a token. Raises `TooMuch`, and then for ever: what a walk that was
+        broken off has noted is not the whole."""
+        if self._steps > STEPS_ALLOWED:
+            raise TooMuch
+        try:
+            return self._spans(rule, start)
+        except RecursionError as error:
+            self._steps = STEPS_ALLOWED + 1
+            raise TooMuch from error
 
     def _spans(self, rule: int, start: int) -> dict[int, _End]:
         known = self._ends[start].get(rule)
@@ -174,32 +185,30 @@ class Chart:
             self._steps += len(here)
             if self._steps > STEPS_ALLOWED:
                 raise TooMuch
-            for number, (cost, way) in here.items():
-                state = states[number]
-                if state.final is not None and at > start:
-                    total = cost + state.final[0]
-                    if at not in result or total < result[at][0]:
-                        result[at] = (total, state.final[1], way)
+            if at > start:
+                for number, (cost, way) in here.items():
+                    final = states[number].final
+                    if final is not None:
+                        total = cost + final[0]
+                        if at not in result or total < result[at][0]:
+                            result[at] = (total, final[1], way)
             if at < count:
                 word, begin, tried = tokens[at].norm, self._begin(at), self._ends[at]
-                spelled, formed = self.corrections.get(at, ()), self.forms.get(at, ())
+                spelled, formed = self.corrections.get(at), self.forms.get(at)
                 for end, extra in self.skips.get(at, ()):
-                    beyond = agenda.setdefault(end, {})
                     for number, (cost, way) in here.items():
-                        old = beyond.get(number)
-                        if old is None or cost + extra < old[0]:
-                            beyond[number] = (cost + extra, way)
+                        _reach(agenda, end, number, cost + extra, way)
                 for number, (cost, way) in here.items():
                     state = states[number]
                     following = state.words.get(word)
                     if following is not None:
                         _reach(agenda, at + 1, following, cost, way)
-                    for other in spelled:
+                    for other in spelled or ():
                         following = state.words.get(other)
                         if following is not None:
                             step: _Way = (way, None, -1, at, at + 1, other)
                             _reach(agenda, at + 1, following, cost + CORRECTION, step)
-                    for other in formed:
+                    for other in formed or ():
                         following = state.words.get(other)
                         if following is not None:
                             _reach(agenda, at + 1, following, cost + FORM, way)

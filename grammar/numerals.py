@@ -16,10 +16,14 @@ class Numerals:
     def __init__(self, tokens: tuple[Token, ...], language: Language) -> None:
         self.tokens = tokens
         self.language = language
+        self._first_words = _first_words(language)
 
     def starting(self, at: int) -> list[Match]:
         """All numbers that begin at a token: "2.5", "twenty five", "two hundred and ten", "two and
         a half", "half a", "a"."""
+        first = self.tokens[at] if at < len(self.tokens) else None
+        if first is None or (first.value is None and first.norm not in self._first_words):
+            return []
         numbers = self.language.numbers
         scales: Mapping[str, float] = numbers.get("scales", {})
         joiners = set(numbers.get("and", ()))
@@ -80,6 +84,14 @@ class Numerals:
             for words, value in _number_phrases(self.language, kind).get(self.tokens[at].norm, ())
             if tuple(token.norm for token in self.tokens[at : at + len(words)]) == words
         ]
+
+
+@functools.cache
+def _first_words(language: Language) -> frozenset[str]:
+    """The words that a number can begin with and that are none themselves."""
+    numbers = language.numbers
+    phrases = (_number_phrases(language, kind) for kind in ("compounds", "phrases"))
+    return frozenset().union(numbers.get("scales", ()), numbers.get("minus", ()), *phrases)
 
 
 @functools.cache

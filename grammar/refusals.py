@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import functools
 import itertools
-from collections.abc import Callable, Sequence, Set
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from typing import Final
 
 from grammar.freetext import words_for
@@ -26,11 +26,8 @@ SEEN: Final = frozenset({"find", "sees", "count", "wait_for", "describe"})
 def forbidden(tokens: Sequence[Token], language: Language) -> str | None:
     """The phrase for a sentence that is refused however well it was understood: words that stand
     for harm or for the computer wherever they are said, other than in quotation marks."""
-    words = [token.norm for token in tokens]
-    for sign, phrase in _signs(language, "forbidden").items():
-        if any(tuple(words[at : at + len(sign)]) == sign for at in range(len(words))):
-            return phrase
-    return None
+    words = tuple(token.norm for token in tokens)
+    return next(_found(words, _signs(language, "forbidden")), None)
 
 
 def no_thing(plan: Plan, lexicon: Lexicon, language: Language) -> tuple[str, str] | None:
@@ -78,11 +75,19 @@ def not_said(plan: Plan, lexicon: Lexicon, language: Language) -> str | None:
         for text in nodes(step.arguments):
             if not isinstance(text, Text) or text.value in answers:
                 continue
-            words = language.tokens_of(text.value)
-            for sign, phrase in signs_of.items():
-                if any(words[at : at + len(sign)] == sign for at in range(len(words))):
-                    return phrase
+            phrase = next(_found(language.tokens_of(text.value), signs_of), None)
+            if phrase is not None:
+                return phrase
     return None
+
+
+def _found(words: tuple[str, ...], signs: Mapping[tuple[str, ...], str]) -> Iterator[str]:
+    """The phrases for the signs that stand among words, in the order of the signs."""
+    for sign, phrase in signs.items():
+        if sign[0] in words and any(
+            words[at : at + len(sign)] == sign for at, word in enumerate(words) if word == sign[0]
+        ):
+            yield phrase
 
 
 def _is_somebody(name: str, lexicon: Lexicon, language: Language) -> bool:
@@ -152,8 +157,11 @@ def why_not(tokens: Sequence[Token], language: Language, names: Set[str]) -> str
     Words of names say nothing about that: who goes to the blood lab gives no blood."""
     said = _without_harmless([token.norm for token in tokens], language)
     words = {word for word in said if word not in names}
+    as_asked = language.speech.get("refused_as_asked", ())
     for sign, phrase in _signs(language, "refusals").items():
-        if phrase in language.speech.get("refused_as_asked", ()):
+        if sign[0] not in said:
+            continue
+        if phrase in as_asked:
             found = tuple(said[: len(sign)]) == sign
         elif len(sign) > 1:  # several words are no name by chance: "blood pressure"
             found = any(tuple(said[at : at + len(sign)]) == sign for at in range(len(said)))

@@ -9,14 +9,13 @@ would be.
 
 from __future__ import annotations
 
-import functools
 import logging
 from dataclasses import replace
 from typing import Final
 
 from grammar.accounts import in_manner, left_out, unheeded, unspoken
 from grammar.bringing_back import told_when_all_are_asked
-from grammar.chart import CORRECTION, Chart, Node, TooMuch
+from grammar.chart import Chart, Node, TooMuch
 from grammar.company import in_company
 from grammar.discourse import Discourse
 from grammar.doubts import Ambiguous, NotUnderstood
@@ -24,7 +23,7 @@ from grammar.freetext import Doubt, doubtful, words_for
 from grammar.language import Language, load_language
 from grammar.lexicon import Lexicon
 from grammar.meanings.offers import with_offers_kept
-from grammar.names import Names, names_of
+from grammar.names import Names
 from grammar.naming import joined_up, place_called
 from grammar.plan import Plan, Text, Value
 from grammar.plausible import implausible
@@ -39,12 +38,12 @@ from grammar.refusals import (
     why_not,
 )
 from grammar.requests import Request
-from grammar.slips import command_words, fillers_by_first, mended, perfects, spellings, swapped_back
+from grammar.said import forget, said
 from grammar.slots import Slots
 from grammar.so_many import with_numbers
 from grammar.speech import speech
 from grammar.tidy import Unbound, charging_last, is_one_of_each, returning, scoped, without_unused
-from grammar.tokens import COMMA, Token, tokenise
+from grammar.tokens import COMMA, Token
 from grammar.understanding import Clarification, Context, Understanding, rejected
 
 _log: Final = logging.getLogger(__name__)
@@ -52,8 +51,6 @@ _log: Final = logging.getLogger(__name__)
 LONGEST_TEXT: Final = 2000
 """Characters."""
 MOST_WORDS: Final = 150
-COMMA_PASSED_OVER: Final = 1.5
-FILLER_PASSED_OVER: Final = 0.1
 MOST_SUGGESTIONS: Final = 3
 EMERGENCY: Final = "emergency"
 """The answer that matters more than why a sentence is refused."""
@@ -72,6 +69,7 @@ def understand(
         return rejected(text, pack.phrase("empty"), context)
     if len(text) > LONGEST_TEXT or len(text.split()) > MOST_WORDS:
         return rejected(text, pack.phrase("too_long"), context)
+    forget()
     text = rewordings.said_plainly(text, lexicon, pack, context)
     result = repairs.understood(text, lexicon, pack, context)
     if result.status == "ok":
@@ -95,14 +93,11 @@ class Reader:
         self.lexicon = lexicon
         self.language = language
         self.context = context
-        self.names: Names = names_of(language, lexicon)
-        known = self.names.known
-        commands = command_words(language)
-        self.text, self.slips = swapped_back(text, language, known)
-        self.tokens = mended(tokenise(self.text, language.spelling), language, known, commands)
-        self.corrections = spellings(self.tokens, language, lexicon)
-        self.skips = self._skips()
-        self.forms = dict(perfects(self.tokens, language, commands))
+        self._said = said(text, lexicon, language)
+        self.names: Names = self._said.names
+        self.text, self.slips = self._said.text, self._said.slips
+        self.tokens = self._said.tokens
+        self.corrections, self.skips = self._said.corrections, self._said.skips
 
     def understand(self) -> Understanding:
         if not self.tokens:
@@ -279,23 +274,12 @@ class Reader:
         except (TooMuch, RecursionError):
             return False
 
-    @functools.cached_property
+    @property
     def slots(self) -> Slots:
-        return Slots(self.names, self.tokens, self.corrections)
+        return self._said.slots
 
     def chart(self) -> Chart:
-        return self._chart
-
-    @functools.cached_property
-    def _chart(self) -> Chart:
-        return Chart(
-            self.language.network,
-            self.tokens,
-            self.slots,
-            skips=self.skips,
-            corrections=self.corrections,
-            forms=self.forms,
-        )
+        return self._said.chart
 
     @property
     def last_word(self) -> int:
@@ -304,28 +288,6 @@ class Reader:
         while count and self.tokens[count - 1].kind == "mark":
             count -= 1
         return count
-
-    # --- before parsing
-
-    def _skips(self) -> dict[int, list[tuple[int, float]]]:
-        """Where words may be passed over: fillers, and commas that no rule asks for."""
-        skips: dict[int, list[tuple[int, float]]] = {}
-        words = [token.norm for token in self.tokens]
-        perfect = self.language.speech.get("perfects", {})
-        for at, token in enumerate(self.tokens):
-            parted = at and words[at - 1] in perfect.get("parted_by", ())
-            if parted and token.norm in perfect["after"]:  # "quand tu l'as saluée"
-                skips.setdefault(at, []).append((at + 1, FILLER_PASSED_OVER))
-            said_twice = words[max(0, at - 2) : at].count(token.norm) == 1 and token.kind == "word"
-            said_twice = said_twice and words[at - 1] == token.norm
-            if token.norm == COMMA or said_twice:
-                skips.setdefault(at, []).append((at + 1, COMMA_PASSED_OVER))
-            for filler in fillers_by_first(self.language).get(token.norm, ()):
-                if tuple(words[at : at + len(filler)]) == filler:
-                    skips.setdefault(at, []).append((at + len(filler), FILLER_PASSED_OVER))
-            if any((other,) in self.language.fillers for other in self.corrections.get(at, ())):
-                skips.setdefault(at, []).append((at + 1, CORRECTION))  # "pleas"
-        return skips
 
     # --- after parsing
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Mapping
 
 from grammar.language import Language
@@ -86,6 +87,7 @@ def _plural(word: str, language: Language) -> str:
     return word
 
 
+@functools.lru_cache(maxsize=4096)
 def _singular(word: str, language: Language) -> str:
     low = word.lower()
     if low in language.plurals.get("unchanged", ()):
