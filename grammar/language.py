@@ -125,6 +125,19 @@ def languages() -> list[str]:
     )
 
 
+def named_in_itself(text: str) -> list[str]:
+    """The languages that are called in a text by their own names: "Deutsch", "en français". Does
+    not load them."""
+    said = {word.casefold() for word in re.findall(r"[^\W\d_]+", text)}
+    return [code for code, names in _own_names().items() if not said.isdisjoint(names)]
+
+
+@functools.cache
+def _own_names() -> Mapping[str, list[str]]:
+    names: dict[str, list[str]] = yaml.safe_load((_FOLDER / "names.yaml").read_bytes())
+    return names
+
+
 @functools.cache
 def load_language(code: str) -> Language:
     """The language of this code. Raises `UnknownLanguage`; `RuleError` where its data are wrong."""

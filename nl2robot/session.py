@@ -112,7 +112,7 @@ class Session:
                 raise UserError(
                     f"The program is longer than {MAX_PROGRAM // 1000} kB. Make it shorter."
                 )
-            review = self.operator.check(program)
+            review = self.operator.check(program, self.language)
             edited = translation is None or program != translation.program
             self.terminal.show_review(review, "" if edited else explanation)
             if self.approve_all and not review.acceptable:
@@ -223,8 +223,19 @@ class Session:
     def _show(self, kind: str, data: Mapping[str, Any]) -> None:
         if self._watching.is_set():
             self.terminal.show_event(kind, data)
+            if data["what"] == "result" and data["method"] == "set_language":
+                self._follow(data)
             if data["what"] == "state" and data["state"] not in ("running", "paused"):
                 self._told_end.set()
+
+    def _follow(self, result: Mapping[str, Any]) -> None:
+        """Whom the robot speaks German with speaks German with it."""
+        from grammar.language import languages
+
+        code = str(result["arguments"]["code"])[:2]
+        if not result.get("error") and code in languages():
+            self.language = code
+            self.terminal.speak(code)
 
     def _translate(self, utterance: str) -> Translation:
         return self.operator.translate(utterance, self.language, self.planner, self._talk)

@@ -45,8 +45,7 @@ class Terminal:
     """What an operator sees and answers at a terminal."""
 
     def __init__(self, console: Console | None = None, language: str = "en") -> None:
-        self.language = language
-        self.words = _words(language)
+        self.speak(language)
         self.console = console or _Console(highlight=False, emoji=False)
         if self.console.width < NARROWEST:
             self.console.width = 80
@@ -54,6 +53,11 @@ class Terminal:
     @property
     def somebody_is_there(self) -> bool:
         return sys.stdin.isatty()
+
+    def speak(self, language: str) -> None:
+        """Go on in a language."""
+        self.language = language
+        self.words = _words(language)
 
     # --- before the run
 

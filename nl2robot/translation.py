@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any, Literal
 import msgspec
 
 from grammar.language import load_language
-from grammar.plan import Plan, to_data
+from grammar.plan import Plan, calls, to_data
 from grammar.requests import ABOUT_RUNS, Request, agreed
 from grammar.understand import understand
-from grammar.understanding import Context
+from grammar.understanding import Context, Understanding
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.plain import visible
@@ -128,6 +128,10 @@ def translate(
             origin = record.origin(knowledge.world)
             talk.context = replace(talk.context, carried_out=True, origin=origin)
         understood = understand(utterance, lexicon, language, talk.context)
+        if understood.status == "rejected":
+            asked = _language_asked_for(utterance, knowledge, language)
+            if asked is not None:
+                language, understood = asked
     except UnknownLanguage as error:
         raise UserError(str(error)) from error
     before = talk.context.text if talk.context else ""
@@ -154,6 +158,23 @@ def translate(
     if program is not None:
         talk.note(translation)
     return translation
+
+
+def _language_asked_for(
+    utterance: str, knowledge: Knowledge, language: str
+) -> tuple[str, Understanding] | None:
+    """Who wants to be spoken to in another language says so in that one: "sprich Deutsch". The
+    language and what was understood; None for anything else."""
+    from grammar.language import named_in_itself
+
+    for code in named_in_itself(utterance):
+        if code == language:
+            continue
+        understood = understand(utterance, knowledge.lexicon(code), code)
+        made = list(calls(understood.plan)) if understood.plan else []
+        if made and all(call.method == "set_language" for call in made):
+            return code, understood
+    return None
 
 
 def _with_trouble(message: str | None, knowledge: Knowledge) -> str | None:

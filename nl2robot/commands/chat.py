@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import functools
 from pathlib import Path
 
 import yaml
@@ -26,14 +27,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     with contextlib.suppress(ImportError):
         import readline  # noqa: F401  (arrow keys and history in input())
-    endings = _endings(options.lang)
     with open_session(options) as (session, _):
-        words_of = session.terminal.words
         session.listens = session.terminal.somebody_is_there
-        session.terminal.console.print(words_of["greeting"], markup=False)
-        while (line := session.next_line() or _next_line(words_of["you"])) is not None:
+        session.terminal.console.print(session.terminal.words["greeting"], markup=False)
+        while (line := session.next_line() or _next_line(session)) is not None:
             words = line.strip()
-            if words.lower().rstrip(".!") in endings:
+            if words.lower().rstrip(".!") in _endings(session.language):
                 break
             if words:
                 _answer(session, words)
@@ -41,16 +40,17 @@ def run(options: argparse.Namespace) -> int:
     return ExitStatus.OK
 
 
+@functools.cache
 def _endings(language: str) -> set[str]:
     """The words that end the conversation."""
     words = yaml.safe_load(DATA.read_text(encoding="utf-8"))["endings"]
     return {*words["any"], *words.get(language, ())}
 
 
-def _next_line(prompt: str) -> str | None:
+def _next_line(session: Session) -> str | None:
     while True:
         try:
-            return input(f"\n{prompt}")
+            return input(f"\n{session.terminal.words['you']}")
         except EOFError:
             return None
         except KeyboardInterrupt:

@@ -63,6 +63,22 @@ def test_a_nurse_talks_with_the_robot(start, log_of) -> None:
     assert log_of() == [("go to ward a", "done"), ("no, ward b", "done")]
 
 
+def test_whoever_asks_for_german_is_spoken_to_in_german(start, log_of) -> None:
+    chat = start(*CHAT, at_terminal=True)
+    chat.until("you: ")
+    chat.type("sprich Deutsch\n")
+    assert "Ich werde von da an Deutsch sprechen" in chat.until("eject? ")
+    chat.type("a\n")
+    chat.until("Sie: ")
+    chat.type("fahr zu ward b\n")
+    assert "Ich werde zu Station B fahren" in chat.until("erwerfen? ")
+    chat.type("f\n")
+    chat.until("Sie: ")
+    chat.type("tschüss\n")
+    assert chat.end() == ExitStatus.OK
+    assert "Traceback" not in chat.output
+
+
 def test_ctrl_c_stops_what_is_going_on_and_the_talk_goes_on(start, log_of) -> None:
     chat = start(*CHAT, "--speed", "1", at_terminal=True)
     chat.until("you: ")

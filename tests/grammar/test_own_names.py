@@ -1,0 +1,43 @@
+"""Who wants another language asks for it in that one."""
+
+import pytest
+
+from grammar.language import languages, named_in_itself
+from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
+from nl2robot.translation import translate
+from sim.world import load_world
+
+KNOWLEDGE = Knowledge(load_world(DEFAULT_WORLD))
+
+
+@pytest.mark.parametrize(
+    ("language", "said", "asked_for"),
+    [
+        ("en", "sprich Deutsch", "de"),
+        ("en", "Deutsch bitte", "de"),
+        ("en", "en français s'il te plaît", "fr"),
+        ("de", "speak English please", "en"),
+        ("de", "auf Englisch bitte", "en"),
+        ("fr", "English please", "en"),
+        ("fr", "können wir Deutsch reden?", "de"),
+    ],
+)
+def test_a_visitor_asks_for_their_own_language(language, said, asked_for) -> None:
+    translation = translate(said, KNOWLEDGE, language)
+    assert translation.status == "ok"
+    assert translation.program == f'robot.set_language("{asked_for}")\n'
+
+
+@pytest.mark.parametrize("said", ["fahr in die Deutsch", "geh zur Lobby und sprich Deutsch"])
+def test_nothing_else_is_understood_in_another_language(said) -> None:
+    assert translate(said, KNOWLEDGE, "en").program is None
+
+
+def test_every_language_has_a_name_for_itself() -> None:
+    for code in languages():
+        assert translate(
+            {"en": "speak English", "de": "sprich Deutsch", "fr": "parle français"}[code],
+            KNOWLEDGE,
+            code,
+        )
+    assert named_in_itself("English, Deutsch ou français") == sorted(languages())
