@@ -125,17 +125,17 @@ def languages() -> list[str]:
     )
 
 
-def named_in_itself(text: str) -> list[str]:
-    """The languages that are called in a text by their own names: "Deutsch", "en français". Does
-    not load them."""
+def known_by_word(text: str) -> list[str]:
+    """The languages that a word of a text is known by everywhere: "Deutsch", "arrête". Does not
+    load them."""
     said = {word.casefold() for word in re.findall(r"[^\W\d_]+", text)}
-    return [code for code, names in _own_names().items() if not said.isdisjoint(names)]
+    return [code for code, words in _known_everywhere().items() if not said.isdisjoint(words)]
 
 
 @functools.cache
-def _own_names() -> Mapping[str, list[str]]:
-    names: dict[str, list[str]] = yaml.safe_load((_FOLDER / "names.yaml").read_bytes())
-    return names
+def _known_everywhere() -> Mapping[str, list[str]]:
+    words: dict[str, list[str]] = yaml.safe_load((_FOLDER / "everywhere.yaml").read_bytes())
+    return words
 
 
 @functools.cache

@@ -129,9 +129,9 @@ def translate(
             talk.context = replace(talk.context, carried_out=True, origin=origin)
         understood = understand(utterance, lexicon, language, talk.context)
         if understood.status == "rejected":
-            asked = _language_asked_for(utterance, knowledge, language)
-            if asked is not None:
-                language, understood = asked
+            other = _in_another_language(utterance, knowledge, language)
+            if other is not None:
+                language, understood = other
     except UnknownLanguage as error:
         raise UserError(str(error)) from error
     before = talk.context.text if talk.context else ""
@@ -160,19 +160,19 @@ def translate(
     return translation
 
 
-def _language_asked_for(
+def _in_another_language(
     utterance: str, knowledge: Knowledge, language: str
 ) -> tuple[str, Understanding] | None:
-    """Who wants to be spoken to in another language says so in that one: "sprich Deutsch". The
-    language and what was understood; None for anything else."""
-    from grammar.language import named_in_itself
+    """Who wants to be spoken to in another language, or cries stop, may do so in that one: "sprich
+    Deutsch", "arrête". The language and what was understood; None for anything else."""
+    from grammar.language import known_by_word
 
-    for code in named_in_itself(utterance):
+    for code in known_by_word(utterance):
         if code == language:
             continue
         understood = understand(utterance, knowledge.lexicon(code), code)
-        made = list(calls(understood.plan)) if understood.plan else []
-        if made and all(call.method == "set_language" for call in made):
+        made = {call.method for call in calls(understood.plan)} if understood.plan else set()
+        if made in ({"set_language"}, {"stop"}):
             return code, understood
     return None
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from grammar.language import languages, named_in_itself
+from grammar.language import known_by_word, languages
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.translation import translate
 from sim.world import load_world
@@ -33,11 +33,15 @@ def test_nothing_else_is_understood_in_another_language(said) -> None:
     assert translate(said, KNOWLEDGE, "en").program is None
 
 
-def test_every_language_has_a_name_for_itself() -> None:
+@pytest.mark.parametrize("language", ["en", "de", "fr"])
+@pytest.mark.parametrize(
+    "cry", ["stop!", "halt", "freeze", "stopp", "anhalten!", "arrête", "arrêtez-vous !"]
+)
+def test_a_cry_of_stop_is_heard_in_every_language(language, cry) -> None:
+    assert translate(cry, KNOWLEDGE, language).program == "robot.stop()\n"
+
+
+def test_every_language_is_known_by_its_name() -> None:
+    named = {"en": "speak English", "de": "sprich Deutsch", "fr": "parle français"}
     for code in languages():
-        assert translate(
-            {"en": "speak English", "de": "sprich Deutsch", "fr": "parle français"}[code],
-            KNOWLEDGE,
-            code,
-        )
-    assert named_in_itself("English, Deutsch ou français") == sorted(languages())
+        assert code in known_by_word(named[code])
