@@ -50,6 +50,9 @@ class Terminal:
         if self.console.width < NARROWEST:
             self.console.width = 80
 
+    heard: str | None = None
+    """What the last line sounded like, if it was spoken."""
+
     @property
     def somebody_is_there(self) -> bool:
         return sys.stdin.isatty()
@@ -139,31 +142,39 @@ class Terminal:
             if said:
                 return None, answer
 
+    def next_line(self) -> str | None:
+        """The next thing that somebody says or types on their own; None at the end of the input."""
+        try:
+            return input(f"\n{self.words['you']}")
+        except EOFError:
+            return None
+
     def ask(self, question: str) -> str:
         """Read a line. The end of the input counts as no answer, and no answer as a refusal."""
         try:
             return input(question)
         except EOFError:
             print()
-            raise UserError(
-                "Nobody is there to answer, so nothing was run. Answer here,"
-                " or approve beforehand: nl2robot run --yes.",
-                ExitStatus.NOT_APPROVED,
-            ) from None
+            raise UserError(self.words["nobody_there"], ExitStatus.NOT_APPROVED) from None
 
     def typed(self, seconds: float) -> str | None:
         """A line that is typed within so many seconds, without asking for one."""
-        try:
-            ready, _, _ = select.select([sys.stdin], [], [], seconds)
-        except (OSError, ValueError):  # an input that cannot be looked at without reading it
-            time.sleep(seconds)
-            return None
-        if not ready:
+        if not self.keyboard_ready(seconds):
             return None
         line = sys.stdin.readline()
         if not line:  # the end of the input: whoever asks next is told
             time.sleep(seconds)
         return line.strip() or None
+
+    @staticmethod
+    def keyboard_ready(seconds: float) -> bool:
+        """Whether something is typed within so many seconds."""
+        try:
+            ready, _, _ = select.select([sys.stdin], [], [], seconds)
+        except (OSError, ValueError):  # an input that cannot be looked at without reading it
+            time.sleep(seconds)
+            return False
+        return bool(ready)
 
     def edit(self, program: str) -> str:
         """Let the operator change the program in $VISUAL or $EDITOR; returns the new text, or the

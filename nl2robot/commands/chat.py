@@ -50,9 +50,7 @@ def _endings(language: str) -> set[str]:
 def _next_line(session: Session) -> str | None:
     while True:
         try:
-            return input(f"\n{session.terminal.words['you']}")
-        except EOFError:
-            return None
+            return session.terminal.next_line()
         except KeyboardInterrupt:
             print()  # nothing is running: Ctrl-C clears the line
 
@@ -62,7 +60,7 @@ def _answer(session: Session, words: str) -> None:
         session.show_help()
         return
     try:
-        session.perform(words)
+        session.perform(words, session.terminal.heard)
     except KeyboardInterrupt:
         session.terminal.console.print(f"\n{session.terminal.words['rejected']}")
     except LostConnection:

@@ -1,0 +1,232 @@
+"""Talking with the robot: sound in, lines out, as if they had been typed.
+
+    asleep --"hey robot"--> awake --somebody speaks--> a line --> asleep, or awake for an answer
+
+Asleep, nothing is recognised but the hot word and, while the robot is busy, the cry of "stop".
+Awake, what is said until the next pause is one line. `VoiceInput` knows no microphone, no thread and
+no clock: time is counted in samples. `SpokenLines` runs it beside the keyboard.
+"""
+
+from __future__ import annotations
+
+import queue
+import threading
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from typing import Final, Protocol
+
+import numpy as np
+
+from nl2robot.errors import UserError
+from nl2robot.speech.audio import RATE, Samples
+from nl2robot.speech.hotword import Detector
+from nl2robot.speech.listening import Listener, NothingHeard, PartialText, SpeechEnded, TooLong
+from nl2robot.speech.recogniser import Heard
+
+PATIENCE: Final = 8.0
+"""Seconds that somebody may think after the hot word, or after a question."""
+REACH_BACK: Final = 0.4
+"""Seconds before the hot word was reported that are heard again: who says it and goes on in one
+breath has said the beginning of the command by then. What is left of the hot word in them is
+dropped again."""
+
+
+@dataclass(frozen=True)
+class Woke:
+    """The hot word was heard."""
+
+    word: str
+
+
+@dataclass(frozen=True)
+class Hears:
+    """What it sounds like so far."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Said:
+    """One utterance; empty if nothing was made of it."""
+
+    text: str
+    doubtful: bool = False
+    perhaps: str = ""
+    """What it may have been instead, where it is doubtful."""
+
+
+@dataclass(frozen=True)
+class Slept:
+    """Nobody said anything for a while: the hot word is needed again."""
+
+
+@dataclass(frozen=True)
+class Cried:
+    """ "Stop", while the robot was busy."""
+
+    word: str
+
+
+Event = Woke | Hears | Said | Slept | Cried
+
+
+class VoiceInput:
+    """What is said to the robot. To be used from one thread, but for `wake` and `busy`."""
+
+    def __init__(
+        self,
+        listener: Callable[[], Listener],
+        choose: Callable[[Heard], Heard],
+        hot_word: Detector,
+        stop_word: Detector,
+        *,
+        hot_words: Iterable[str] = (),
+        says_itself: Callable[[str], bool] = lambda word: False,
+    ) -> None:
+        """`listener` makes one that recognises what may be said. `choose` takes of all readings
+        the one that is understood. `hot_words` are dropped where an utterance begins with them.
+        `says_itself` tells whether the robot has just spoken a word: it does not obey itself."""
+        self._make = listener
+        self._choose = choose
+        self._hot_word, self._stop_word = hot_word, stop_word
+        self._called = [tuple(words.lower().split()) for words in hot_words]
+        self._says_itself = says_itself
+        self._listener: Listener | None = None
+        self._last: deque[Samples] = deque()
+        self._kept = 0  # samples in it
+        self._wanted = threading.Event()
+        self._busy = threading.Event()
+
+    @property
+    def awake(self) -> bool:
+        return self._listener is not None or self._wanted.is_set()
+
+    def wake(self) -> None:
+        """What is said next needs no hot word: a question was asked."""
+        self._wanted.set()
+
+    def busy(self, busy: bool) -> None:
+        """Whether the robot moves or speaks: then "stop" is obeyed at once."""
+        if busy:
+            self._busy.set()
+        else:
+            self._busy.clear()
+
+    def feed(self, samples: Samples) -> Iterator[Event]:
+        """The next block at 16 kHz, of any length."""
+        if self._busy.is_set():
+            for cry in self._stop_word.feed(samples):
+                if not self._says_itself(cry.word):
+                    self._sleep()
+                    yield Cried(cry.word)
+        if self._wanted.is_set():
+            self._wanted.clear()
+            self._listener = self._listener or self._make()
+        self._remember(samples)
+        if self._listener is None:
+            for heard in self._hot_word.feed(samples):
+                if self._listener is None and not self._says_itself(heard.word):
+                    self._listener = self._make()
+                    yield Woke(heard.word)
+                    yield from self._listen(np.concatenate(self._last))
+            return
+        yield from self._listen(samples)
+
+    def _listen(self, samples: Samples) -> Iterator[Event]:
+        assert self._listener is not None
+        for event in self._listener.feed(samples):
+            match event:
+                case PartialText(text):
+                    yield Hears(self._without_hot_word(text))
+                case SpeechEnded(heard=Heard() as heard):
+                    said = self._said(heard)
+                    if said is None:  # only the hot word: the command comes behind it
+                        continue
+                    self._sleep()
+                    yield said
+                    return
+                case NothingHeard() | TooLong():
+                    self._sleep()
+                    yield Slept()
+                    return
+
+    def _said(self, heard: Heard) -> Said | None:
+        if heard.text and not self._without_hot_word(heard.text):
+            return None
+        chosen = self._choose(heard)
+        text = self._without_hot_word(chosen.text)
+        return Said(text, chosen.doubtful, self._without_hot_word(chosen.free_text or ""))
+
+    def _without_hot_word(self, text: str) -> str:
+        """Without what is left of the hot word at the beginning: all of it, or its last words."""
+        words = text.split()
+        for called in self._called:
+            for first in range(len(called)):
+                if tuple(words[: len(called) - first]) == called[first:]:
+                    return " ".join(words[len(called) - first :])
+        return text
+
+    def _sleep(self) -> None:
+        self._listener = None
+        self._wanted.clear()
+        self._hot_word.reset()
+
+    def _remember(self, samples: Samples) -> None:
+        self._last.append(samples)
+        self._kept += len(samples)
+        while self._kept - len(self._last[0]) >= REACH_BACK * RATE:
+            self._kept -= len(self._last.popleft())
+
+
+class Keyboard(Protocol):
+    """Where lines are typed."""
+
+    def typed(self, seconds: float) -> str | None:
+        """A line that is typed within so many seconds."""
+        ...
+
+
+class SpokenLines:
+    """Lines from a microphone, in a thread of its own."""
+
+    def __init__(self, voice: VoiceInput, blocks: Iterable[Samples]) -> None:
+        self._voice = voice
+        self._blocks = blocks
+        self._events: queue.SimpleQueue[Event | UserError] = queue.SimpleQueue()
+        self._closed = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="voice", daemon=True)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    def close(self) -> None:
+        """Listen no more."""
+        self._closed.set()
+
+    def wake(self) -> None:
+        self._voice.wake()
+
+    def busy(self, busy: bool) -> None:
+        self._voice.busy(busy)
+
+    def next(self, seconds: float) -> Event | None:
+        """What happens within so many seconds. Raises `UserError`, once, when nothing more can be
+        heard: the microphone was unplugged."""
+        try:
+            event = self._events.get(timeout=seconds)
+        except queue.Empty:
+            return None
+        if isinstance(event, UserError):
+            raise event
+        return event
+
+    def _run(self) -> None:
+        try:
+            for block in self._blocks:
+                if self._closed.is_set():
+                    return
+                for event in self._voice.feed(block):
+                    self._events.put(event)
+        except UserError as error:
+            self._events.put(error)

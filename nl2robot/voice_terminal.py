@@ -1,0 +1,107 @@
+"""A terminal that also listens: what is said counts as typed."""
+
+from __future__ import annotations
+
+import sys
+
+from rich.console import Console
+
+from nl2robot.errors import ExitStatus, UserError
+from nl2robot.terminal import Terminal
+from nl2robot.voice import Cried, Event, Hears, Said, Slept, SpokenLines, Woke
+
+LOOK_EVERY = 0.05
+"""Seconds between two looks at the keyboard."""
+BELL = "\a"
+CLEAR = "\r\x1b[K"
+
+
+class VoiceTerminal(Terminal):
+    """Takes lines from a microphone and from the keyboard, whichever comes first."""
+
+    def __init__(
+        self, spoken: SpokenLines, console: Console | None = None, language: str = "en"
+    ) -> None:
+        super().__init__(console, language)
+        self._spoken = spoken
+        self._prompt = ""
+        self._deaf = False
+        """The microphone is gone; the keyboard is left."""
+
+    def next_line(self) -> str | None:
+        self._show_prompt(f"\n{self.words['you']}")
+        try:
+            return self._line(awake=False)
+        except EOFError:
+            return None
+
+    def ask(self, question: str) -> str:
+        self._show_prompt(question)
+        try:
+            return self._line(awake=True)
+        except EOFError:
+            raise UserError(self.words["nobody_there"], ExitStatus.NOT_APPROVED) from None
+
+    def typed(self, seconds: float) -> str | None:
+        self._spoken.busy(True)
+        self.heard = None
+        if self._deaf:
+            return super().typed(seconds)
+        typed = super().typed(0)
+        if typed:
+            return typed
+        return self._said(self._next(seconds))
+
+    def _line(self, awake: bool) -> str:
+        """The next line, once it is there. Raises `EOFError` at the end of the input."""
+        self.heard = None
+        self._spoken.busy(False)
+        if awake:
+            self._spoken.wake()
+        while True:
+            if self.keyboard_ready(0 if not self._deaf else LOOK_EVERY):
+                line = sys.stdin.readline()
+                if not line:
+                    raise EOFError
+                return line.rstrip("\n")
+            said = None if self._deaf else self._said(self._next(LOOK_EVERY))
+            if said is not None:
+                return said
+
+    def _next(self, seconds: float) -> Event | None:
+        try:
+            return self._spoken.next(seconds)
+        except UserError as error:
+            self._deaf = True
+            self.console.print(f"{CLEAR}{error}", markup=False)
+            self._show_prompt(self._prompt)
+            return None
+
+    def _said(self, event: Event | None) -> str | None:
+        """The line that an event is, if it is one; what else happens is shown."""
+        match event:
+            case Woke():
+                self._show(f"{BELL}{self.words['listening']}")
+            case Hears(text):
+                self._show(f"{text} …")
+            case Cried(word):
+                return word
+            case Said("") | Slept():
+                self._show_prompt(self._prompt)
+            case Said(text, doubtful=False):
+                self._show(f"{text}\n")
+                self.heard = text
+                return text
+            case Said(text, perhaps=perhaps):
+                unsure = self.words["unsure"].format(text=text, perhaps=perhaps)
+                self._show(f"\n{unsure}\n")
+                self._show_prompt(self._prompt)
+                self._spoken.wake()
+        return None
+
+    def _show_prompt(self, prompt: str) -> None:
+        self._prompt = prompt
+        print(prompt, end="", flush=True)
+
+    def _show(self, text: str) -> None:
+        print(f"{CLEAR}{self._prompt.lstrip()}{text}", end="", flush=True)
