@@ -1,24 +1,23 @@
-"""The runner's methods on the wire: `program.translate` to `program.stop`."""
+"""The methods on the wire besides the robot's own: the runner's, `program.translate` to
+`program.stop`, and `voice_services`."""
 
 from __future__ import annotations
 
 import math
 import time
 from collections import OrderedDict
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import msgspec
 
-from grammar.language import UnknownLanguage
 from grammar.samples import samples
-from nl2robot.errors import UserError
 from nl2robot.runner import Runner
 from nl2robot.translation import Talk, translate
+from nl2robot.voice_services import Microphones, voice_services
+from nl2robot.wire import an_object, service
 from robot_api.driver import StopFlag
-from robot_api.errors import InvalidCall
 from robot_api.methods import MAX_TEXT
-from robot_api.server import Context as CallContext
 from robot_api.server import Service
 
 LONGEST_PROGRAM = 65_536
@@ -82,8 +81,10 @@ def services(runner: Runner) -> dict[str, Service]:
     def listed(p: Mapping[str, Any]) -> Any:
         return runner.log.runs(p.get("last", 20))
 
+    microphones = Microphones(lambda: runner.knowledge, talk_of)
     return {
-        "program.translate": _service(
+        **voice_services(microphones),
+        "program.translate": service(
             translated,
             "Turn words into a program; moves nothing.",
             {
@@ -95,20 +96,20 @@ def services(runner: Runner) -> dict[str, Service]:
             },
             "utterance",
         ),
-        "program.phrases": _service(
+        "program.phrases": service(
             lambda p: samples(
                 runner.knowledge.lexicon(p.get("language", "en")), p.get("language", "en")
             ),
             "List what can be said here, by topic.",
             {"language": _LANGUAGE},
         ),
-        "program.check": _service(
+        "program.check": service(
             lambda p: runner.check(p["program"], p.get("language", "en")),
             "Review a program: types, what this robot lacks, a dry run; moves nothing.",
             {"program": _PROGRAM, "language": _LANGUAGE},
             "program",
         ),
-        "program.approve": _service(
+        "program.approve": service(
             approved,
             "Approve exactly the program with this SHA-256 for one run.",
             {
@@ -122,7 +123,7 @@ def services(runner: Runner) -> dict[str, Service]:
             },
             "program sha256 by",
         ),
-        "program.run": _service(
+        "program.run": service(
             lambda p: runner.run(p["approval"]),
             "Start an approved program; returns the run's number at once.",
             {"approval": _STRING},
@@ -130,49 +131,25 @@ def services(runner: Runner) -> dict[str, Service]:
         ),
         "program.wait": Service(
             handler=lambda p, context: msgspec.to_builtins(waited(p, context.stop)),
-            params=_object({"run": _RUN, "timeout": {"type": "number", "minimum": 0}}, "run"),
+            params=an_object({"run": _RUN, "timeout": {"type": "number", "minimum": 0}}, "run"),
             doc="Wait until a run is over and tell how it ended.",
         ),
-        "program.state": _service(
+        "program.state": service(
             lambda p: runner.state(), "Tell how the present or last run stands."
         ),
-        "program.pause": _service(
+        "program.pause": service(
             lambda p: runner.pause(), "Hold the program before its next robot call."
         ),
-        "program.step": _service(lambda p: runner.step(), "Do one robot call, then hold again."),
-        "program.resume": _service(lambda p: runner.resume(), "Go on after a pause."),
-        "program.stop": _service(
+        "program.step": service(lambda p: runner.step(), "Do one robot call, then hold again."),
+        "program.resume": service(lambda p: runner.resume(), "Go on after a pause."),
+        "program.stop": service(
             lambda p: runner.stop(), "Stop the program; `robot.stop` stops the robot as well."
         ),
-        "program.list": _service(
+        "program.list": service(
             listed,
             "List the newest runs of the log.",
             {"last": {"type": "integer", "minimum": 1, "maximum": 1000}},
         ),
-    }
-
-
-def _service(
-    handler: Callable[[Mapping[str, Any]], Any],
-    doc: str,
-    properties: dict[str, Any] | None = None,
-    required: str = "",
-) -> Service:
-    def handle(parameters: dict[str, Any], context: CallContext) -> Any:
-        try:
-            return msgspec.to_builtins(handler(parameters))
-        except (UserError, UnknownLanguage) as error:
-            raise InvalidCall(str(error)) from error
-
-    return Service(handler=handle, params=_object(properties or {}, required), doc=doc)
-
-
-def _object(properties: dict[str, Any], required: str) -> dict[str, Any]:
-    return {
-        "type": "object",
-        "properties": properties,
-        "required": required.split(),
-        "additionalProperties": False,
     }
 
 

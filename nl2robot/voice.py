@@ -3,8 +3,8 @@
     asleep --"hey robot"--> awake --somebody speaks--> a line --> asleep, or awake for an answer
 
 Asleep, nothing is recognised but the hot word and, while the robot is busy, the cry of "stop".
-Awake, what is said until the next pause is one line. `VoiceInput` knows no microphone, no thread and
-no clock: time is counted in samples. `SpokenLines` runs it beside the keyboard.
+Awake, what is said until the next pause is one line. `VoiceInput` knows no microphone, thread or
+clock: time is counted in samples. `SpokenLines` runs it beside the keyboard.
 """
 
 from __future__ import annotations

@@ -1,0 +1,41 @@
+"""Methods on the wire, made of plain functions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import msgspec
+
+from grammar.language import UnknownLanguage
+from nl2robot.errors import UserError
+from robot_api.errors import InvalidCall
+from robot_api.server import Context as CallContext
+from robot_api.server import Service
+
+
+def service(
+    handler: Callable[[Mapping[str, Any]], Any],
+    doc: str,
+    properties: dict[str, Any] | None = None,
+    required: str = "",
+) -> Service:
+    """A method whose params are an object of these properties; a `UserError` is the caller's."""
+
+    def handle(parameters: dict[str, Any], context: CallContext) -> Any:
+        try:
+            return msgspec.to_builtins(handler(parameters))
+        except (UserError, UnknownLanguage) as error:
+            raise InvalidCall(str(error)) from error
+
+    return Service(handler=handle, params=an_object(properties or {}, required), doc=doc)
+
+
+def an_object(properties: dict[str, Any], required: str) -> dict[str, Any]:
+    """The JSON Schema of an object with these properties and no others."""
+    return {
+        "type": "object",
+        "properties": properties,
+        "required": required.split(),
+        "additionalProperties": False,
+    }
