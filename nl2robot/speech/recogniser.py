@@ -14,11 +14,13 @@ The figures in docs/voice.md were measured with the constants in this file.
 from __future__ import annotations
 
 import json
+import os
+import threading
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +41,8 @@ MOST_GAIN = 30.0
 # Below this loudest moment (root mean square of 30 ms, 1 = full scale) there is nothing to hear.
 SILENCE = 0.001
 BLOCK = RATE // 4  # samples handed over at a time
+MOST_LISTS = 16  # of phrases that are kept ready to be decoded with
+MOST_IDLE = 2  # decoders kept for each: as many as there are sounds at a time
 PUNCTUATION = '-–.,;:!?…"“”„«»()'
 
 # The second opinion: when a text is believed that free decoding does not agree with.
@@ -110,7 +114,7 @@ def choose(heard: Heard, understood: Callable[[str], bool]) -> Heard:
     return heard
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # kept by phrase list, so the same is the same object
 class _Grammar:
     """What may be said, for vosk."""
 
@@ -133,6 +137,9 @@ class Recogniser:
     def __init__(self, model: Path, language: str) -> None:
         """`model` is the folder of a vosk model. Raises ModelError if it cannot be used."""
         self.language = language
+        self._grammars: dict[tuple[str, ...], _Grammar] = {}
+        self._idle: dict[tuple[_Grammar | None, int], list[_Decoder]] = {}
+        self._lock = threading.Lock()
         self._unusable = ModelError(
             f"The speech model in {model} cannot be used. "
             f"Run `nl2robot models get {language} --again` to fetch it again."
@@ -180,30 +187,36 @@ class Recogniser:
         Raises SpeechError if the model knows none of the words.
         """
         started = time.perf_counter()
-        heard = self._recognise(audio, phrases, worst_fit)
-        return replace(heard, seconds_taken=time.perf_counter() - started)
+        decoding = self.open(phrases, worst_fit=worst_fit, gain=gain_for(audio.samples))
+        decoding.feed(audio.samples)
+        return replace(decoding.finish(), seconds_taken=time.perf_counter() - started)
 
-    def _recognise(self, audio: Audio, phrases: Sequence[str] | None, worst_fit: float) -> Heard:
-        if _is_silent(audio.samples):
-            return _heard((), audio)
-        sound = _prepared(audio.samples)
-        if phrases is None:
-            return _heard(self._words(sound, None), audio)
-        grammar = self._grammar(phrases)
-        # The decoders run side by side: libvosk does not hold the interpreter's lock.
-        with ThreadPoolExecutor(1, "second opinion") as pool:
-            freely = pool.submit(self._scored, sound, None)
-            words = self._words(sound, grammar)
-            limited = self._scored(sound, grammar)
-            free = freely.result()
-        return replace(
-            _heard(words, audio),
-            doubtful=_reading(limited[0], free[0], worst_fit).doubtful,
-            free_text=free[0].text,
-            readings=_readings(limited, free, worst_fit),
-        )
+    def open(
+        self,
+        phrases: Sequence[str] | None = None,
+        *,
+        worst_fit: float = WORST_FIT,
+        gain: float = 1.0,
+    ) -> Decoding:
+        """A decoding to be fed with sound while it comes; `phrases` and `worst_fit` as above.
+
+        `gain` is what to multiply the sound with: how loud it will be is not known yet. `gain_for`
+        tells it from sound of the same speaker. Raises SpeechError as `recognise` does.
+        """
+        return Decoding(self, None if phrases is None else self._grammar(phrases), worst_fit, gain)
 
     def _grammar(self, phrases: Sequence[str]) -> _Grammar:
+        key = tuple(phrases)
+        with self._lock:
+            known = self._grammars.pop(key, None)  # the least used stand first
+        grammar = known or self._compiled(phrases)
+        with self._lock:
+            self._grammars[key] = grammar
+            while len(self._grammars) > MOST_LISTS:
+                del self._grammars[next(iter(self._grammars))]
+        return grammar
+
+    def _compiled(self, phrases: Sequence[str]) -> _Grammar:
         spoken: dict[str, None] = {}  # an ordered set
         as_written: dict[str, str] = {}
         spellings: dict[str, tuple[str, ...] | None] = {}
@@ -229,35 +242,13 @@ class Recogniser:
             )
         return _Grammar(json.dumps(list(spoken), ensure_ascii=False), as_written)
 
-    def _words(self, sound: bytes, grammar: _Grammar | None) -> tuple[Word, ...]:
-        """The words with their times and confidences."""
-        return tuple(
-            Word(
-                grammar.written(word["word"]) if grammar else word["word"],
-                max(0.0, word["start"] - PADDING),
-                max(0.0, word["end"] - PADDING),
-                word["conf"],
-            )
-            for result in self._run(sound, grammar, alternatives=0)
-            for word in result.get("result", ())
-        )
-
-    def _scored(self, sound: bytes, grammar: _Grammar | None) -> list[_Scored]:
-        """The likeliest texts with their scores, at least one; vosk gives scores or confidences."""
-        texts = [_Scored("", 0.0)]
-        for result in self._run(sound, grammar, alternatives=READINGS):
-            # A pause divides the speech: every text so far goes on in each of these ways.
-            texts = [
-                _Scored(f"{text.text} {way['text']}".strip(), text.score + way["confidence"])
-                for text in texts
-                for way in result.get("alternatives") or [{"text": "", "confidence": 0.0}]
-            ]
-            texts = sorted(texts, key=lambda text: -text.score)[:READINGS]
-        return [_Scored(grammar.written(t.text), t.score) for t in texts] if grammar else texts
-
-    def _run(
-        self, sound: bytes, grammar: _Grammar | None, alternatives: int
-    ) -> list[dict[str, Any]]:
+    def _decoder(self, grammar: _Grammar | None, alternatives: int) -> _Decoder:
+        """One that is done, or a new one. A used one is several times as fast: it keeps the parts
+        of the search graph that it has unfolded."""
+        key = (grammar, alternatives)
+        with self._lock:
+            if self._idle.get(key):
+                return self._idle[key].pop()
         limits = () if grammar is None else (grammar.json,)
         try:
             kaldi = vosk.KaldiRecognizer(self._model, RATE, *limits)
@@ -265,13 +256,157 @@ class Recogniser:
             raise self._unusable from error
         kaldi.SetWords(True)
         kaldi.SetMaxAlternatives(alternatives)
-        results = []
-        for start in range(0, len(sound), BLOCK * 2):
-            # After a pause in the speech a result is complete, and the next begins.
-            if kaldi.AcceptWaveform(sound[start : start + BLOCK * 2]):
-                results.append(json.loads(kaldi.Result()))
-        results.append(json.loads(kaldi.FinalResult()))
-        return results
+        return _Decoder(kaldi)
+
+    def _take_back(self, decoder: _Decoder, grammar: _Grammar | None, alternatives: int) -> None:
+        key = (grammar, alternatives)
+        with self._lock:
+            idle = self._idle.pop(key, [])  # the least used stand first
+            self._idle[key] = [*idle, decoder][:MOST_IDLE]
+            while len(self._idle) > MOST_LISTS:
+                del self._idle[next(iter(self._idle))]
+
+
+class Decoding:
+    """Sound that is decoded while it comes. For one thread.
+
+        decoding = recogniser.open(phrases, gain=gain)
+        decoding.feed(samples)     # as often as there are some
+        heard = decoding.finish()  # soon, for most is done by then
+
+    `Recogniser.recognise` is this with a whole recording. One that is not finished costs nothing.
+    """
+
+    def __init__(
+        self, recogniser: Recogniser, grammar: _Grammar | None, worst_fit: float, gain: float
+    ) -> None:
+        self._grammar = grammar
+        self._worst_fit = worst_fit
+        self._gain = gain
+        self._samples = 0
+        self._silent = _Silence()
+        self._recogniser = recogniser
+        wanted: list[tuple[_Grammar | None, int]] = [(grammar, 0)]
+        if grammar is not None:
+            # With alternatives libvosk gives scores, without them confidences.
+            wanted += [(grammar, READINGS), (None, READINGS)]
+        self._decoders = {key: recogniser._decoder(*key) for key in wanted}
+        self._feed(np.zeros(int(PADDING * RATE), np.int16))
+
+    def feed(self, samples: Samples) -> None:
+        """Sound that follows what was fed, any number of samples. Takes about a fifth of its
+        length."""
+        self._samples += len(samples)
+        self._silent.feed(samples)
+        loud = samples.astype(np.float32) * self._gain
+        self._feed(np.clip(loud, -32768, 32767).astype(np.int16))
+
+    @property
+    def so_far(self) -> str:
+        """What it sounds like up to now; the last words may still change."""
+        first = next(iter(self._decoders.values()))
+        return self._written(first.so_far)
+
+    def finish(self) -> Heard:
+        """What was said. To be called once, after which nothing can be fed."""
+        started = time.perf_counter()
+        seconds = self._samples / RATE
+        if self._silent:
+            return _heard((), seconds)
+        self._feed(np.zeros(int(PADDING * RATE), np.int16))
+        self._each(_Decoder.finish)
+        sure, *scored = self._decoders.values()
+        heard = _heard(self._words(sure), seconds)
+        if scored:
+            limited, free = (_scored(decoder.results) for decoder in scored)
+            limited = [_Scored(self._written(text.text), text.score) for text in limited]
+            heard = replace(
+                heard,
+                doubtful=_reading(limited[0], free[0], self._worst_fit).doubtful,
+                free_text=free[0].text,
+                readings=_readings(limited, free, self._worst_fit),
+            )
+        for key, decoder in self._decoders.items():
+            self._recogniser._take_back(decoder.anew(), *key)
+        self._decoders = {}
+        return replace(heard, seconds_taken=time.perf_counter() - started)
+
+    def _feed(self, samples: Samples) -> None:
+        sound = samples.tobytes()
+        self._each(lambda decoder: decoder.feed(sound))
+
+    def _each(self, work: Callable[[_Decoder], None]) -> None:
+        """The last, slowest one beside the others: libvosk does not hold the interpreter's lock."""
+        *others, last = self._decoders.values()
+        beside = _helpers().submit(work, last) if others else None
+        for decoder in others or [last]:
+            work(decoder)
+        if beside is not None:
+            beside.result()
+
+    def _written(self, text: str) -> str:
+        return self._grammar.written(text) if self._grammar else text
+
+    def _words(self, decoder: _Decoder) -> tuple[Word, ...]:
+        """The words with their times and confidences."""
+        before = decoder.started + PADDING
+        return tuple(
+            Word(
+                self._written(word["word"]),
+                max(0.0, word["start"] - before),
+                max(0.0, word["end"] - before),
+                word["conf"],
+            )
+            for result in decoder.results
+            for word in result.get("result", ())
+        )
+
+
+class _Decoder:
+    """A decoder of libvosk with what it has found. After `finish` the next sound may follow."""
+
+    def __init__(self, kaldi: Any) -> None:
+        self._kaldi = kaldi
+        self._waiting = b""
+        self._bytes = 0
+        self.started = 0.0
+        """Seconds of all sounds before this one: libvosk goes on counting."""
+        self.results: list[dict[str, Any]] = []
+
+    def feed(self, sound: bytes) -> None:
+        self._waiting += sound
+        whole = len(self._waiting) // (BLOCK * 2) * (BLOCK * 2)
+        for start in range(0, whole, BLOCK * 2):
+            self._decode(self._waiting[start : start + BLOCK * 2])
+        self._waiting = self._waiting[whole:]
+
+    @property
+    def so_far(self) -> str:
+        texts = [result.get("text", "") for result in self.results]
+        texts.append(json.loads(self._kaldi.PartialResult()).get("partial", ""))
+        return " ".join(filter(None, texts))
+
+    def finish(self) -> None:
+        if self._waiting:  # libvosk refuses an empty buffer
+            self._decode(self._waiting)
+        self._waiting = b""
+        self.results.append(json.loads(self._kaldi.FinalResult()))
+
+    def anew(self) -> _Decoder:
+        self.results = []
+        self.started = self._bytes / 2 / RATE
+        return self
+
+    def _decode(self, block: bytes) -> None:
+        self._bytes += len(block)
+        # After a pause in the speech a result is complete, and the next begins.
+        if self._kaldi.AcceptWaveform(block):
+            self.results.append(json.loads(self._kaldi.Result()))
+
+
+@cache
+def _helpers() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(os.cpu_count(), "second opinion")
 
 
 @lru_cache(maxsize=3)
@@ -280,25 +415,49 @@ def load(code: str) -> Recogniser:
     return Recogniser(need(code), code)
 
 
-def _prepared(samples: Samples) -> bytes:
-    """As loud as the model is used to, with silence around it; never an odd or empty buffer."""
-    scaled = samples.astype(np.float32)
-    peak = max(1.0, float(np.abs(scaled).max()))
-    gain = min(MOST_GAIN, LOUDNESS * 32767 / peak)
-    padding = np.zeros(int(PADDING * RATE), np.int16)
-    return np.concatenate([padding, (scaled * gain).astype(np.int16), padding]).tobytes()
+def gain_for(samples: Samples) -> float:
+    """What makes this sound as loud as the model is used to."""
+    peak = max(1.0, float(np.abs(samples.astype(np.float32)).max())) if len(samples) else 1.0
+    return min(MOST_GAIN, LOUDNESS * 32767 / peak)
 
 
-def _is_silent(samples: Samples) -> bool:
-    frame = RATE * 30 // 1000
-    whole = len(samples) // frame * frame
-    if whole == 0:
-        return True  # shorter than any sound of speech
-    frames = samples[:whole].reshape(-1, frame).astype(np.float32) / 32768
-    return float(np.sqrt(np.square(frames).mean(axis=1)).max()) < SILENCE
+class _Silence:
+    """True as long as nothing fed was loud enough to be speech; so is less than one frame."""
+
+    def __init__(self) -> None:
+        self._silent = True
+        self._rest = np.zeros(0, np.float32)
+
+    def __bool__(self) -> bool:
+        return self._silent
+
+    def feed(self, samples: Samples) -> None:
+        if not self._silent:
+            return
+        frame = RATE * 30 // 1000
+        sound = np.concatenate([self._rest, samples.astype(np.float32) / 32768])
+        whole = len(sound) // frame * frame
+        self._rest = sound[whole:]
+        if whole:
+            levels = np.sqrt(np.square(sound[:whole].reshape(-1, frame)).mean(axis=1))
+            self._silent = float(levels.max()) < SILENCE
 
 
-def _heard(words: tuple[Word, ...], audio: Audio) -> Heard:
+def _scored(results: Sequence[Mapping[str, Any]]) -> list[_Scored]:
+    """The likeliest texts with their scores, at least one."""
+    texts = [_Scored("", 0.0)]
+    for result in results:
+        # A pause divides the speech: every text so far goes on in each of these ways.
+        texts = [
+            _Scored(f"{text.text} {way['text']}".strip(), text.score + way["confidence"])
+            for text in texts
+            for way in result.get("alternatives") or [{"text": "", "confidence": 0.0}]
+        ]
+        texts = sorted(texts, key=lambda text: -text.score)[:READINGS]
+    return texts
+
+
+def _heard(words: tuple[Word, ...], seconds: float) -> Heard:
     return Heard(
         text=" ".join(word.text for word in words),
         confidence=sum(word.confidence for word in words) / len(words) if words else 0.0,
@@ -306,7 +465,7 @@ def _heard(words: tuple[Word, ...], audio: Audio) -> Heard:
         doubtful=False,
         free_text=None,
         readings=(),
-        seconds_of_audio=audio.seconds,
+        seconds_of_audio=seconds,
         seconds_taken=0.0,
     )
 
