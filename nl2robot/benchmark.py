@@ -129,6 +129,13 @@ def _voice() -> Iterator[Figure]:
         yield Figure("voice", what, value, "")
 
 
+def _hotword() -> Iterator[Figure]:
+    from nl2robot.speech.hotword_benchmark import measure
+
+    for what, value, unit, aim in measure():
+        yield Figure("hotword", what, value, unit, aim)
+
+
 # --- the whole -----------------------------------------------------------------------------------
 
 
@@ -212,4 +219,5 @@ PARTS: dict[str, Callable[[], Iterator[Figure]]] = {
     "sandbox": _sandbox,
     "serve": _serve,
     "voice": _voice,
+    "hotword": _hotword,
 }

@@ -26,6 +26,7 @@ COMMANDS = {
     "explain": "show how a sentence is read, and why not",
     "phrases": "what can be said here, by topic",
     "chat": "the same as a conversation in the terminal",
+    "hotword": "say each time the hot word is heard",
     "listen": "turn a recording into a program, or into an answer",
     "routines": "commands with a name: list, explain, learn, change, forget",
     "serve": "the robot server on one port, a simulated hospital by default",

@@ -1,0 +1,286 @@
+"""Trains the heads of hot words on synthesised speech: python -m nl2robot.speech.hotword_training
+
+    --lang en          the words of a language (default: of all)
+    --word "hey pepper"  one word of your own, into your data folder
+    --seed 0           the same seed, the same heads
+
+Needs the voices (`pip install 'nl2robot[voices]'`), one core and some minutes a word. Nothing but
+numpy learns here: the embeddings are frozen, and a head is small.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nl2robot.paths import data_file, made
+from nl2robot.speech import scenes
+from nl2robot.speech.audio import RATE
+from nl2robot.speech.embeddings import SIZE, STEP_SECONDS, Embeddings, embed
+from nl2robot.speech.hotword_corpus import (
+    Half,
+    Places,
+    Speech,
+    places,
+    seeded,
+    shuffled,
+    silence,
+    talk,
+    words_of,
+)
+from nl2robot.speech.hotword_head import SHIPPED, Head, forward, probability
+from nl2robot.speech.hotword_words import WORDS, Words
+from nl2robot.speech.scenes import Signal
+
+SCENES: Final = 1200  # in which a word is said
+MINUTES: Final = 60  # of talk without it, per language it is trained in
+HIDDEN: Final = 40
+EPOCHS: Final = 24
+BATCH: Final = 1024
+RATE_OF_LEARNING: Final = 1.5e-3
+DECAY: Final = 1e-4
+
+# Embeddings a head looks at: 16 are 2 s, 6 are 1.2 s.
+HOT_STEPS: Final = 9
+STOP_STEPS: Final = 5
+# Seconds from a word's end within which it has to be heard, and what is too near to it to be
+# called its absence.
+HOT_WINDOW: Final = 0.32
+STOP_WINDOW: Final = 0.24
+BLURRED: Final = (-0.14, 0.8)
+
+
+@dataclass(frozen=True, eq=False)
+class Examples:
+    """Embeddings of sounds in a row, and where in them a window may end."""
+
+    embeddings: Embeddings
+    ends: NDArray[np.int64]
+    labels: NDArray[np.float32]
+
+
+@dataclass
+class Collector:
+    """Gathers sounds as examples."""
+
+    def __post_init__(self) -> None:
+        self._embeddings: list[Embeddings] = []
+        self._ends: list[NDArray[np.int64]] = []
+        self._labels: list[NDArray[np.float32]] = []
+        self._length = 0
+
+    def add(self, sound: Signal, end: float | None = None, window: float = 0.0) -> None:
+        """A sound, in which a word ends at `end` seconds or not at all."""
+        embeddings = embed(scenes.audio(sound).samples)
+        times = (np.arange(len(embeddings)) + 1) * STEP_SECONDS
+        if end is None:
+            said, use = np.zeros(len(times), bool), np.ones(len(times), bool)
+        else:
+            after = times - end
+            said = (after >= 0) & (after < window)
+            use = said | (after < BLURRED[0]) | (after > BLURRED[1])
+        use[: _LONGEST - 1] = False  # what came before is not known there
+        self._ends.append(np.flatnonzero(use) + self._length)
+        self._labels.append(said[use].astype(np.float32))
+        self._embeddings.append(embeddings)
+        self._length += len(embeddings)
+
+    def examples(self) -> Examples:
+        return Examples(
+            np.concatenate(self._embeddings),
+            np.concatenate(self._ends),
+            np.concatenate(self._labels),
+        )
+
+
+_LONGEST: Final = max(HOT_STEPS, STOP_STEPS)
+
+
+def word_scene(
+    word: str, speech: Speech, where: Places, rng: np.random.Generator
+) -> tuple[Signal, float]:
+    """The word, with something before and after it, somewhere. And where it ends, in seconds."""
+    said = speech.say(word + str(rng.choice(["", "!", ".", ",", "?"])))
+    lead = silence(_LONGEST * STEP_SECONDS + float(rng.uniform(0.1, 0.6)))
+    if rng.random() < 0.3:  # goes on from talk
+        before = speech.say(speech.remark())[-int(1.2 * RATE) :]
+        lead = np.concatenate([lead, before, silence(float(rng.uniform(0.08, 0.5)))])
+    tail = silence(float(rng.uniform(0.6, 1.0)))
+    if rng.random() < 0.5:  # and goes on at once with what is wanted
+        after = speech.say(speech.remark())[: int(0.9 * RATE)]
+        tail = np.concatenate([silence(float(rng.uniform(0.02, 0.4))), after])
+    sound = np.concatenate([lead, said / max(scenes.level(said), 1e-6) * 0.1, tail])
+    return somewhere(sound, where, rng), (len(lead) + len(said)) / RATE
+
+
+def somewhere(sound: Signal, where: Places, rng: np.random.Generator) -> Signal:
+    """The sound in a room, in noise, near or far."""
+    if rng.random() < 0.5:
+        echoing = scenes.echoing(sound, scenes.echo(rng, float(rng.uniform(0.15, 0.7))))
+        sound = echoing[: len(sound)]
+    kind = str(rng.choice(["babble", "corridor", "noise", "none"], p=[0.4, 0.25, 0.2, 0.15]))
+    if kind != "none":
+        sound = scenes.at_snr(sound, where.noise(kind), float(rng.uniform(-2, 25)), rng)
+    peak = max(float(np.abs(sound).max()), 1e-6)
+    return np.asarray(sound * (10 ** (float(rng.uniform(-28, -0.5)) / 20) / peak), np.float32)
+
+
+def without(
+    speech: Speech, where: Places, near: Sequence[str], minutes: float, rng: np.random.Generator
+) -> Collector:
+    """Talk in which nobody says the words, but often something that sounds like them."""
+    collector, words = Collector(), shuffled(near, rng) if near else iter(())
+
+    def also() -> str | None:
+        if not near or rng.random() < 0.5:
+            return None
+        texts = [next(words), speech.remark()]
+        return " ".join(texts if rng.random() < 0.3 else texts[:1])
+
+    for _ in range(int(minutes * 2)):
+        lead = silence(_LONGEST * STEP_SECONDS)
+        sound = np.concatenate([lead, *talk(speech, 30, also)])
+        collector.add(somewhere(sound, where, rng))
+    return collector
+
+
+def noises(where: Places) -> Collector:
+    """Only noise, the babble of other people included."""
+    collector = Collector()
+    for beds in where.noises.values():
+        for bed in beds:
+            for gain in (1.0, 0.1, 0.02):
+                collector.add(bed * np.float32(gain))
+    collector.add(silence(10))
+    return collector
+
+
+def fit(
+    examples: Examples, steps: int, rng: np.random.Generator, epochs: int = EPOCHS
+) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any], NDArray[Any]]:
+    """Weights by Adam on the cross entropy; what is often mistaken is shown more often."""
+    flat, offsets = examples.embeddings, np.arange(steps) - steps + 1
+    mean, scale = flat.mean(0), flat.std(0) + 1e-3
+    flat = ((flat - mean) / scale).astype(np.float32)
+    size = steps * SIZE
+    weights: list[NDArray[Any]] = [
+        (rng.standard_normal((size, HIDDEN)) * np.sqrt(2 / size)).astype(np.float32),
+        np.zeros(HIDDEN, np.float32),
+        (rng.standard_normal((HIDDEN, 1)) * np.sqrt(1 / HIDDEN)).astype(np.float32),
+        np.full(1, -2.0, np.float32),
+    ]
+    first = [np.zeros_like(w) for w in weights]
+    second = [np.zeros_like(w) for w in weights]
+    positive = np.flatnonzero(examples.labels > 0)
+    negative = np.flatnonzero(examples.labels == 0)
+    hard = negative
+    step = 0
+    for epoch in range(epochs):
+        share = rng.permutation(negative)[: len(negative) // 2]
+        order = np.concatenate([share, rng.choice(hard, len(share) // 2), np.tile(positive, 4)])
+        order = rng.permutation(order)
+        speed = RATE_OF_LEARNING * 0.5 * (1 + np.cos(np.pi * epoch / epochs))
+        for at in range(0, len(order), BATCH):
+            chosen = order[at : at + BATCH]
+            inputs = flat[examples.ends[chosen][:, None] + offsets].reshape(len(chosen), size)
+            inputs = inputs * (rng.random(inputs.shape, np.float32) > 0.1)
+            layer, scores = forward(tuple(weights), inputs)
+            error = (probability(scores) - examples.labels[chosen])[:, None] / len(chosen)
+            back = (error @ weights[2].T) * (layer > 0)
+            gradients = [inputs.T @ back, back.sum(0), layer.T @ error, error.sum(0)]
+            step += 1
+            for i, gradient in enumerate(gradients):
+                first[i] += 0.1 * (gradient - first[i])
+                second[i] += 0.001 * (gradient**2 - second[i])
+                ahead = first[i] / (1 - 0.9**step)
+                weights[i] -= speed * (
+                    ahead / (np.sqrt(second[i] / (1 - 0.999**step)) + 1e-8) + DECAY * weights[i]
+                )
+        if epoch % 4 == 3:
+            scored = np.concatenate(
+                [
+                    forward(
+                        tuple(weights),
+                        flat[examples.ends[part][:, None] + offsets].reshape(len(part), size),
+                    )[1]
+                    for part in np.array_split(negative, len(negative) // 8192 + 1)
+                ]
+            )
+            hard = negative[np.argsort(scored)[-max(200, len(negative) // 50) :]]
+    # The scaling of the embeddings goes into the weights: one thing less to load.
+    repeated = np.tile(scale, steps)[:, None]
+    hidden = weights[0] / repeated
+    return (hidden, weights[1] - np.tile(mean, steps) @ hidden, weights[2], weights[3])
+
+
+def both(first: Examples, second: Examples) -> Examples:
+    return Examples(
+        np.concatenate([first.embeddings, second.embeddings]),
+        np.concatenate([first.ends, second.ends + len(first.embeddings)]),
+        np.concatenate([first.labels, second.labels]),
+    )
+
+
+def corpus(words: Words, seed: int, minutes: float) -> tuple[Speech, Places, Examples]:
+    """What every head of a language learns not to be its word."""
+    rng = seeded(seed, words.language, "corpus")
+    avoid = frozenset(w for word in (*words.stop, words.hot) for w in words_of(word))
+    speech = Speech(words.language, Half.TRAINING, rng, avoid)
+    others = [Speech(code, Half.TRAINING, rng, avoid) for code in WORDS if code != words.language]
+    where = places([speech, *others], rng)
+    talks = [without(speech, where, (), minutes * 0.6, rng).examples()]
+    talks += [without(each, where, (), minutes * 0.2, rng).examples() for each in others]
+    talks.append(noises(where).examples())
+    together = talks[0]
+    for each in talks[1:]:
+        together = both(together, each)
+    return speech, where, together
+
+
+def train(
+    word: str, words: Words, common: tuple[Speech, Places, Examples], seed: int, count: int
+) -> Head:
+    """The head of one word."""
+    speech, where, talked = common
+    rng = seeded(seed, words.language, word)
+    speech = Speech(speech.language, speech.half, rng, speech.avoid)
+    hot = word not in words.stop
+    collector = Collector()
+    for _ in range(count):
+        sound, end = word_scene(word, speech, where, rng)
+        collector.add(sound, end, HOT_WINDOW if hot else STOP_WINDOW)
+    near = [*words.near.get(word, ()), *((part for part in word.split()) if hot else ())]
+    close = without(speech, where, near, MINUTES / 3, rng)
+    examples = both(both(collector.examples(), close.examples()), talked)
+    weights = fit(examples, HOT_STEPS if hot else STOP_STEPS, rng)
+    return Head(word, 0.5, weights)
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description="Train the heads of hot words.")
+    parser.add_argument("--lang", choices=sorted(WORDS), help="of one language (default: all)")
+    parser.add_argument("--word", help="one word of your own, into your data folder")
+    parser.add_argument("--seed", type=int, default=0)
+    options = parser.parse_args(arguments)
+    for code in [options.lang] if options.lang else ["en"] if options.word else list(WORDS):
+        words = WORDS[code]
+        if options.word:
+            words = Words(code, options.word, (), (), {})
+        folder: Path = data_file("hotwords") if options.word else SHIPPED
+        began = time.monotonic()
+        common = corpus(words, options.seed, MINUTES)
+        print(f"{code}: {len(common[2].ends)} examples of talk, {time.monotonic() - began:.0f} s")
+        for word in (words.hot, *words.stop):
+            head = train(word, words, common, options.seed, SCENES)
+            print(f"{head.save(made(folder / code))}, {time.monotonic() - began:.0f} s", flush=True)
+
+
+if __name__ == "__main__":
+    main()
