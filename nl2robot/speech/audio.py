@@ -92,6 +92,8 @@ def _unwrapped(content: bytes, name: str) -> BinaryIO:
         return io.BytesIO(webm.to_ogg(content))
     except webm.CutShort as error:
         raise _cut_short(name) from error
+    except webm.NoSound as error:
+        raise _empty(name) from error
     except webm.WebmError as error:
         raise AudioError(
             f"The file {name} is broken, or its sound is not of the kind that browsers record "
@@ -117,11 +119,15 @@ def _decoded(sound: Any, cut_short: bool, name: str) -> Audio:
             raise _too_long(name, count / rate)
         pieces.append(_whole(_resampled(resampler, _finite(frames))))
     if count == 0:
-        raise AudioError(f"The recording {name} has no sound in it. Record it again.")
+        raise _empty(name)
     if count < sound.frames or cut_short:
         raise _cut_short(name)
     pieces.append(_whole(_resampled(resampler, np.zeros((0, sound.channels)), last=True)))
     return Audio(_loudest(np.concatenate(pieces)))
+
+
+def _empty(name: str) -> AudioError:
+    return AudioError(f"The recording {name} has no sound in it. Record it again.")
 
 
 def _too_long(name: str, seconds: float) -> AudioError:

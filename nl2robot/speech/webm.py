@@ -37,6 +37,10 @@ class CutShort(WebmError):
     """It ends before it says that it ends."""
 
 
+class NoSound(WebmError):
+    """Nothing was recorded."""
+
+
 @dataclass
 class _Track:
     number: int = 0
@@ -48,6 +52,8 @@ class _Track:
 def to_ogg(data: bytes) -> bytes:
     """The first Opus track of a WebM file as an Ogg file. Raises WebmError."""
     track = _opus_track(data)
+    if not track.packets:
+        raise NoSound
     pages = [
         _page(0, 0, _FIRST, track.head),
         _page(1, 0, 0, b"OpusTags" + struct.pack("<II", 0, 0)),
