@@ -13,7 +13,7 @@ import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
@@ -28,6 +28,9 @@ from robot_api.server import CannotListen, Server
 from sim.record import Record
 from sim.simulation import Simulation
 from sim.world import World
+
+if TYPE_CHECKING:
+    from nl2robot.speech.aloud import SoundFor
 
 ANSWERS_WITHIN = 5.0
 """Seconds that a server has to say what it can do."""
@@ -125,16 +128,19 @@ def simulated_station(
     port: int = 0,
     token: str | None = None,
     pictures: Path | None = None,
+    sound: SoundFor | None = None,
 ) -> Iterator[SimulatedStation]:
     """Open a station with a simulated robot.
 
     `speed`: simulated seconds per second; None: as fast as the machine allows, whenever somebody
-    waits for the robot. `pictures`: a folder in which a picture of every run is kept.
+    waits for the robot. `pictures`: a folder in which a picture of every run is kept. `sound`: how
+    it is heard (see `nl2robot.speech.aloud`); without it, it is only written what is said.
     """
+    from robot_api.capabilities.sound import SILENT
     from robot_api.drivers import simulated
 
     simulation = Simulation(world, seed=seed, speed=speed)
-    driver = simulated(simulation)
+    driver = simulated(simulation, sound(lambda: simulation.time) if sound else SILENT)
 
     def on_program(data: Mapping[str, Any]) -> None:
         if data["what"] != "state":

@@ -59,6 +59,7 @@ from robot_api.capabilities.manipulation import (
 from robot_api.capabilities.scanner import EmulatedScanner, Scanner, SimulatedScanner
 from robot_api.capabilities.screen import EmulatedScreen, Screen, SimulatedScreen
 from robot_api.capabilities.skills import EmulatedSkills, SimulatedSkills, Skills
+from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.capabilities.speech import EmulatedSpeech, SimulatedSpeech, Speech
 from robot_api.capabilities.telepresence import (
     EmulatedTelepresence,
@@ -309,6 +310,7 @@ class EmulatedDriver(ComposedDriver):
         without: Collection[str],
         units: str,
         log: Callable[[str], None] | None,
+        sound: Sound = SILENT,
     ) -> None:
         self.emulation = emulation
         self._results = {
@@ -320,7 +322,7 @@ class EmulatedDriver(ComposedDriver):
         book = LogBook(emulation.now, emulation.hub, log)
         parts = [
             part
-            for part in _emulated_parts(emulation, book, skills, without)
+            for part in _emulated_parts(emulation, book, skills, without, sound)
             if part.name not in without
         ]
         screen = next((part for part in parts if isinstance(part, Screen)), None)
@@ -359,6 +361,7 @@ def emulated(
     speed: float | None = None,
     start: datetime | None = None,
     log: Callable[[str], None] | None = None,
+    sound: Sound = SILENT,
 ) -> EmulatedDriver:
     """A robot that does nothing but log and answer, for testing programs without one.
 
@@ -375,22 +378,27 @@ def emulated(
     - `units`: "m" or "cm", what the paper's message style counts in (`robot_api.messages`).
     - `speed`: emulated seconds pass at this multiple of real time.
     - `start`: its date and time at the start. `log`: gets each line of the log.
+    - `sound`: a loudspeaker to be heard on, ears that hear real people instead of `answers`.
     """
     emulation = Emulation(answers, places, questions, contacts, speed, start)
     known = skills if skills is not None else {"sit": "sit down", "dance": "dance a little"}
-    return EmulatedDriver(emulation, results or {}, known, without, units, log)
+    return EmulatedDriver(emulation, results or {}, known, without, units, log, sound)
 
 
 def _emulated_parts(
-    emulation: Emulation, book: LogBook, skills: Mapping[str, str], without: Collection[str]
+    emulation: Emulation,
+    book: LogBook,
+    skills: Mapping[str, str],
+    without: Collection[str],
+    sound: Sound,
 ) -> list[Capability]:
-    speech = EmulatedSpeech(emulation) if Speech.name not in without else None
+    speech = EmulatedSpeech(emulation, sound) if Speech.name not in without else None
     screen = EmulatedScreen(emulation, speech) if Screen.name not in without else None
     navigation = EmulatedNavigation(emulation)
     parts: list[Capability | None] = [
         EmulatedCore(emulation, book),
         speech,
-        EmulatedHearing(emulation, speech, screen),
+        EmulatedHearing(emulation, speech, screen, sound),
         navigation,
         EmulatedMotion(emulation),
         EmulatedDock(emulation, navigation),
@@ -415,7 +423,7 @@ def _emulated_parts(
 class SimulatedDriver(ComposedDriver):
     """A robot in a `sim.simulation.Simulation`; see `simulated`."""
 
-    def __init__(self, simulation: Simulation) -> None:
+    def __init__(self, simulation: Simulation, sound: Sound = SILENT) -> None:
         self.simulation = simulation
         hub = Hub()
         book = LogBook(simulation.clock, hub)
@@ -423,7 +431,7 @@ class SimulatedDriver(ComposedDriver):
         super().__init__(
             name="The simulated robot",
             kind="simulator",
-            parts=_simulated_parts(simulation, book),
+            parts=_simulated_parts(simulation, book, sound),
             hub=hub,
             book=book,
             units=simulation.world.units,
@@ -431,7 +439,7 @@ class SimulatedDriver(ComposedDriver):
         )
 
     def copy(self) -> SimulatedDriver:
-        """A driver of a copy of the simulation as it is now, to try a program out on."""
+        """A driver of a copy of the simulation as it is now, to try a program out on, silently."""
         return SimulatedDriver(self.simulation.copy())
 
     def begin(self) -> None:
@@ -444,20 +452,20 @@ class SimulatedDriver(ComposedDriver):
         self.simulation.close()
 
 
-def simulated(simulation: Simulation) -> SimulatedDriver:
-    """A robot in that simulation, with all methods of the table. Closing it closes the
-    simulation."""
-    return SimulatedDriver(simulation)
+def simulated(simulation: Simulation, sound: Sound = SILENT) -> SimulatedDriver:
+    """A robot in that simulation, with all methods of the table; with `sound` it is heard, and
+    hears real or simulated people. Closing it closes the simulation."""
+    return SimulatedDriver(simulation, sound)
 
 
-def _simulated_parts(simulation: Simulation, book: LogBook) -> list[Capability]:
-    speech = SimulatedSpeech(simulation)
+def _simulated_parts(simulation: Simulation, book: LogBook, sound: Sound) -> list[Capability]:
+    speech = SimulatedSpeech(simulation, sound)
     screen = SimulatedScreen(simulation, speech)
     navigation = SimulatedNavigation(simulation)
     return [
         SimulatedCore(simulation, book),
         speech,
-        SimulatedHearing(simulation, speech, screen),
+        SimulatedHearing(simulation, speech, screen, sound),
         navigation,
         SimulatedMotion(simulation),
         SimulatedDock(simulation),

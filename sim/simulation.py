@@ -23,9 +23,10 @@ from sim.physics import STEP
 from sim.record import Record
 from sim.robot import RobotState
 from sim.runner import Behaviour, Runner, Stop
+from sim.talking import Reply
 from sim.world import World
 
-__all__ = ["Behaviour", "RobotState", "Seen", "Simulation", "Stop"]
+__all__ = ["Behaviour", "Reply", "RobotState", "Seen", "Simulation", "Stop"]
 
 T = TypeVar("T")
 
@@ -278,6 +279,16 @@ class Simulation:
     ) -> Behaviour[str | None]:
         """What somebody says, or None if nobody does. Raises `NotFound` if `person` is not here."""
         return talking.hear(self._hospital, timeout, question, options, person)
+
+    def reply(
+        self,
+        timeout: float = 10.0,
+        question: str | None = None,
+        options: Sequence[str] | None = None,
+        person: str | None = None,
+    ) -> Behaviour[Reply | None]:
+        """Who says what, as `hear`; for a robot that has to hear it first: no event is told."""
+        return talking.reply(self._hospital, timeout, question, options, person)
 
     def scan(self, timeout: float = 30.0) -> Behaviour[str | None]:
         """The code of the thing held, or of one that is held up or lies before the robot."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from sim.hospital import Hospital
 from sim.people import Human
@@ -30,6 +31,14 @@ _SCANNER_ANGLE = 60.0
 _GESTURE = 2.0
 
 
+@dataclass(frozen=True)
+class Reply:
+    """What somebody says."""
+
+    person: str
+    words: str
+
+
 def speak(hospital: Hospital, text: str, language: str | None) -> Behaviour[None]:
     """Say it; those who are near turn to the robot."""
     hospital.emit("speech", {"text": text, "language": language or hospital.robot.language})
@@ -51,8 +60,24 @@ def hear(
     options: Sequence[str] | None,
     person: str | None,
 ) -> Behaviour[str | None]:
+    """As `reply`; the words are heard as they are said."""
+    said = yield from reply(hospital, timeout, question, options, person)
+    if said is None:
+        return None
+    hospital.emit("heard", {"text": said.words, "person": said.person})
+    return said.words
+
+
+def reply(
+    hospital: Hospital,
+    timeout: float,
+    question: str | None,
+    options: Sequence[str] | None,
+    person: str | None,
+) -> Behaviour[Reply | None]:
     """The next answer of the person, of the one the robot deals with, or of the nearest. None if
-    nobody is there, or they keep silent, for the whole of the timeout."""
+    nobody is there, or they keep silent, for the whole of the timeout. Whether it was heard is
+    for the robot to say."""
     end = hospital.time + timeout
     human = person_in_view(hospital, person) if person is not None else None
     while human is None:
@@ -70,8 +95,7 @@ def hear(
         return None
     yield from hospital.wait(seconds)
     human.said = answer
-    hospital.emit("heard", {"text": answer, "person": human.name})
-    return answer
+    return Reply(human.name, answer)
 
 
 def touch(hospital: Hospital, options: Sequence[str], timeout: float) -> Behaviour[str | None]:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import yaml
 
-from nl2robot.commands.options import add_language, add_planner, add_robot
+from nl2robot.commands.options import add_language, add_planner, add_robot, add_sound
 from nl2robot.commands.run import open_session
 from nl2robot.errors import ExitStatus
 from nl2robot.session import Session
@@ -20,6 +20,7 @@ DATA = Path(__file__).parents[1] / "data" / "chat.yaml"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_robot(parser)
+    add_sound(parser)
     add_language(parser)
     add_planner(parser)
 

@@ -6,14 +6,18 @@ import argparse
 import getpass
 import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from nl2robot.errors import UserError
 from nl2robot.knowledge import DEFAULT_WORLD
 from nl2robot.paths import data_folder
 
 if TYPE_CHECKING:
     from nl2robot.runlog import RunLog
+    from nl2robot.speech.aloud import SoundFor
     from sim.world import World
 
 
@@ -97,6 +101,49 @@ def add_robot(parser: argparse.ArgumentParser) -> None:
     )
     add_world(parser)
     add_seed(parser)
+
+
+def add_sound(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--speak",
+        nargs="?",
+        const=True,
+        default=False,
+        type=_sound_file,
+        metavar="FILE.wav",
+        help="the simulated robot speaks: on the loudspeaker, or into this file",
+    )
+    parser.add_argument(
+        "--voices",
+        action="store_true",
+        help="the simulated people answer aloud, and the robot has to hear them",
+    )
+    parser.add_argument(
+        "--voice", metavar="NAME", help='the robot\'s voice: "piper", "espeak", or its full name'
+    )
+
+
+def _sound_file(given: str) -> Path:
+    if not given.lower().endswith(".wav"):
+        raise argparse.ArgumentTypeError(
+            f"{given!r} is no .wav file; what the robot shall do goes before --speak"
+        )
+    return Path(given)
+
+
+@contextmanager
+def sound_of(options: argparse.Namespace, world: World, language: str) -> Iterator[SoundFor | None]:
+    """What `add_sound` lets people ask for; None if they did not."""
+    if not (options.speak or options.voices):
+        if options.voice:
+            raise UserError("A voice is chosen, but nothing is spoken. Add --speak.")
+        yield None
+        return
+    from nl2robot.speech.aloud import Wishes, aloud
+
+    wishes = Wishes(options.speak, options.voices, options.voice, language, options.seed)
+    with aloud(wishes, world) as sound:
+        yield sound
 
 
 def names_of(options: argparse.Namespace) -> World:

@@ -6,12 +6,15 @@ import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from nl2robot.commands.options import (
     add_language,
     add_planner,
     add_robot,
+    add_sound,
     open_log,
+    sound_of,
     user_name,
     words,
     world_of,
@@ -23,11 +26,16 @@ from nl2robot.session import Session
 from nl2robot.station import Station, check_picture, remote_station, simulated_station
 from nl2robot.terminal import Terminal
 
+if TYPE_CHECKING:
+    from nl2robot.runlog import RunLog
+    from sim.world import World
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("words", nargs="?", type=words, help="what the robot should do")
     parser.add_argument("--program", metavar="FILE", help="run this program instead of words")
     add_robot(parser)
+    add_sound(parser)
     parser.add_argument(
         "--picture", metavar="FILE", help="save a picture of the run (.svg, .png, .webp, .gif)"
     )
@@ -65,14 +73,7 @@ def open_session(
     """Open the robot that the options name and sit down at the terminal."""
     log = open_log(options.debug)
     world = world_of(options)
-    opened = (
-        simulated_station(
-            world, log, seed=options.seed, speed=options.speed, pictures=pictures_folder()
-        )
-        if options.robot == "sim"
-        else remote_station(options.robot, world, log, token=options.token)
-    )
-    with opened as station, station.connect() as robot:
+    with _station(options, world, log) as station, station.connect() as robot:
         yield (
             Session(
                 Operator(robot, user_name()),
@@ -83,6 +84,34 @@ def open_session(
             ),
             station,
         )
+
+
+@contextmanager
+def _station(options: argparse.Namespace, world: World, log: RunLog) -> Iterator[Station]:
+    heard = options.speak or options.voices
+    if options.robot != "sim":
+        if heard:
+            raise UserError(
+                "Only a robot simulated here can be heard."
+                " Leave --robot out, or --speak and --voices."
+            )
+        with remote_station(options.robot, world, log, token=options.token) as station:
+            yield station
+        return
+    with (
+        sound_of(options, world, options.lang) as sound,
+        simulated_station(
+            world,
+            log,
+            seed=options.seed,
+            speed=options.speed,
+            pictures=pictures_folder(),
+            sound=sound,
+        ) as simulated,
+    ):
+        if heard:  # a German sentence in an English voice is not understood
+            simulated.simulation.set_language(options.lang)
+        yield simulated
 
 
 def _read(file: str) -> str:

@@ -5,7 +5,16 @@ from __future__ import annotations
 import argparse
 import socket
 
-from nl2robot.commands.options import add_seed, add_world, open_log, speed, whole, world_of
+from nl2robot.commands.options import (
+    add_seed,
+    add_sound,
+    add_world,
+    open_log,
+    sound_of,
+    speed,
+    whole,
+    world_of,
+)
 from nl2robot.errors import ExitStatus
 from nl2robot.paths import pictures_folder
 from nl2robot.station import simulated_station
@@ -26,19 +35,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_world(parser)
     add_seed(parser)
+    add_sound(parser)
 
 
 def run(options: argparse.Namespace) -> int:
-    with simulated_station(
-        world_of(options),
-        open_log(options.debug),
-        seed=options.seed,
-        speed=options.speed,
-        host=options.host,
-        port=options.port,
-        token=options.token,
-        pictures=pictures_folder(),
-    ) as station:
+    world, log = world_of(options), open_log(options.debug)
+    with (
+        sound_of(options, world, "en") as sound,
+        simulated_station(
+            world,
+            log,
+            seed=options.seed,
+            speed=options.speed,
+            host=options.host,
+            port=options.port,
+            token=options.token,
+            pictures=pictures_folder(),
+            sound=sound,
+        ) as station,
+    ):
         station.server.serve_forever(_say_where)
     return ExitStatus.OK
 

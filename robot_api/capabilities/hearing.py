@@ -15,6 +15,7 @@ from robot_api.capabilities.base import Capability
 from robot_api.capabilities.languages import language_data
 from robot_api.capabilities.matching import match_answer, match_question
 from robot_api.capabilities.simulation import InSimulation
+from robot_api.capabilities.sound import SILENT, Asked, Sound
 from robot_api.driver import StopFlag
 from robot_api.errors import NotFound, TimedOut
 from robot_api.methods import MAX_TEXT
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from robot_api.capabilities.emulation import Emulation
     from robot_api.capabilities.screen import Screen
     from robot_api.capabilities.speech import Speech
+    from sim.simulation import Simulation
 
 ANSWER_TIMEOUT = 10.0
 """Seconds that somebody has to begin an answer."""
@@ -127,11 +129,19 @@ class Hearing(Capability):
 
 
 class EmulatedHearing(Hearing):
-    """Hears the canned answers in their order, then the first option or "yes"."""
+    """Hears the canned answers in their order, then the first option or "yes"; with ears, what is
+    said."""
 
-    def __init__(self, emulation: Emulation, speech: Speech | None, screen: Screen | None) -> None:
+    def __init__(
+        self,
+        emulation: Emulation,
+        speech: Speech | None,
+        screen: Screen | None,
+        sound: Sound = SILENT,
+    ) -> None:
         super().__init__(speech, screen)
         self._emulation = emulation
+        self._sound = sound
 
     @property
     def language(self) -> str:
@@ -145,7 +155,11 @@ class EmulatedHearing(Hearing):
         options: Sequence[str] | None = None,
         person: str | None = None,
     ) -> str | None:
-        heard = self._emulation.next_answer(options[0] if options else "yes")
+        if self._sound.ears is not None:
+            asked = Asked(self.language, question, options, person)
+            heard = self._sound.ears.hear(stop, timeout, asked)
+        else:
+            heard = self._emulation.next_answer(options[0] if options else "yes")
         self._emulation.pass_time(timeout if heard is None else min(2.0, timeout), stop)
         if heard is not None:
             self._emulation.publish("heard", text=heard, person=person)
@@ -156,6 +170,16 @@ class EmulatedHearing(Hearing):
 
 
 class SimulatedHearing(InSimulation, Hearing):
+    def __init__(
+        self,
+        simulation: Simulation,
+        speech: Speech | None,
+        screen: Screen | None,
+        sound: Sound = SILENT,
+    ) -> None:
+        super().__init__(simulation, speech, screen)
+        self._sound = sound
+
     @property
     def language(self) -> str:
         return self.simulation.robot.language
@@ -168,7 +192,17 @@ class SimulatedHearing(InSimulation, Hearing):
         options: Sequence[str] | None = None,
         person: str | None = None,
     ) -> str | None:
-        return self.run(self.simulation.hear(timeout, question, options, person), stop)
+        ears, voices = self._sound.ears, self._sound.voices
+        asked = Asked(self.language, question, options, person)
+        if ears is not None:
+            heard = ears.hear(stop, timeout, asked)
+            return self._published(heard, person)
+        if voices is None:
+            return self.run(self.simulation.hear(timeout, question, options, person), stop)
+        reply = self.run(self.simulation.reply(timeout, question, options, person), stop)
+        if reply is None:
+            return None
+        return self._published(voices.heard(stop, reply.person, reply.words, asked), reply.person)
 
     def prepared(self, language: str) -> Sequence[Prepared]:
         return [
@@ -179,3 +213,8 @@ class SimulatedHearing(InSimulation, Hearing):
 
     def is_here(self, person: str) -> bool:
         return bool(self.simulation.visible(person))
+
+    def _published(self, heard: str | None, person: str | None) -> str | None:
+        if heard:
+            self.simulation.emit("heard", {"text": heard, "person": person})
+        return heard or None

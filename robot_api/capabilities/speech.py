@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Any
 from robot_api.capabilities.base import Capability, Turns
 from robot_api.capabilities.names import listed
 from robot_api.capabilities.simulation import InSimulation
+from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.driver import StopFlag
 from robot_api.errors import NotSupported
 
 if TYPE_CHECKING:
     from robot_api.capabilities.emulation import Emulation
+    from sim.simulation import Simulation
 
 LANGUAGES = {"en": "English", "de": "German", "fr": "French"}
 
@@ -65,17 +67,19 @@ class Speech(Capability):
 
 
 class EmulatedSpeech(Speech):
-    def __init__(self, emulation: Emulation) -> None:
+    def __init__(self, emulation: Emulation, sound: Sound = SILENT) -> None:
         super().__init__()
         self._emulation = emulation
+        self._sound = sound
 
     @property
     def language(self) -> str:
         return self._emulation.language
 
     def speak(self, stop: StopFlag, text: str, language: str) -> None:
-        self._emulation.publish("speech", text=text, language=language)
-        self._emulation.pass_time(1.0 + len(text) / 15, stop)
+        with self._sound.speaking(stop, text, language, self._emulation.volume):
+            self._emulation.publish("speech", text=text, language=language)
+            self._emulation.pass_time(1.0 + len(text) / 15, stop)
 
     def set_volume(self, stop: StopFlag, percent: int) -> None:
         self._emulation.volume = percent
@@ -85,12 +89,17 @@ class EmulatedSpeech(Speech):
 
 
 class SimulatedSpeech(InSimulation, Speech):
+    def __init__(self, simulation: Simulation, sound: Sound = SILENT) -> None:
+        super().__init__(simulation)
+        self._sound = sound
+
     @property
     def language(self) -> str:
         return self.simulation.robot.language
 
     def speak(self, stop: StopFlag, text: str, language: str) -> None:
-        self.run(self.simulation.speak(text, language), stop)
+        with self._sound.speaking(stop, text, language, self.simulation.robot.volume):
+            self.run(self.simulation.speak(text, language), stop)
 
     def set_volume(self, stop: StopFlag, percent: int) -> None:
         self.simulation.set_volume(percent)

@@ -1,0 +1,171 @@
+"""A run that is heard: what `--speak` and `--voices` ask for, put together for a simulated robot.
+
+    with aloud(Wishes(speak=Path("run.wav"), voices=True), world) as sound:
+        simulated_station(world, log, sound=sound)
+
+Whatever is missing is found out here, before anything runs.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from nl2robot.speech.kept import KeptSounds, folder
+from nl2robot.speech.loudspeaker import Nowhere, Output, SoundCard, SoundError, WavFile
+from nl2robot.speech.speaking import Speaker, Utterance
+from nl2robot.speech.voices import Voice, espeak, voice
+from robot_api.capabilities.sound import Sound, Voices
+
+if TYPE_CHECKING:
+    from robot_api.driver import StopFlag
+    from sim.world import World
+
+Clock = Callable[[], float]
+"""Seconds of simulated time."""
+SoundFor = Callable[[Clock], Sound]
+"""What a robot is given, once there is a clock that its sounds go by."""
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """What is to be heard."""
+
+    speak: bool | Path = False
+    """The robot speaks: on the loudspeaker, or into a file."""
+    voices: bool = False
+    """The simulated people answer aloud, and the robot has to hear them."""
+    voice: str | None = None
+    """The robot's voice, by name or kind ("piper", "espeak")."""
+    language: str = "en"
+    """The one that it begins with."""
+    seed: int = 0
+
+
+@contextmanager
+def aloud(
+    wishes: Wishes, world: World, tell: Callable[[str], None] | None = None
+) -> Iterator[SoundFor | None]:
+    """What a simulated robot needs for it; None if nothing is wished for. `tell` gets a sentence
+    where something cannot be heard, by default on standard error. Raises `UserError`."""
+    if not (wishes.speak or wishes.voices):
+        yield None
+        return
+    tell = tell or _complain
+    robots_voice = cache(lambda language: _robots_voice(language, wishes))
+    if wishes.speak:
+        next(robots_voice(wishes.language).speak("Hello."), None)  # loads it, or tells why not
+    if wishes.voices:
+        _check_ears(wishes.language)
+    output = _output(wishes, tell)
+    speakers: list[Speaker] = []
+
+    def sound_for(clock: Clock) -> Sound:
+        in_real_time = isinstance(output, SoundCard)
+        speaker = Speaker(
+            output,
+            voice_for=robots_voice,
+            kept=KeptSounds(folder()),
+            clock=time.monotonic if in_real_time else clock,
+            tell=tell,
+        )
+        speakers.append(speaker)
+        loudspeaker = RobotVoice(speaker) if wishes.speak else None
+        return Sound(loudspeaker, voices=_people(wishes, world, speaker, clock))
+
+    try:
+        yield sound_for
+    finally:
+        for speaker in speakers:
+            speaker.close()
+        output.close()
+
+
+class RobotVoice:
+    """A speaker as the robot's; `robot_api.capabilities.sound.Loudspeaker`."""
+
+    def __init__(self, speaker: Speaker) -> None:
+        self.speaker = speaker
+
+    @contextmanager
+    def speaking(self, stop: StopFlag, text: str, language: str, volume: int) -> Iterator[None]:
+        """As `Loudspeaker.speaking`."""
+        utterance: Utterance = self.speaker.begin(text, language, volume)
+        stop.on_set(utterance.cancel)
+        try:
+            yield
+        except BaseException:
+            utterance.cancel()
+            raise
+        utterance.wait()
+        stop.check()
+
+
+def _robots_voice(language: str, wishes: Wishes) -> Voice:
+    """The wished one; in a language that it does not speak, the best there is."""
+    if wishes.voice and language != wishes.language:
+        return voice(language)
+    return voice(language, wishes.voice)
+
+
+def _check_ears(language: str) -> None:
+    from nl2robot.speech.recogniser import load
+
+    next(espeak(language).speak("Hello."), None)
+    load(language)
+
+
+def _output(wishes: Wishes, tell: Callable[[str], None]) -> Output:
+    if isinstance(wishes.speak, Path):
+        return WavFile(wishes.speak)
+    if not wishes.speak:
+        return Nowhere()
+    try:
+        return SoundCard()
+    except SoundError as error:
+        tell(str(error))
+        return Nowhere()
+
+
+def _people(wishes: Wishes, world: World, speaker: Speaker, clock: Clock) -> Voices | None:
+    if not wishes.voices:
+        return None
+    from nl2robot.speech.people import SimulatedVoices
+    from nl2robot.speech.recogniser import load
+
+    return SimulatedVoices(
+        recogniser_for=load,
+        phrases_for=cache(lambda language: _said_here(world, language)),
+        genders={person.name: person.gender for person in world.people},
+        speaker=speaker,
+        clock=clock,
+        seed=wishes.seed,
+    )
+
+
+def _said_here(world: World, language: str) -> Sequence[str]:
+    """What people may answer to any question: yes and no, numbers, what there is here."""
+    from nl2robot.speech.answers import expect
+    from nl2robot.speech.vocabulary import number_words
+
+    named = (world.places, world.people, world.objects)
+    names = [
+        name
+        for each in (thing for things in named for thing in things)
+        for name in (each.name, *each.aliases.get(language, ()))
+    ]
+    return (
+        *expect("yes-no", language).phrases,
+        *(number_words(str(number), language) for number in range(101)),
+        *(expect(names, language).phrases if names else ()),
+    )
+
+
+def _complain(message: str) -> None:
+    print(message, file=sys.stderr, flush=True)

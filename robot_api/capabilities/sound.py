@@ -1,0 +1,77 @@
+"""What a robot that has no body here can be given instead of one: a loudspeaker, ears, and people
+who can be heard.
+
+Without them the emulated and the simulated robot publish what they say, and are told in words what
+people answer. With them it is spoken and heard.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+from robot_api.driver import StopFlag
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is listened for."""
+
+    language: str
+    question: str | None = None
+    options: Sequence[str] | None = None
+    """The answers that count, where not any does."""
+    person: str | None = None
+    """Who is asked, where it is not anybody."""
+
+
+class Loudspeaker(Protocol):
+    def speaking(
+        self, stop: StopFlag, text: str, language: str, volume: int
+    ) -> AbstractContextManager[None]:
+        """It is spoken from the beginning of the `with` block on; the end of the block waits until
+        all of it was heard, an error in it falls silent. Silent within 100 ms once `stop` is set,
+        and then raises `Stopped`. `volume` is 0 to 100."""
+        ...
+
+
+class Ears(Protocol):
+    def hear(self, stop: StopFlag, timeout: float, asked: Asked) -> str | None:
+        """The words of whoever begins to speak within `timeout` seconds, or None. Raises
+        `Stopped`."""
+        ...
+
+
+class Voices(Protocol):
+    def heard(self, stop: StopFlag, person: str, words: str, asked: Asked) -> str | None:
+        """The robot's ears' account of it when a person who is simulated says these words. Raises
+        `Stopped`."""
+        ...
+
+
+@dataclass(frozen=True)
+class Sound:
+    """What there is of it."""
+
+    loudspeaker: Loudspeaker | None = None
+    ears: Ears | None = None
+    """Somebody real answers the robot."""
+    voices: Voices | None = None
+    """The simulated people answer aloud."""
+
+    @contextmanager
+    def speaking(self, stop: StopFlag, text: str, language: str, volume: int) -> Iterator[None]:
+        """As `Loudspeaker.speaking`, silently where there is none."""
+        if self.loudspeaker is None:
+            yield
+            return
+        with self.loudspeaker.speaking(stop, text, language, volume):
+            yield
+
+
+SILENT = Sound()
