@@ -9,8 +9,10 @@ import msgspec
 from grammar.samples import samples
 from grammar.vocabulary import vocabulary
 from nl2robot.knowledge import Knowledge
-from nl2robot.speech.audio import read
+from nl2robot.speech.audio import Audio, read
+from nl2robot.speech.listening import COMMANDS, Listener, Manner, has_speech
 from nl2robot.speech.recogniser import Heard, Recogniser, choose
+from nl2robot.speech.streaming import Streaming
 from nl2robot.speech.vocabulary import Missing, missing_words
 from nl2robot.translation import Planner, Translation, translate
 
@@ -29,10 +31,20 @@ class Ear:
             *vocabulary(lexicon, language),
         ]
 
-    def hear(self, recording: Path) -> Heard:
+    def hear(self, recording: Path | Audio) -> Heard:
         """What a recording says: of its readings the best fitting one that is understood, for
-        people say what makes sense. Raises `AudioError`."""
-        heard = self._recogniser.recognise(read(recording), self._phrases)
+        people say what makes sense. Music and noise say nothing. Raises `AudioError`."""
+        audio = recording if isinstance(recording, Audio) else read(recording)
+        if not has_speech(audio):
+            return Heard("", 0.0, (), False, None, (), audio.seconds, 0.0)
+        return self.chosen(self._recogniser.recognise(audio, self._phrases))
+
+    def listener(self, manner: Manner = COMMANDS) -> Listener:
+        """Hears live what `hear` hears of recordings, but for the choice: see `chosen`."""
+        return Listener(Streaming(self._recogniser, self._phrases), manner)
+
+    def chosen(self, heard: Heard) -> Heard:
+        """The reading that is understood."""
         return choose(heard, self._is_understood)
 
     def _is_understood(self, text: str) -> bool:

@@ -1,12 +1,15 @@
-"""`nl2robot listen`: recordings in, programs or answers out; never moves anything."""
+"""`nl2robot listen`: speech in, programs or answers out; never moves anything."""
 
 from __future__ import annotations
 
 import argparse
 import json
+import shutil
 import sys
-from collections.abc import Callable
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING, Final, Protocol, TextIO
 
 import msgspec
 
@@ -16,71 +19,204 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.models import need
 from nl2robot.routines import open_routines
 
+if TYPE_CHECKING:
+    from nl2robot.speech.audio import Audio, Samples
+    from nl2robot.speech.listening import Event, Listener, SpeechEnded
+    from nl2robot.speech.recogniser import Heard
+
+PATIENCE: Final = 30.0
+"""Seconds without speech after which somebody may wonder whether the microphone is on."""
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
+    source = parser.add_mutually_exclusive_group(required=True)
+    source.add_argument(
+        "--wav", nargs="+", metavar="FILE", help="recordings (wav, flac, ogg, mp3, webm)"
+    )
+    source.add_argument("--mic", action="store_true", help="the microphone, until Ctrl-C")
     parser.add_argument(
-        "--wav", nargs="+", required=True, metavar="FILE", help="recordings (wav, flac, ogg, mp3)"
+        "--device", metavar="NAME", help="with --mic: which microphone, a part of its name"
     )
     parser.add_argument(
         "--expect",
         metavar="WHAT",
         help='digits, yes-no, or options as "a,b,c": what is said is the answer to a question',
     )
-    parser.add_argument("--json", action="store_true", help="one JSON object a file")
+    parser.add_argument("--json", action="store_true", help="one JSON object a file or utterance")
     add_world(parser)
     add_language(parser)
     add_planner(parser)
 
 
 def run(options: argparse.Namespace) -> int:
+    if options.device is not None and not options.mic:
+        raise UserError("--device chooses a microphone. Add --mic, or leave --device out.")
     model = need(options.lang)
-    if options.expect:
-        return _answers(options, model)
-    from nl2robot.hearing import Ear
+    if not options.mic:
+        return recordings(options.wav, _hearing(options, model))
+    from nl2robot.speech.microphone import Microphone
 
-    ear = Ear(model, Knowledge(names_of(options), routines=open_routines()), options.lang)
-    for missing in ear.deaf_to():
-        print(missing.message, file=sys.stderr)
+    microphone = Microphone(options.device)  # before the model is loaded, for it may be missing
+    hearing = _hearing(options, model)
+    with microphone:
+        return live(microphone.blocks(), hearing, sys.stdout, quiet=options.json)
 
-    def command(recording: Path) -> None:
-        heard = ear.hear(recording)
-        translation = ear.translate(heard, options.planner)
-        if options.json:
+
+class Hearing(Protocol):
+    """What is made of speech, and printed."""
+
+    def recording(self, audio: Audio) -> None: ...
+
+    def listener(self) -> Listener: ...
+
+    def spoken(self, speech: SpeechEnded) -> None: ...
+
+
+def _hearing(options: argparse.Namespace, model: Path) -> Hearing:
+    return _Answers(options, model) if options.expect else _Commands(options, model)
+
+
+class _Commands:
+    def __init__(self, options: argparse.Namespace, model: Path) -> None:
+        from nl2robot.hearing import Ear
+
+        self._options = options
+        knowledge = Knowledge(names_of(options), routines=open_routines())
+        self._ear = Ear(model, knowledge, options.lang)
+        for missing in self._ear.deaf_to():
+            print(missing.message, file=sys.stderr)
+
+    def recording(self, audio: Audio) -> None:
+        self._print(self._ear.hear(audio))
+
+    def listener(self) -> Listener:
+        from nl2robot.speech.listening import COMMANDS
+
+        return self._ear.listener(replace(COMMANDS, patience=PATIENCE))
+
+    def spoken(self, speech: SpeechEnded) -> None:
+        assert speech.heard is not None
+        self._print(self._ear.chosen(speech.heard))
+
+    def _print(self, heard: Heard) -> None:
+        translation = self._ear.translate(heard, self._options.planner)
+        if self._options.json:
             data = {**msgspec.to_builtins(translation), "heard": heard.text}
             print(json.dumps(data, ensure_ascii=False), flush=True)
         else:
             print(f'heard: "{heard.text}" ({heard.confidence:.0%})')
-            print(translation.readable(options.lang), flush=True)
-
-    return _each(options.wav, command)
+            print(translation.readable(self._options.lang), flush=True)
 
 
-def _answers(options: argparse.Namespace, model: Path) -> int:
-    from nl2robot.speech.answers import expect, hear_answer
-    from nl2robot.speech.audio import read
-    from nl2robot.speech.recogniser import Recogniser
+class _Answers:
+    def __init__(self, options: argparse.Namespace, model: Path) -> None:
+        from nl2robot.speech.answers import expect
+        from nl2robot.speech.recogniser import Recogniser
 
-    expected = expect(options.expect, options.lang)
-    recogniser = Recogniser(model, options.lang)
+        self._json = options.json
+        self._expected = expect(options.expect, options.lang)
+        self._recogniser = Recogniser(model, options.lang)
 
-    def answer(recording: Path) -> None:
-        heard = hear_answer(recogniser, read(recording), expected)
-        if options.json:
+    def recording(self, audio: Audio) -> None:
+        from nl2robot.speech.answers import Answer, hear_answer
+        from nl2robot.speech.listening import has_speech
+
+        if has_speech(audio):
+            heard = hear_answer(self._recogniser, audio, self._expected)
+        else:
+            heard = Answer("", None, 0.0)
+        if self._json:
             print(json.dumps(msgspec.to_builtins(heard), ensure_ascii=False), flush=True)
         else:
             said = f'"{heard.heard}"' if heard.heard else "nothing"
-            print(f"heard: {said}, answer: {heard.answer or '-'} ({heard.confidence:.0%})")
+            answer = heard.answer or "-"
+            print(f"heard: {said}, answer: {answer} ({heard.confidence:.0%})", flush=True)
 
-    return _each(options.wav, answer)
+    def listener(self) -> Listener:
+        from nl2robot.speech.listening import ANSWERS, Listener
+
+        # So short a speech is decoded as a whole when it has ended.
+        return Listener(manner=replace(ANSWERS, patience=PATIENCE))
+
+    def spoken(self, speech: SpeechEnded) -> None:
+        self.recording(speech.audio)
 
 
-def _each(files: list[str], hear: Callable[[Path], None]) -> int:
+def recordings(files: Sequence[str], hearing: Hearing) -> int:
     """Hear every file; one that cannot be used does not keep the others from being heard."""
+    from nl2robot.speech.audio import read
+
     status = ExitStatus.OK
     for file in files:
         try:
-            hear(Path(file))
+            hearing.recording(read(file))
         except UserError as error:
             print(error, file=sys.stderr)
             status = error.status
     return status
+
+
+def live(blocks: Iterable[Samples], hearing: Hearing, output: TextIO, *, quiet: bool) -> int:
+    """Hear what is said until Ctrl-C, or until the sound ends. Partial words are shown where they
+    can be overwritten, unless `quiet`. Raises `AudioError`."""
+    from nl2robot.speech.listening import NothingHeard, PartialText, SpeechEnded, TooLong
+
+    listener = hearing.listener()
+    line = _Line(output, shown=output.isatty() and not quiet)
+    complained = False
+    print("Listening. Speak; Ctrl-C ends.", file=sys.stderr, flush=True)
+    try:
+        for event in _events(listener, blocks):
+            if isinstance(event, PartialText):
+                line.show(event.text)
+                continue
+            line.clear()
+            match event:
+                case SpeechEnded():
+                    complained = False
+                    try:
+                        hearing.spoken(event)
+                    except UserError as error:  # the next one may be heard
+                        print(error, file=sys.stderr)
+                case TooLong():
+                    print("This was too long for a command. Say less at once.", file=sys.stderr)
+                case NothingHeard(seconds) if not complained:
+                    complained = True
+                    print(
+                        f"Nothing was heard for {seconds:.0f} seconds. "
+                        "Check that the microphone is on, and speak towards it.",
+                        file=sys.stderr,
+                    )
+    except KeyboardInterrupt:
+        pass
+    finally:
+        line.clear()
+    return ExitStatus.OK
+
+
+def _events(listener: Listener, blocks: Iterable[Samples]) -> Iterator[Event]:
+    for block in blocks:
+        yield from listener.feed(block)
+    yield from listener.finish()
+
+
+class _Line:
+    """A line of a terminal that is written again and again."""
+
+    def __init__(self, output: TextIO, *, shown: bool) -> None:
+        self._output = output
+        self._shown = shown
+
+    def show(self, text: str) -> None:
+        if self._shown:
+            width = shutil.get_terminal_size().columns - 3
+            end = text if len(text) <= width else "…" + text[1 - width :]  # what was said last
+            self._write(f"\r\x1b[K… {end}")
+
+    def clear(self) -> None:
+        if self._shown:
+            self._write("\r\x1b[K")
+
+    def _write(self, text: str) -> None:
+        self._output.write(text)
+        self._output.flush()

@@ -1,0 +1,118 @@
+"""Recognition while somebody speaks, so that the text is there when the speech ends.
+
+    streaming = Streaming(recogniser, phrases)
+    streaming.begin()
+    for samples in blocks:
+        partial = streaming.accept(samples)  # what it sounds like so far
+    heard = streaming.end(audio)             # `audio` is all that was accepted
+
+The model wants speech of a certain loudness, and of live speech it is not known beforehand. The
+first words, and what was said before, tell it well enough; where they were far out, all is decoded
+again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from nl2robot.speech.audio import RATE, Audio, Samples
+from nl2robot.speech.recogniser import WORST_FIT, Decoding, Heard, Recogniser, gain_for
+
+FIRST = 0.6  # seconds of sound that tell the loudness of the rest; some of it is before the speech
+MEMORY = 0.5  # what the loudness of the last speech counts for that of the next
+QUIETEST = 0.25  # of the loudness it should have been given; what was quieter is decoded again
+
+
+class Streaming:
+    """Hears one utterance after the other; for one thread."""
+
+    def __init__(
+        self,
+        recogniser: Recogniser,
+        phrases: Sequence[str] | None = None,
+        *,
+        worst_fit: float = WORST_FIT,
+    ) -> None:
+        """`phrases` and `worst_fit` as for `Recogniser.recognise`."""
+        self._recogniser = recogniser
+        self._loudness = _Loudness()
+        self._first: list[Samples] = []  # until there is enough of it
+        self._decoding: Decoding | None = None
+        self.expect(phrases, worst_fit=worst_fit)
+
+    def expect(self, phrases: Sequence[str] | None, *, worst_fit: float = WORST_FIT) -> None:
+        """What may be said from the next `begin` on."""
+        self._phrases = phrases
+        self._worst_fit = worst_fit
+
+    def begin(self) -> None:
+        """Somebody begins to speak; speech that was not ended is forgotten."""
+        self._first = []
+        self._decoding = None
+        self._loudness.begin()
+
+    def accept(self, samples: Samples) -> str:
+        """Goes on with a block of any length; returns the words so far. Raises SpeechError if the
+        model knows none of the phrases."""
+        if self._decoding is None:
+            self._first.append(samples)
+            if sum(map(len, self._first)) < FIRST * RATE:
+                return ""
+            samples = np.concatenate(self._first)
+            self._first = []
+            gain = self._loudness.guess(samples)
+            self._decoding = self._recogniser.open(
+                self._phrases, worst_fit=self._worst_fit, gain=gain
+            )
+        self._decoding.feed(self._loudness.held_back(samples))
+        return self._decoding.so_far
+
+    def end(self, audio: Audio) -> Heard:
+        """What was said in all that was accepted since `begin`, which is `audio`."""
+        decoding, self._decoding = self._decoding, None
+        if decoding is None or self._loudness.was_far_out:
+            self._loudness.guess(audio.samples)
+            return self._recogniser.recognise(audio, self._phrases, worst_fit=self._worst_fit)
+        return decoding.finish()
+
+
+class _Loudness:
+    """How loud somebody speaks, guessed before it is known."""
+
+    def __init__(self) -> None:
+        self._before = 0  # the peak of the last speech
+        self._peak = 0
+        self._gain = 1.0
+
+    def begin(self) -> None:
+        self._before, self._peak = self._peak or self._before, 0
+
+    def guess(self, first: Samples) -> float:
+        """The gain for a speech that begins like this."""
+        self._peak = max(self._peak, _peak(first))
+        self._gain = _gain(max(self._peak, round(MEMORY * self._before)))
+        return self._gain
+
+    def held_back(self, samples: Samples) -> Samples:
+        """The next samples, which will be multiplied with the guessed gain; where the speech became
+        so loud that they would be clipped, less loud from then on."""
+        self._peak = max(self._peak, _peak(samples))
+        highest = 32767 / self._gain
+        if self._peak <= highest:
+            return samples
+        return (samples * np.float32(highest / self._peak)).astype(np.int16)
+
+    @property
+    def was_far_out(self) -> bool:
+        """Whether the speech was much quieter than was guessed."""
+        return self._gain < QUIETEST * _gain(self._peak)
+
+
+def _peak(samples: Samples) -> int:
+    return int(np.abs(samples.astype(np.int32)).max()) if len(samples) else 0
+
+
+def _gain(peak: int) -> float:
+    return gain_for(np.array([min(peak, 32767)], np.int16))
