@@ -25,6 +25,16 @@ def pictures_folder() -> Path:
     return made(data_folder() / "pictures")
 
 
+def cache_folder() -> Path:
+    """For what can be made again at any time: in `$NL2ROBOT_HOME`, else the user's cache folder of
+    this system; need not be there."""
+    if os.environ.get("NL2ROBOT_HOME"):
+        return _data_folder() / "cache"
+    from platformdirs import user_cache_path
+
+    return user_cache_path("nl2robot")
+
+
 def _data_folder() -> Path:
     chosen = os.environ.get("NL2ROBOT_HOME")
     if chosen:

@@ -76,7 +76,8 @@ def aloud(
             tell=tell,
         )
         speakers.append(speaker)
-        loudspeaker = RobotVoice(speaker) if wishes.speak else None
+        heard = wishes.speak and type(output) is not Nowhere
+        loudspeaker = RobotVoice(speaker) if heard else None
         return Sound(loudspeaker, voices=_people(wishes, world, speaker, clock))
 
     try:

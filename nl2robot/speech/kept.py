@@ -21,6 +21,7 @@ from typing import Final
 
 import numpy as np
 
+from nl2robot.paths import cache_folder
 from nl2robot.speech.sentences import pieces
 from nl2robot.speech.voices import Sound, Voice, joined, never
 
@@ -32,10 +33,8 @@ _HEAD: Final = _DIGEST + 4  # and the rate
 
 
 def folder() -> Path:
-    """The folder for them in the user's cache; it need not be there."""
-    from platformdirs import user_cache_path
-
-    return user_cache_path("nl2robot") / "spoken"
+    """The folder for them; it need not be there."""
+    return cache_folder() / "spoken"
 
 
 class KeptSounds:

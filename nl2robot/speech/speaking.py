@@ -31,9 +31,11 @@ ECHO: Final = 0.25
 """Seconds for which a room still sounds of what the robot said."""
 MOSTLY: Final = 0.5
 """The share of what was heard that lies in the robot's own speech before it may be that."""
-ALIKE: Final = 70.0
-"""How like the spoken words (of 100) the robot's own words sound to its recogniser, at the least;
-measured, see `hears_itself`."""
+ALIKE: Final = 60.0
+"""How much of what was heard (of 100) is found in what was spoken if it is that. In a furnished
+room, 20 dB above a corridor's noise, 15 of 16 sentences came back to the robot as like as that; of
+10 things that people said, 5 were as like as that to one of its 8. In worse rooms its own words
+come back so garbled that they are like nothing."""
 _REMEMBERED: Final = 100  # texts
 
 
@@ -164,10 +166,10 @@ class Speaker:
 
     def hears_itself(self, began: float, ended: float, heard: str = "") -> bool:
         """Whether what a microphone heard from `began` to `ended` is the robot itself: it was
-        speaking most of that time and, where words were made out, they are like those it spoke.
+        speaking most of that time and, if `heard` is given, those words are like its own.
 
-        Words that are not are somebody's who speaks in between. A "stop" is to be obeyed whoever
-        said it: do not ask here about that.
+        Give words only where they were understood, without doubt: an echo makes anything of the
+        robot's own. A "stop" is to be obeyed whoever said it: do not ask here about that.
         """
         spoken = [said for said in self.spoken_since(began - ECHO) if said.began <= ended]
         within = sum(
