@@ -14,7 +14,7 @@ import statistics
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -38,6 +38,7 @@ Hear = Callable[[Samples], list[Detection]]
 
 SNRS: Final = (None, 20, 10, 5, 0)  # dB; None: no noise
 KINDS: Final = ("talk", "babble", "corridor", "corridor with talk")
+SAYINGS: Final = 200  # of which the babble is mixed
 IN_TIME: Final = (-0.2, 1.2)
 """Seconds from a word's end within which its detection counts."""
 
@@ -59,6 +60,10 @@ class Stage:
         avoid = frozenset(w for word in (*words.stop, words.hot) for w in words_of(word))
         self._speech = Speech(words.language, Half.EVALUATION, self._rng, avoid)
 
+    @cached_property
+    def _sayings(self) -> list[Signal]:
+        return [self._speech.say(self._speech.remark()) for _ in range(SAYINGS)]
+
     def said(
         self, word: str, snr: float | None, noise: Signal, *, neural: bool | None = None
     ) -> Said:
@@ -78,8 +83,8 @@ class Stage:
         if kind == "corridor":
             return scenes.corridor(seconds, self._rng)
         if kind == "babble":
-            voices = [self._speech.say(self._speech.remark()) for _ in range(24)]
-            return scenes.babble(voices, seconds, self._rng)
+            voices = self._rng.choice(SAYINGS, int(self._rng.integers(12, 33)), replace=False)
+            return scenes.babble([self._sayings[i] for i in voices], seconds, self._rng)
         spoken = np.concatenate(list(talk(self._speech, seconds, lambda: None)))
         if kind == "corridor with talk":
             length = min(len(spoken), int(seconds * RATE))

@@ -49,6 +49,11 @@ class Half(enum.Enum):
     EVALUATION = "evaluation"
 
 
+NEURAL: Final = {Half.TRAINING: 0.1, Half.EVALUATION: 0.2}
+"""The share of a neural voice where there is one."""
+OTHER_THROATS: Final = ((0.86, 0.95), (1.06, 1.18))
+
+
 @dataclass
 class Speech:
     """People of one half who say things in a language."""
@@ -71,10 +76,10 @@ class Speech:
 
     def _speaker(self, neural: bool | None) -> tuple[Voice, float]:
         """A voice, and by what factor the whole of it is higher: another throat."""
-        if self.half is Half.EVALUATION:
-            found = [each for each in voices(self.language) if each.name.startswith("piper")]
-            if found and (neural or (neural is None and self.rng.random() < 0.2)):
-                return found[0], 1.0
+        found = [each for each in voices(self.language) if each.name.startswith("piper")]
+        if found and (neural or (neural is None and self.rng.random() < NEURAL[self.half])):
+            # There is one neural voice: those who train are higher or lower than those who test.
+            return found[0], 1.0 if self.half is Half.EVALUATION else self._far_from_one()
         names = SPEAKERS[self.half.value].split()
         dialects = DIALECTS.get(self.language, (self.language,))
         voice = espeak(
@@ -83,6 +88,10 @@ class Speech:
         )
         warp = self.rng.uniform(0.87, 1.18) if self.half is Half.TRAINING else 1.0
         return voice, float(warp)
+
+    def _far_from_one(self) -> float:
+        low, high = OTHER_THROATS[int(self.rng.integers(len(OTHER_THROATS)))]
+        return float(self.rng.uniform(low, high))
 
     def remark(self) -> str:
         """Something that says none of the words to avoid."""
@@ -139,32 +148,36 @@ def _prose() -> list[str]:
 
 @dataclass
 class Places:
-    """Where it is said: noises and rooms of one half, made once."""
+    """Where it is said: noises of one half, made once; and what others say there."""
 
     noises: dict[str, list[Signal]]
+    remarks: list[Signal]
     rng: np.random.Generator
 
     def noise(self, kind: str) -> Signal:
         beds = self.noises[kind]
         return beds[int(self.rng.integers(len(beds)))]
 
+    def remark(self) -> Signal:
+        return self.remarks[int(self.rng.integers(len(self.remarks)))]
+
+    def babble(self, seconds: float) -> Signal:
+        """Three to eight people, each with some things to say."""
+        count = int(self.rng.integers(3, 9))
+        chosen = self.rng.choice(len(self.remarks), count * 4, replace=False)
+        return scenes.babble([self.remarks[i] for i in chosen], seconds, self.rng)
+
 
 def places(speech: Sequence[Speech], rng: np.random.Generator, minutes: int = 4) -> Places:
     """Babble of these people, corridors and plain noise."""
-    pool = [each.say(each.remark()) for each in speech for _ in range(60 // len(speech))]
-    return Places(
-        {
-            "babble": [scenes.babble(_some(pool, rng), 60, rng) for _ in range(minutes)],
-            "corridor": [scenes.corridor(60, rng) for _ in range(minutes)],
-            "noise": [_plain(60, rng) for _ in range(minutes)],
-        },
-        rng,
-    )
-
-
-def _some(pool: Sequence[Signal], rng: np.random.Generator) -> list[Signal]:
-    count = int(rng.integers(3, 9))
-    return [pool[int(i)] for i in rng.choice(len(pool), count * 4, replace=False)]
+    remarks = [each.say(each.remark()) for each in speech for _ in range(300 // len(speech))]
+    where = Places({}, remarks, rng)
+    where.noises = {
+        "babble": [where.babble(60) for _ in range(minutes)],
+        "corridor": [scenes.corridor(60, rng) for _ in range(minutes)],
+        "noise": [_plain(60, rng) for _ in range(minutes)],
+    }
+    return where
 
 
 def _plain(seconds: float, rng: np.random.Generator) -> Signal:

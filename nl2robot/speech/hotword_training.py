@@ -13,7 +13,9 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, Final
 
@@ -36,13 +38,16 @@ from nl2robot.speech.hotword_corpus import (
     words_of,
 )
 from nl2robot.speech.hotword_head import SHIPPED, Head, forward, probability
-from nl2robot.speech.hotword_words import WORDS, Words
+from nl2robot.speech.hotword_words import WORDS
 from nl2robot.speech.scenes import Signal
 
 SCENES: Final = 1200  # in which a word is said
-MINUTES: Final = 60  # of talk without it, per language it is trained in
-HIDDEN: Final = 40
-EPOCHS: Final = 24
+SAYINGS: Final = 400  # of it; each is heard in several scenes
+TALK: Final = 20  # minutes without any of the words, in each language
+BABBLE: Final = 40  # minutes, with the people of each language
+NEAR: Final = 8  # minutes, with what sounds like a word
+HIDDEN: Final = 48
+EPOCHS: Final = 14
 BATCH: Final = 1024
 RATE_OF_LEARNING: Final = 1.5e-3
 DECAY: Final = 1e-4
@@ -54,6 +59,9 @@ STOP_STEPS: Final = 5
 # called its absence.
 HOT_WINDOW: Final = 0.32
 STOP_WINDOW: Final = 0.24
+HOT_THRESHOLD: Final = 0.5
+STOP_THRESHOLD: Final = 0.5
+PROCESSES: Final = 2
 BLURRED: Final = (-0.14, 0.8)
 
 
@@ -103,18 +111,15 @@ class Collector:
 _LONGEST: Final = max(HOT_STEPS, STOP_STEPS)
 
 
-def word_scene(
-    word: str, speech: Speech, where: Places, rng: np.random.Generator
-) -> tuple[Signal, float]:
+def word_scene(said: Signal, where: Places, rng: np.random.Generator) -> tuple[Signal, float]:
     """The word, with something before and after it, somewhere. And where it ends, in seconds."""
-    said = speech.say(word + str(rng.choice(["", "!", ".", ",", "?"])))
     lead = silence(_LONGEST * STEP_SECONDS + float(rng.uniform(0.1, 0.6)))
     if rng.random() < 0.3:  # goes on from talk
-        before = speech.say(speech.remark())[-int(1.2 * RATE) :]
+        before = where.remark()[-int(1.2 * RATE) :]
         lead = np.concatenate([lead, before, silence(float(rng.uniform(0.08, 0.5)))])
     tail = silence(float(rng.uniform(0.6, 1.0)))
-    if rng.random() < 0.5:  # and goes on at once with what is wanted
-        after = speech.say(speech.remark())[: int(0.9 * RATE)]
+    if rng.random() < 0.4:  # and goes on at once with what is wanted
+        after = where.remark()[: int(0.9 * RATE)]
         tail = np.concatenate([silence(float(rng.uniform(0.02, 0.4))), after])
     sound = np.concatenate([lead, said / max(scenes.level(said), 1e-6) * 0.1, tail])
     return somewhere(sound, where, rng), (len(lead) + len(said)) / RATE
@@ -125,9 +130,9 @@ def somewhere(sound: Signal, where: Places, rng: np.random.Generator) -> Signal:
     if rng.random() < 0.5:
         echoing = scenes.echoing(sound, scenes.echo(rng, float(rng.uniform(0.15, 0.7))))
         sound = echoing[: len(sound)]
-    kind = str(rng.choice(["babble", "corridor", "noise", "none"], p=[0.4, 0.25, 0.2, 0.15]))
+    kind = str(rng.choice(["babble", "corridor", "noise", "none"], p=[0.45, 0.25, 0.15, 0.15]))
     if kind != "none":
-        sound = scenes.at_snr(sound, where.noise(kind), float(rng.uniform(-2, 25)), rng)
+        sound = scenes.at_snr(sound, where.noise(kind), float(rng.uniform(-1, 22)), rng)
     peak = max(float(np.abs(sound).max()), 1e-6)
     return np.asarray(sound * (10 ** (float(rng.uniform(-28, -0.5)) / 20) / peak), np.float32)
 
@@ -151,13 +156,17 @@ def without(
     return collector
 
 
-def noises(where: Places) -> Collector:
-    """Only noise, the babble of other people included."""
+def noises(where: Places, minutes: int, rng: np.random.Generator) -> Collector:
+    """Only noise: above all many people who talk at once, in whom anything may be heard."""
     collector = Collector()
-    for beds in where.noises.values():
-        for bed in beds:
-            for gain in (1.0, 0.1, 0.02):
-                collector.add(bed * np.float32(gain))
+    for kind in ("corridor", "noise"):
+        for bed in where.noises[kind]:
+            collector.add(bed * np.float32(rng.uniform(0.02, 1)))
+    for _ in range(minutes):
+        babble = where.babble(60)
+        if rng.random() < 0.3:
+            babble = scenes.echoing(babble, scenes.echo(rng, float(rng.uniform(0.15, 0.7))))
+        collector.add(babble * np.float32(10 ** rng.uniform(-1.4, 0)))
     collector.add(silence(10))
     return collector
 
@@ -183,14 +192,13 @@ def fit(
     hard = negative
     step = 0
     for epoch in range(epochs):
-        share = rng.permutation(negative)[: len(negative) // 2]
-        order = np.concatenate([share, rng.choice(hard, len(share) // 2), np.tile(positive, 4)])
+        share = rng.permutation(negative)[: len(negative) // 3]
+        order = np.concatenate([share, rng.choice(hard, len(share)), np.tile(positive, 4)])
         order = rng.permutation(order)
         speed = RATE_OF_LEARNING * 0.5 * (1 + np.cos(np.pi * epoch / epochs))
         for at in range(0, len(order), BATCH):
             chosen = order[at : at + BATCH]
             inputs = flat[examples.ends[chosen][:, None] + offsets].reshape(len(chosen), size)
-            inputs = inputs * (rng.random(inputs.shape, np.float32) > 0.1)
             layer, scores = forward(tuple(weights), inputs)
             error = (probability(scores) - examples.labels[chosen])[:, None] / len(chosen)
             back = (error @ weights[2].T) * (layer > 0)
@@ -203,7 +211,7 @@ def fit(
                 weights[i] -= speed * (
                     ahead / (np.sqrt(second[i] / (1 - 0.999**step)) + 1e-8) + DECAY * weights[i]
                 )
-        if epoch % 4 == 3:
+        if epoch % 3 == 2:
             scored = np.concatenate(
                 [
                     forward(
@@ -228,39 +236,61 @@ def both(first: Examples, second: Examples) -> Examples:
     )
 
 
-def corpus(words: Words, seed: int, minutes: float) -> tuple[Speech, Places, Examples]:
-    """What every head of a language learns not to be its word."""
-    rng = seeded(seed, words.language, "corpus")
-    avoid = frozenset(w for word in (*words.stop, words.hot) for w in words_of(word))
-    speech = Speech(words.language, Half.TRAINING, rng, avoid)
-    others = [Speech(code, Half.TRAINING, rng, avoid) for code in WORDS if code != words.language]
-    where = places([speech, *others], rng)
-    talks = [without(speech, where, (), minutes * 0.6, rng).examples()]
-    talks += [without(each, where, (), minutes * 0.2, rng).examples() for each in others]
-    talks.append(noises(where).examples())
-    together = talks[0]
-    for each in talks[1:]:
-        together = both(together, each)
-    return speech, where, together
+def _corpus(code: str, seed: int) -> tuple[Places, Examples]:
+    """What every head learns not to be its word, in one language."""
+    speech = Speech(code, Half.TRAINING, seeded(seed, code, "corpus"), everything())
+    where = places([speech], speech.rng)
+    talked = without(speech, where, (), TALK, speech.rng).examples()
+    return where, both(talked, noises(where, BABBLE, speech.rng).examples())
 
 
-def train(
-    word: str, words: Words, common: tuple[Speech, Places, Examples], seed: int, count: int
-) -> Head:
-    """The head of one word."""
-    speech, where, talked = common
-    rng = seeded(seed, words.language, word)
-    speech = Speech(speech.language, speech.half, rng, speech.avoid)
-    hot = word not in words.stop
-    collector = Collector()
-    for _ in range(count):
-        sound, end = word_scene(word, speech, where, rng)
-        collector.add(sound, end, HOT_WINDOW if hot else STOP_WINDOW)
-    near = [*words.near.get(word, ()), *((part for part in word.split()) if hot else ())]
-    close = without(speech, where, near, MINUTES / 3, rng)
-    examples = both(both(collector.examples(), close.examples()), talked)
-    weights = fit(examples, HOT_STEPS if hot else STOP_STEPS, rng)
-    return Head(word, 0.5, weights)
+def everything() -> frozenset[str]:
+    """All words of which any is listened for."""
+    said = (word for each in WORDS.values() for word in (*each.stop, each.hot))
+    return frozenset(part for word in said for part in words_of(word))
+
+
+_corpora: Final[dict[str, tuple[Places, Examples]]] = {}
+
+
+@dataclass(frozen=True)
+class Task:
+    """A head to be trained."""
+
+    language: str
+    word: str
+    stop: bool
+    near: tuple[str, ...]
+    folder: Path
+    seed: int
+
+    def done(self) -> Path:
+        rng = seeded(self.seed, self.language, self.word)
+        speech = Speech(self.language, Half.TRAINING, rng, everything())
+        where, talked = _corpora[self.language]
+        for code in sorted(_corpora.keys() - {self.language}):
+            talked = both(talked, _corpora[code][1])
+        marks = ["", "!", ".", ",", "?"]
+        sayings = [speech.say(self.word + str(rng.choice(marks))) for _ in range(SAYINGS)]
+        collector = Collector()
+        for i in range(SCENES):
+            sound, end = word_scene(sayings[i % len(sayings)], where, rng)
+            collector.add(sound, end, STOP_WINDOW if self.stop else HOT_WINDOW)
+        close = without(speech, where, self.near, NEAR, rng).examples()
+        examples = both(both(collector.examples(), close), talked)
+        weights = fit(examples, STOP_STEPS if self.stop else HOT_STEPS, rng)
+        threshold = STOP_THRESHOLD if self.stop else HOT_THRESHOLD
+        return Head(self.word, threshold, weights).save(made(self.folder))
+
+
+def tasks(code: str, seed: int) -> list[Task]:
+    words = WORDS[code]
+    folder = SHIPPED / code
+    near = {word: tuple(words.near.get(word, ())) for word in (words.hot, *words.stop)}
+    return [
+        Task(code, words.hot, False, (*near[words.hot], *words.hot.split()), folder, seed),
+        *(Task(code, word, True, near[word], folder, seed) for word in words.stop),
+    ]
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -269,17 +299,22 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--word", help="one word of your own, into your data folder")
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args(arguments)
-    for code in [options.lang] if options.lang else ["en"] if options.word else list(WORDS):
-        words = WORDS[code]
-        if options.word:
-            words = Words(code, options.word, (), (), {})
-        folder: Path = data_file("hotwords") if options.word else SHIPPED
-        began = time.monotonic()
-        common = corpus(words, options.seed, MINUTES)
-        print(f"{code}: {len(common[2].ends)} examples of talk, {time.monotonic() - began:.0f} s")
-        for word in (words.hot, *words.stop):
-            head = train(word, words, common, options.seed, SCENES)
-            print(f"{head.save(made(folder / code))}, {time.monotonic() - began:.0f} s", flush=True)
+    code = options.lang or "en"
+    todo = [task for each in WORDS for task in tasks(each, options.seed)]
+    todo = [task for task in todo if options.lang in (None, task.language)]
+    if options.word:
+        near = tuple(options.word.split()) if " " in options.word.strip() else ()
+        folder = data_file("hotwords") / code
+        todo = [Task(code, options.word, False, near, folder, options.seed)]
+    began = time.monotonic()
+    # Processes, for espeak-ng keeps one voice at a time; those of the heads share the corpus.
+    with ProcessPoolExecutor(PROCESSES, get_context("fork")) as pool:
+        made_of = pool.map(_corpus, WORDS, [options.seed] * len(WORDS))
+        _corpora.update(zip(WORDS, made_of, strict=True))
+    print(f"corpus: {time.monotonic() - began:.0f} s", flush=True)
+    with ProcessPoolExecutor(PROCESSES, get_context("fork")) as pool:
+        for path in pool.map(Task.done, todo):
+            print(f"{path}: {time.monotonic() - began:.0f} s", flush=True)
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ from nl2robot.errors import UserError
 from nl2robot.speech.audio import RATE, Audio, Samples
 from nl2robot.speech.hotword import HELD, Detection
 from nl2robot.speech.hotword_words import WORDS
-from nl2robot.speech.recogniser import Recogniser
+from nl2robot.speech.recogniser import PUNCTUATION, Recogniser
 
 CHUNK: Final = 512  # samples, as the voice detector takes them
 SPEAKS: Final = 0.35  # probability of speech above which somebody speaks
@@ -49,14 +49,15 @@ class Spotter:
         self.word, self._recogniser, self._worst_fit = word, recogniser, worst_fit
         self._second_stage = second_stage
         unknown = recogniser.unknown_words([word])
-        if unknown or not word.strip():
+        if unknown or not word.strip(PUNCTUATION + " "):
             what = f"the word “{unknown[0]}”" if unknown else "an empty hot word"
             train = f'--lang {recogniser.language} --word "{word}"'
             raise UserError(
                 f"The speech model does not know {what} and will never hear it. Choose another hot"
                 f" word, or train one: python -m nl2robot.speech.hotword_training {train}"
             )
-        spelling = [part for each in word.split() for part in recogniser.spelling(each) or ()]
+        spoken = [each for each in word.split() if each.strip(PUNCTUATION)]
+        spelling = [part for each in spoken for part in recogniser.spelling(each) or ()]
         self._spelling, self._spoken = spelling, " ".join(spelling)
         around = [w for w in WORDS[recogniser.language].filler if recogniser.knows(w)]
         self._around = [w for w in around if w not in spelling]
