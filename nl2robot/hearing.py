@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Container, Sequence
 from pathlib import Path
 
 import msgspec
+import numpy as np
 
 from grammar.samples import samples
 from grammar.vocabulary import vocabulary
 from nl2robot.knowledge import Knowledge
-from nl2robot.speech.audio import Audio, read
+from nl2robot.speech.audio import RATE, Audio, read
 from nl2robot.speech.listening import COMMANDS, Listener, Manner, has_speech
 from nl2robot.speech.recogniser import Heard, Recogniser, choose
 from nl2robot.speech.streaming import Streaming
 from nl2robot.speech.vocabulary import Missing, missing_words
-from nl2robot.translation import Planner, Translation, translate
+from nl2robot.translation import Planner, Talk, Translation, translate
 
 
 class Ear:
@@ -39,13 +41,20 @@ class Ear:
             return Heard("", 0.0, (), False, None, (), audio.seconds, 0.0)
         return self.chosen(self._recogniser.recognise(audio, self._phrases))
 
-    def listener(self, manner: Manner = COMMANDS) -> Listener:
-        """Hears live what `hear` hears of recordings, but for the choice: see `chosen`."""
-        return Listener(Streaming(self._recogniser, self._phrases), manner)
+    def listener(self, manner: Manner = COMMANDS, also: Sequence[str] = ()) -> Listener:
+        """Hears live what `hear` hears of recordings, but for the choice: see `chosen`. `also` is
+        what may be said besides commands."""
+        return Listener(Streaming(self._recogniser, [*self._phrases, *also]), manner)
 
-    def chosen(self, heard: Heard) -> Heard:
-        """The reading that is understood."""
-        return choose(heard, self._is_understood)
+    def get_ready(self, also: Sequence[str] = ()) -> None:
+        """Make the first command as fast as those after it: decoders are slow until they were used
+        once."""
+        noise = np.random.default_rng(0).normal(0, 500, RATE // 2).astype(np.int16)
+        self._recogniser.recognise(Audio(noise), [*self._phrases, *also])
+
+    def chosen(self, heard: Heard, also: Container[str] = ()) -> Heard:
+        """The reading that is understood, or is one of `also`."""
+        return choose(heard, lambda text: text in also or self._is_understood(text))
 
     def _is_understood(self, text: str) -> bool:
         translation = self._translate(text)
@@ -57,9 +66,11 @@ class Ear:
         names = [item.name for items in (world.places, world.people) for item in items]
         return missing_words(self._recogniser, names)
 
-    def translate(self, heard: Heard, planner: Planner = "auto") -> Translation:
+    def translate(
+        self, heard: Heard, planner: Planner = "auto", talk: Talk | None = None
+    ) -> Translation:
         """The program for what was heard; nothing, and a question back, if that is in doubt."""
-        translation = self._translate(heard.text, planner)
+        translation = self._translate(heard.text, planner, None if heard.doubtful else talk)
         if not heard.text:
             return msgspec.structs.replace(
                 translation, message="Nothing was heard. Please say it again, a little louder."
@@ -79,5 +90,7 @@ class Ear:
             suggestions=(heard.text,),
         )
 
-    def _translate(self, text: str, planner: Planner = "auto") -> Translation:
-        return translate(text, self.knowledge, self.language, planner)
+    def _translate(
+        self, text: str, planner: Planner = "auto", talk: Talk | None = None
+    ) -> Translation:
+        return translate(text, self.knowledge, self.language, planner, talk)

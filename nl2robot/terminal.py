@@ -241,6 +241,12 @@ class Terminal:
         return table
 
 
+def answers(language: str) -> frozenset[str]:
+    """What may be answered when a program is to be approved, in words."""
+    ways = _words(language)["answers"].values()
+    return frozenset(way for those in ways for way in those if len(way) > 1)
+
+
 @functools.cache
 def _words(language: str) -> Mapping[str, Any]:
     """What the terminal says in a language; in English where it does not speak that."""

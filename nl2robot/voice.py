@@ -11,25 +11,30 @@ from __future__ import annotations
 
 import queue
 import threading
-from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
-from typing import Final, Protocol
-
-import numpy as np
+from dataclasses import dataclass, replace
+from typing import Final
 
 from nl2robot.errors import UserError
-from nl2robot.speech.audio import RATE, Samples
+from nl2robot.speech.audio import Samples
 from nl2robot.speech.hotword import Detector
-from nl2robot.speech.listening import Listener, NothingHeard, PartialText, SpeechEnded, TooLong
+from nl2robot.speech.listening import (
+    Listener,
+    NothingHeard,
+    PartialText,
+    SpeechBegan,
+    SpeechEnded,
+    TooLong,
+)
 from nl2robot.speech.recogniser import Heard
 
 PATIENCE: Final = 8.0
 """Seconds that somebody may think after the hot word, or after a question."""
-REACH_BACK: Final = 0.4
-"""Seconds before the hot word was reported that are heard again: who says it and goes on in one
-breath has said the beginning of the command by then. What is left of the hot word in them is
-dropped again."""
+TAIL: Final = 0.5
+"""Seconds after the hot word was reported in which its end may still sound. What begins then may
+begin with a syllable of it, which is heard as some word or other."""
+SHORTEST: Final = 0.8
+"""Seconds of what may be more than the end of the hot word."""
 
 
 @dataclass(frozen=True)
@@ -93,8 +98,8 @@ class VoiceInput:
         self._called = [tuple(words.lower().split()) for words in hot_words]
         self._says_itself = says_itself
         self._listener: Listener | None = None
-        self._last: deque[Samples] = deque()
-        self._kept = 0  # samples in it
+        self._asked = False  # it was woken by a question, not by the hot word
+        self._called_just_now = False  # the speech began right behind the hot word
         self._wanted = threading.Event()
         self._busy = threading.Event()
 
@@ -122,14 +127,13 @@ class VoiceInput:
                     yield Cried(cry.word)
         if self._wanted.is_set():
             self._wanted.clear()
+            self._asked = True
             self._listener = self._listener or self._make()
-        self._remember(samples)
         if self._listener is None:
             for heard in self._hot_word.feed(samples):
                 if self._listener is None and not self._says_itself(heard.word):
                     self._listener = self._make()
                     yield Woke(heard.word)
-                    yield from self._listen(np.concatenate(self._last))
             return
         yield from self._listen(samples)
 
@@ -137,11 +141,14 @@ class VoiceInput:
         assert self._listener is not None
         for event in self._listener.feed(samples):
             match event:
+                case SpeechBegan(at):
+                    self._called_just_now = not self._asked and at < TAIL
                 case PartialText(text):
                     yield Hears(self._without_hot_word(text))
                 case SpeechEnded(heard=Heard() as heard):
                     said = self._said(heard)
                     if said is None:  # only the hot word: the command comes behind it
+                        self._asked = True
                         continue
                     self._sleep()
                     yield said
@@ -152,11 +159,17 @@ class VoiceInput:
                     return
 
     def _said(self, heard: Heard) -> Said | None:
+        """None for no more than the end of the hot word."""
         if heard.text and not self._without_hot_word(heard.text):
             return None
-        chosen = self._choose(heard)
+        chosen = self._choose(_without_first_words(heard) if self._called_just_now else heard)
+        if self._called_just_now and heard.seconds_of_audio < SHORTEST:
+            return None
         text = self._without_hot_word(chosen.text)
-        return Said(text, chosen.doubtful, self._without_hot_word(chosen.free_text or ""))
+        perhaps = self._without_hot_word(chosen.free_text or "")
+        # Where both decoders hear the same, it is for the conversation to make sense of it: "no,
+        # the pharmacy" is no command by itself.
+        return Said(text, chosen.doubtful and perhaps != text, perhaps)
 
     def _without_hot_word(self, text: str) -> str:
         """Without what is left of the hot word at the beginning: all of it, or its last words."""
@@ -169,22 +182,19 @@ class VoiceInput:
 
     def _sleep(self) -> None:
         self._listener = None
+        self._asked = False
         self._wanted.clear()
         self._hot_word.reset()
 
-    def _remember(self, samples: Samples) -> None:
-        self._last.append(samples)
-        self._kept += len(samples)
-        while self._kept - len(self._last[0]) >= REACH_BACK * RATE:
-            self._kept -= len(self._last.popleft())
 
-
-class Keyboard(Protocol):
-    """Where lines are typed."""
-
-    def typed(self, seconds: float) -> str | None:
-        """A line that is typed within so many seconds."""
-        ...
+def _without_first_words(heard: Heard) -> Heard:
+    """With readings that leave the first word out, too, behind those that do not."""
+    shorter = [
+        replace(reading, text=reading.text.partition(" ")[2])
+        for reading in heard.readings
+        if " " in reading.text
+    ]
+    return replace(heard, readings=(*heard.readings, *shorter))
 
 
 class SpokenLines:
@@ -203,6 +213,10 @@ class SpokenLines:
     def close(self) -> None:
         """Listen no more."""
         self._closed.set()
+
+    def use(self, voice: VoiceInput) -> None:
+        """Listen in another way from now on, in another language."""
+        self._voice = voice
 
     def wake(self) -> None:
         self._voice.wake()

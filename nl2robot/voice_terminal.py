@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable, Iterable
 
 from rich.console import Console
 
 from nl2robot.errors import ExitStatus, UserError
+from nl2robot.speech.audio import Samples
 from nl2robot.terminal import Terminal
-from nl2robot.voice import Cried, Event, Hears, Said, Slept, SpokenLines, Woke
+from nl2robot.voice import Cried, Event, Hears, Said, Slept, SpokenLines, VoiceInput, Woke
 
 LOOK_EVERY = 0.05
 """Seconds between two looks at the keyboard."""
@@ -20,13 +22,35 @@ class VoiceTerminal(Terminal):
     """Takes lines from a microphone and from the keyboard, whichever comes first."""
 
     def __init__(
-        self, spoken: SpokenLines, console: Console | None = None, language: str = "en"
+        self,
+        blocks: Iterable[Samples],
+        voice_for: Callable[[str], VoiceInput],
+        language: str = "en",
+        console: Console | None = None,
     ) -> None:
-        super().__init__(console, language)
-        self._spoken = spoken
+        """`blocks` of sound come from the microphone; `voice_for` a language says how they are
+        heard, and raises `UserError` where they cannot be."""
+        self._voice_for = voice_for
+        self._spoken = SpokenLines(voice_for(language), blocks)
         self._prompt = ""
         self._deaf = False
         """The microphone is gone; the keyboard is left."""
+        super().__init__(console, language)
+        self._spoken.start()
+
+    def speak(self, language: str) -> None:
+        before = getattr(self, "language", language)
+        super().speak(language)
+        if language == before:
+            return
+        try:
+            self._spoken.use(self._voice_for(language))
+        except UserError as error:  # it can still be typed in
+            self.console.print(str(error), markup=False)
+
+    def close(self) -> None:
+        """Listen no more."""
+        self._spoken.close()
 
     def next_line(self) -> str | None:
         self._show_prompt(f"\n{self.words['you']}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import functools
+from collections.abc import Iterator
 from pathlib import Path
 
 import yaml
@@ -13,6 +14,7 @@ from nl2robot.commands.options import add_language, add_planner, add_robot, add_
 from nl2robot.commands.run import open_session
 from nl2robot.errors import ExitStatus
 from nl2robot.session import Session
+from nl2robot.terminal import Terminal
 from robot_api.errors import LostConnection, RobotError
 
 DATA = Path(__file__).parents[1] / "data" / "chat.yaml"
@@ -21,6 +23,15 @@ DATA = Path(__file__).parents[1] / "data" / "chat.yaml"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_robot(parser)
     add_sound(parser)
+    parser.add_argument(
+        "--voice",
+        nargs="?",
+        const=True,
+        metavar="FILE",
+        help="talk: at the microphone, or from a recording, after the hot word",
+    )
+    parser.add_argument("--device", metavar="NAME", help="the microphone, by a part of its name")
+    parser.add_argument("--hot-word", metavar="WORDS", help='instead of "hey robot"')
     add_language(parser)
     add_planner(parser)
 
@@ -28,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     with contextlib.suppress(ImportError):
         import readline  # noqa: F401  (arrow keys and history in input())
-    with open_session(options) as (session, _):
+    with _terminal(options) as terminal, open_session(options, terminal=terminal) as (session, _):
         session.listens = session.terminal.somebody_is_there
         session.terminal.console.print(session.terminal.words["greeting"], markup=False)
         while (line := session.next_line() or _next_line(session)) is not None:
@@ -39,6 +50,17 @@ def run(options: argparse.Namespace) -> int:
                 _answer(session, words)
     session.terminal.console.print(session.terminal.words["goodbye"])
     return ExitStatus.OK
+
+
+@contextlib.contextmanager
+def _terminal(options: argparse.Namespace) -> Iterator[Terminal]:
+    if not options.voice:
+        yield Terminal(language=options.lang)
+        return
+    from nl2robot.commands.talk import voice_terminal
+
+    with voice_terminal(options) as terminal:
+        yield terminal
 
 
 @functools.cache

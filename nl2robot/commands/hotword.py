@@ -34,12 +34,10 @@ def run(options: argparse.Namespace) -> int:
 
     ears = StopWord(options.lang) if options.stop else HotWord(options.lang, options.word)
     if options.mic:
-        from nl2robot.speech.microphone import (  # type: ignore[import-not-found,unused-ignore]
-            Microphone,
-        )
+        from nl2robot.speech.microphone import Microphone
 
-        with Microphone(device=None) as blocks:
-            return _listen(ears, blocks, options.json)
+        with Microphone() as microphone:
+            return _listen(ears, microphone.blocks(), options.json)
     from nl2robot.speech.audio import RATE, read
 
     samples = read(options.wav).samples

@@ -119,7 +119,9 @@ def add_sound(parser: argparse.ArgumentParser) -> None:
         help="the simulated people answer aloud, and the robot has to hear them",
     )
     parser.add_argument(
-        "--voice", metavar="NAME", help='the robot\'s voice: "piper", "espeak", or its full name'
+        "--robot-voice",
+        metavar="NAME",
+        help='the robot\'s voice: "piper", "espeak", or its full name',
     )
 
 
@@ -135,13 +137,13 @@ def _sound_file(given: str) -> Path:
 def sound_of(options: argparse.Namespace, world: World, language: str) -> Iterator[SoundFor | None]:
     """What `add_sound` lets people ask for; None if they did not."""
     if not (options.speak or options.voices):
-        if options.voice:
+        if options.robot_voice:
             raise UserError("A voice is chosen, but nothing is spoken. Add --speak.")
         yield None
         return
     from nl2robot.speech.aloud import Wishes, aloud
 
-    wishes = Wishes(options.speak, options.voices, options.voice, language, options.seed)
+    wishes = Wishes(options.speak, options.voices, options.robot_voice, language, options.seed)
     with aloud(wishes, world) as sound:
         yield sound
 

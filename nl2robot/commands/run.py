@@ -68,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
 
 @contextmanager
 def open_session(
-    options: argparse.Namespace, *, approve_all: bool = False
+    options: argparse.Namespace, *, approve_all: bool = False, terminal: Terminal | None = None
 ) -> Iterator[tuple[Session, Station]]:
     """Open the robot that the options name and sit down at the terminal."""
     log = open_log(options.debug)
@@ -77,7 +77,7 @@ def open_session(
         yield (
             Session(
                 Operator(robot, user_name()),
-                Terminal(language=options.lang),
+                terminal or Terminal(language=options.lang),
                 language=options.lang,
                 planner=options.planner,
                 approve_all=approve_all,

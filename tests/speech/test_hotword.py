@@ -112,9 +112,7 @@ def test_a_long_sound_has_the_embeddings_of_the_same_sound_as_it_comes() -> None
     assert embed(samples[:5]).shape == (0, 96)
 
 
-def test_a_head_of_ones_own_is_found_first(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_head_of_ones_own_is_found_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("NL2ROBOT_HOME", str(tmp_path))
     (tmp_path / "hotwords" / "en").mkdir(parents=True)
     assert load_head("en", "hey ../../pepper") is None
