@@ -48,7 +48,7 @@ def test_alice_is_asked_what_she_wants_and_answers(
     words = "go to Alice and ask whether she wants coffee or tea"
     sound = tmp_path / "dialogue.wav"
     # A robotic voice for the robot, too: this is about Alice.
-    asks = ["run", words, "--yes", "--voices", "--speak", str(sound), "--voice", "espeak"]
+    asks = ["run", words, "--yes", "--voices", "--speak", str(sound), "--robot-voice", "espeak"]
     assert cli.main(asks) == 0
     assert "→ 'coffee'" in capsys.readouterr().out
     # She says "yes" first; the robot asks again, and then she says "coffee".
@@ -64,8 +64,8 @@ def test_alice_is_asked_what_she_wants_and_answers(
         (["--voices", "--lang", "de"], "The German speech model is not installed. Run `nl2robot"),
         (["--speak", "sound.mp3"], "is no .wav file"),
         (["--speak", "/proc/no/sound.wav"], "cannot be written"),
-        (["--speak", "sound.wav", "--voice", "anna"], "There is no voice 'anna'"),
-        (["--voice", "piper"], "Add --speak"),
+        (["--speak", "sound.wav", "--robot-voice", "anna"], "There is no voice 'anna'"),
+        (["--robot-voice", "piper"], "Add --speak"),
         (["--robot", "ws://127.0.0.1:1", "--speak"], "Only a robot simulated here"),
     ],
 )

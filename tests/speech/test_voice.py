@@ -1,0 +1,222 @@
+"""A nurse talks with the robot: what she says after the hot word is a line, as if it was typed."""
+
+from __future__ import annotations
+
+import base64
+
+import numpy as np
+import pytest
+
+from nl2robot.commands.talk import voice_input
+from nl2robot.errors import UserError
+from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
+from nl2robot.speech.audio import RATE, Audio, Samples, read
+from nl2robot.speech.hotword import Detection
+from nl2robot.speech.listening import Listener, Manner
+from nl2robot.speech.recogniser import Heard, Reading
+from nl2robot.speech.voices import joined, voice
+from nl2robot.translation import Talk
+from nl2robot.voice import Cried, Hears, Said, Slept, SpokenLines, VoiceInput, Woke
+from nl2robot.voice_services import MOST_OPEN, Microphones
+from robot_api.errors import InvalidCall
+from sim.world import load_world
+from tests.speech.conftest import SHOWN
+
+FRAME = 512
+QUIET, VOICE = np.zeros(FRAME, np.int16), np.full(FRAME, 9000, np.int16)
+HOT, STOP = np.full(FRAME, 1, np.int16), np.full(FRAME, 2, np.int16)
+SECOND = RATE // FRAME
+
+
+class Hearing:
+    """A decoder that hears the same words in everything."""
+
+    def __init__(self, text: str, doubtful: bool, free: str) -> None:
+        self.heard = Heard(text, 1.0, (), doubtful, free, (Reading(text, 0.0, doubtful),), 2.0, 0.0)
+
+    def begin(self) -> None: ...
+
+    def accept(self, samples: Samples) -> str:
+        return self.heard.text
+
+    def end(self, audio: Audio) -> Heard:
+        return self.heard
+
+
+class Spots:
+    """Detects a word where the samples are marked so."""
+
+    def __init__(self, word: str, mark: int) -> None:
+        self.word, self.mark = word, mark
+
+    def feed(self, samples: Samples) -> list[Detection]:
+        return [Detection(self.word, 0.0, 1.0)] if (samples == self.mark).any() else []
+
+    def reset(self) -> None: ...
+
+
+def an_ear(text: str = "go to ward a", *, doubtful: bool = False, free: str = "", **settings):
+    def listener() -> Listener:
+        sounds = Hearing(text, doubtful, free)
+        return Listener(sounds, Manner(patience=8.0), lambda frame: float(frame.max() > 5000))
+
+    return VoiceInput(
+        listener,
+        lambda heard: heard,
+        Spots("hey robot", 1),
+        Spots("stop", 2),
+        hot_words=["hey robot"],
+        **settings,
+    )
+
+
+def happens(ear: VoiceInput, *blocks: Samples) -> list[object]:
+    return [event for block in blocks for event in ear.feed(block)]
+
+
+SPEECH = [QUIET] * SECOND + [VOICE] * SECOND + [QUIET] * SECOND
+
+
+def test_nothing_is_heard_before_the_hot_word() -> None:
+    assert happens(an_ear(), *SPEECH, *SPEECH) == []
+
+
+def test_after_the_hot_word_the_next_sentence_is_a_line() -> None:
+    ear = an_ear()
+    assert happens(ear, HOT, *SPEECH) == [
+        Woke("hey robot"),
+        Hears("go to ward a"),
+        Said("go to ward a"),
+    ]
+    assert happens(ear, *SPEECH) == []  # and then it is needed again
+
+
+def test_a_question_needs_no_hot_word_before_its_answer() -> None:
+    ear = an_ear("yes")
+    ear.wake()
+    assert happens(ear, *SPEECH)[-1] == Said("yes")
+
+
+def test_who_says_nothing_has_to_call_again() -> None:
+    ear = an_ear()
+    assert happens(ear, HOT, *[QUIET] * 9 * SECOND) == [Woke("hey robot"), Slept()]
+
+
+def test_hot_word_and_command_in_one_breath() -> None:
+    ear = an_ear("robot go to ward a")
+    assert happens(ear, HOT, *[VOICE] * SECOND, *[QUIET] * SECOND)[-1] == Said("go to ward a")
+
+
+def test_the_hot_word_alone_is_no_line() -> None:
+    ear = an_ear("hey robot")
+    assert happens(ear, HOT, *SPEECH, *SPEECH) == [Woke("hey robot"), Hears(""), Hears("")]
+
+
+def test_stop_is_obeyed_at_once_but_only_while_the_robot_is_busy() -> None:
+    ear = an_ear()
+    assert happens(ear, STOP) == []
+    ear.busy(True)
+    assert happens(ear, STOP) == [Cried("stop")]
+    ear.busy(False)
+    assert happens(ear, STOP) == []
+
+
+def test_the_robot_does_not_obey_itself() -> None:
+    ear = an_ear(says_itself={"stop", "hey robot"}.__contains__)
+    ear.busy(True)
+    assert happens(ear, STOP, HOT, *SPEECH) == []
+
+
+def test_what_may_have_been_something_else_is_asked_again() -> None:
+    ear = an_ear("go to ward a", doubtful=True, free="goats award her")
+    assert happens(ear, HOT, *SPEECH)[-1] == Said("go to ward a", True, "goats award her")
+
+
+def test_what_both_decoders_heard_is_left_to_the_conversation() -> None:
+    ear = an_ear("no the pharmacy", doubtful=True, free="no the pharmacy")
+    assert happens(ear, HOT, *SPEECH)[-1] == Said("no the pharmacy", False, "no the pharmacy")
+
+
+def test_an_unplugged_microphone_is_told_once() -> None:
+    def blocks():
+        yield HOT
+        raise UserError("The microphone was unplugged.")
+
+    lines = SpokenLines(an_ear(), blocks())
+    lines.start()
+    assert lines.next(5.0) == Woke("hey robot")
+    with pytest.raises(UserError, match="unplugged"):
+        lines.next(5.0)
+    assert lines.next(0.0) is None
+
+
+# --- with a real model ---------------------------------------------------------------------------
+
+
+def spoken(text: str) -> Samples:
+    from nl2robot.speech.audio import from_float
+
+    sound = joined(voice("en").speak(text))
+    return from_float((sound.samples / np.float32(32768))[:, None], sound.rate).samples
+
+
+@pytest.fixture(scope="session")
+def knowledge() -> Knowledge:
+    return Knowledge(load_world(DEFAULT_WORLD))
+
+
+def test_a_nurse_calls_the_robot_and_says_where_to_go(recogniser, knowledge) -> None:
+    ear = voice_input(knowledge, "en")
+    quiet = np.zeros(RATE, np.int16)
+    sound = np.concatenate(
+        [quiet, spoken("Hey robot."), quiet, spoken("Take the visitor to radiology."), quiet]
+    )
+    events = [event for at in range(0, len(sound), 1600) for event in ear.feed(sound[at:][:1600])]
+    assert events[0] == Woke("hey robot")
+    assert [event.text for event in events if isinstance(event, Said)] == [
+        "take the visitor to radiology"
+    ]
+
+
+class TestOverTheWire:
+    """A browser pushes what its microphone hears."""
+
+    @pytest.fixture
+    def microphones(self, recogniser, knowledge) -> Microphones:
+        talks: dict[str | None, Talk] = {}
+        return Microphones(lambda: knowledge, lambda name: talks.setdefault(name, Talk()))
+
+    def test_words_come_while_they_are_spoken_and_the_program_at_the_end(self, microphones) -> None:
+        sound = read(SHOWN / "pharmacy.wav").samples
+        sound = np.concatenate([sound, np.zeros(RATE, np.int16)])
+        number = microphones.open(RATE, 1, "en", None)
+        told = []
+        for at in range(0, len(sound), 1600):
+            block = base64.b64encode(sound[at : at + 1600].tobytes()).decode()
+            told += microphones.push(number, block)
+        told += microphones.close(number)
+        assert [event["what"] for event in told if event["what"] != "partial"] == ["began", "heard"]
+        assert "go to the pharmacy" in [event.get("text") for event in told]
+        translation = told[-1]["translation"]
+        assert translation["program"].startswith('robot.goto("pharmacy")')
+
+    def test_what_is_no_sound_is_refused(self, microphones) -> None:
+        number = microphones.open(48_000, 2, "en", None)
+        with pytest.raises(InvalidCall, match="base64"):
+            microphones.push(number, "no sound at all!")
+        assert microphones.push(number, base64.b64encode(b"odd").decode()) == []
+        with pytest.raises(UserError, match="samples a second"):
+            microphones.open(7, 1, "en", None)
+
+    def test_a_closed_or_forgotten_microphone_is_told(self, microphones) -> None:
+        first = microphones.open(RATE, 1, "en", None)
+        for _ in range(MOST_OPEN):
+            last = microphones.open(RATE, 1, "en", None)
+        microphones.close(last)
+        for number in (first, last, 999):
+            with pytest.raises(InvalidCall, match="is not open"):
+                microphones.push(number, "")
+
+    def test_a_language_without_a_model_is_a_sentence(self, microphones) -> None:
+        with pytest.raises(UserError, match="German speech model is not installed"):
+            microphones.open(RATE, 1, "de", None)
