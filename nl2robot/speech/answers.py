@@ -1,29 +1,43 @@
 """What people may answer to a question, and which answer they gave.
 
-    expected = expect("digits", "en")            # or "yes-no", or "radiology, pharmacy"
+    what = expected_by("How many chairs are there?", None, "en")    # "number"
+    expected = expect(what, "en")     # or "digits", "yes-no", "times", or "radiology, pharmacy"
     answer = hear_answer(recogniser, audio, expected)
 
-How people say yes and what they say around an option is data: data/answers.yaml.
+How people say yes, what they say around an option and how questions begin is data:
+data/answers.yaml.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from math import exp, log
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import yaml
 
 from nl2robot.errors import UserError
+from nl2robot.speech import digits
 from nl2robot.speech.audio import Audio
-from nl2robot.speech.recogniser import PUNCTUATION, Recogniser
+from nl2robot.speech.recogniser import PUNCTUATION, Heard, Recogniser
 from nl2robot.speech.vocabulary import number_words, spell_numbers
 
 # Free words always find something to fit so short a sound, so an answer is only doubted when they
 # fit far better: with the commands' limit, one right digit in sixteen was.
 WORST_FIT = -0.15
+
+
+UNSURE: Final = 0.6
+"""An answer of a smaller share is not taken: the robot asks whether that was it."""
+NOT_LISTED: Final = -3.0
+"""Log likelihood, next to the likeliest, of an answer that the recogniser does not even list; it
+lists what is up to 2 behind."""
+LARGEST: Final = 999
+"""Numbers are heard up to this one."""
 
 
 @dataclass(frozen=True)
@@ -33,6 +47,9 @@ class Answer:
     heard: str  # empty for silence
     answer: str | None  # as the question has it; None: nothing heard, no answer, or two at once
     confidence: float  # 0..1; 0 where there is no answer
+    # The two likeliest answers with their shares (0..1), the likelier first: what to ask about
+    # ("Was that five?") where `answer` is None. Empty where nothing like an answer was said.
+    likely: tuple[tuple[str, float], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -41,25 +58,50 @@ class Expected:
 
     phrases: tuple[str, ...]
     read: Callable[[str], str | None]
+    digits_of: str | None = None
+    """The language, where single digits are expected: those are also told by their sound alone."""
+
+
+def expected_by(question: str, options: Sequence[str] | None, language: str) -> str | list[str]:
+    """What to `expect` in answer to a question, by its options or else by its words: "number",
+    "digits", "times", "yes-no", the options, or an empty text where anything may be answered."""
+    sayings = _sayings(language)
+    if options:
+        answers = {" ".join(_words(option)) for option in options}
+        both = [{*map(str.lower, sayings[answer])} for answer in ("yes", "no")]
+        # "yes" and "no" as they stand are answers in every language, as programs are English.
+        if all(answers & ({word} | said) for word, said in zip(("yes", "no"), both, strict=True)):
+            return "yes-no" if answers <= {"yes", "no"}.union(*both) else list(options)
+        return list(options)
+    asked = " ".join(question.lower().replace("’", "'").split())
+    for what, pattern in sayings["questions"].items():
+        if re.search(pattern, asked):
+            return str(what)
+    return ""
 
 
 def expect(what: str | Sequence[str], language: str) -> Expected:
-    """`what` is "digits", "yes-no", options as "a, b, c", or a list of options.
+    """`what` is "digits", "number", "times", "yes-no", options as "a, b, c", or a list of options.
 
-    Digits may come in a row; they are answered as numerals ("407"). Raises UserError if there is
-    nothing to choose from.
+    Digits may come in a row; they are answered as numerals ("407"), as numbers are, from 0 to 999;
+    times as "3:30". Raises UserError if there is nothing to choose from.
     """
     if what == "digits":
         return _digits(language)
     sayings = _sayings(language)
     if what == "yes-no":
         return _choice({said: answer for answer in ("yes", "no") for said in sayings[answer]})
+    if what == "number":
+        return _number(language)
+    if what == "times":
+        return _choice(_times(language), nearest=False)
     options = what.split(",") if isinstance(what, str) else what
     options = [option.strip() for option in options if option.strip()]
     if not options:
         raise UserError(
             "There is nothing to choose from. "
-            'Say what may be answered: digits, yes-no, or options such as "tea, coffee".'
+            "Say what may be answered: digits, number, times, yes-no, "
+            'or options such as "tea, coffee".'
         )
     spoken = {spell_numbers(option, language): option for option in options}
     around = [pattern.format(said) for said in spoken for pattern in sayings["around"]]
@@ -69,9 +111,61 @@ def expect(what: str | Sequence[str], language: str) -> Expected:
 def hear_answer(recogniser: Recogniser, audio: Audio, expected: Expected) -> Answer:
     """Which of the expected answers is given in `audio`."""
     heard = recogniser.recognise(audio, expected.phrases, worst_fit=WORST_FIT)
-    answer = None if heard.doubtful else expected.read(heard.text)
+    return answer_in(heard, audio, expected)
+
+
+def answer_in(heard: Heard, audio: Audio, expected: Expected) -> Answer:
+    """Which answer was given, of what was heard in `audio` with the expected phrases and
+    `WORST_FIT`."""
     said = heard.free_text if heard.doubtful else heard.text
-    return Answer(said or heard.text, answer, heard.confidence if answer is not None else 0.0)
+    shares = _shares(heard, expected)
+    answer = expected.read(heard.text)
+    if expected.digits_of and answer is not None and len(answer) == 1:
+        ear = digits.load(expected.digits_of)
+        by_sound = ear.shares(audio) if ear else None
+        if by_sound:
+            shares = _agreed(shares, by_sound)
+            answer = shares[0][0]
+    if heard.doubtful or answer is None:
+        return Answer(said or heard.text, None, 0.0, shares[:2])
+    share = dict(shares).get(answer, 1.0)
+    if share < UNSURE:
+        return Answer(said or heard.text, None, 0.0, shares[:2])
+    return Answer(said or heard.text, answer, share, shares[:2])
+
+
+Shares = tuple[tuple[str, float], ...]
+
+
+def _shares(heard: Heard, expected: Expected) -> Shares:
+    """How likely each answer is by the recogniser, the likeliest first."""
+    best: dict[str, float] = {}
+    for reading in heard.readings:
+        answer = None if reading.free else expected.read(reading.text)
+        if answer is not None:
+            best[answer] = max(reading.score, best.get(answer, reading.score))
+    return _normalised(best)
+
+
+def _agreed(shares: Shares, by_sound: Mapping[str, float]) -> Shares:
+    """Both opinions together, as if they were independent."""
+    known = dict(shares)
+    most = max(known.values(), default=1.0)
+    return _normalised(
+        {
+            answer: (log(known[answer] / most) if answer in known else NOT_LISTED)
+            + log(max(share, 1e-9))
+            for answer, share in by_sound.items()
+        }
+    )
+
+
+def _normalised(scores: Mapping[str, float]) -> Shares:
+    most = max(scores.values(), default=0.0)
+    weights = {answer: exp(max(-700.0, score - most)) for answer, score in scores.items()}
+    whole = sum(weights.values())
+    ordered = sorted(weights.items(), key=lambda item: -item[1])
+    return tuple((answer, weight / whole) for answer, weight in ordered)
 
 
 def _digits(language: str) -> Expected:
@@ -80,16 +174,63 @@ def _digits(language: str) -> Expected:
     def read(text: str) -> str | None:
         return "".join(words[word] for word in text.split()) or None
 
-    return Expected(tuple(words), read)
+    return Expected(tuple(words), read, digits_of=language)
 
 
-def _choice(spoken: dict[str, str], around: Sequence[str] = ()) -> Expected:
-    """One of several: `spoken` is what is said -> the answer that it means."""
+def _number(language: str) -> Expected:
+    spoken = dict(_numbers(language))
+    one_by_one = _digits(language).read
+    figures = {number_words(str(digit), language) for digit in range(10)}
+    whole = _choice(spoken, nearest=False)
+
+    def read(text: str) -> str | None:
+        words = text.split()
+        # "four zero seven", as one reads a number out
+        if len(words) > 1 and figures.issuperset(words):
+            return one_by_one(text)
+        return whole.read(text)
+
+    return Expected(whole.phrases, read)
+
+
+@cache
+def _numbers(language: str) -> tuple[tuple[str, str], ...]:
+    """What is said -> the numeral."""
+    spoken = {number_words(str(n), language): str(n) for n in range(LARGEST + 1)}
+    between = _sayings(language).get("hundred_and")
+    if between:  # "one hundred and five"
+        hundred = number_words("100", language).split()[-1]
+        for said, numeral in list(spoken.items()):
+            if int(numeral) > 100 and int(numeral) % 100:
+                spoken[said.replace(f"{hundred} ", f"{hundred} {between} ", 1)] = numeral
+    for said, number in _sayings(language)["numbers"].items():
+        spoken[str(said)] = str(number)
+    return tuple(spoken.items())
+
+
+@cache
+def _times(language: str) -> dict[str, str]:
+    """What is said -> the time of day."""
+    sayings = _sayings(language)["times"]
+    spoken = {str(said): str(time) for said, time in sayings["named"].items()}
+    for hour in range(1, sayings["hours"] + 1):
+        for pattern, minutes in sayings["past"].items():
+            whole, rest = divmod(hour * 60 + minutes, 60)
+            spoken[pattern.format(number_words(str(hour), language))] = f"{whole}:{rest:02}"
+    return spoken
+
+
+def _choice(
+    spoken: Mapping[str, str], around: Sequence[str] = (), nearest: bool = True
+) -> Expected:
+    """One of several: `spoken` is what is said -> the answer that it means; `nearest`: most of the
+    words of one will do."""
     sayings = {_words(said): answer for said, answer in spoken.items()}
 
     def read(text: str) -> str | None:
         heard = _words(text)
-        return _only(_said(heard, sayings) or _nearest(heard, sayings))
+        said = _said(heard, sayings)
+        return _only(said or _nearest(heard, sayings) if nearest else said)
 
     return Expected((*spoken, *around), read)
 

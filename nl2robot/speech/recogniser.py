@@ -74,6 +74,9 @@ class Reading:
     # reading (0). A worse fit than about -0.05 is hardly ever what was said.
     fit: float
     doubtful: bool
+    # Log likelihood of sound and words together; to be compared with readings of one decoder only.
+    score: float = 0.0
+    free: bool = False  # found where anything may be said
 
 
 @dataclass(frozen=True)
@@ -474,10 +477,11 @@ def _readings(
     limited: Sequence[_Scored], free: Sequence[_Scored], worst_fit: float
 ) -> tuple[Reading, ...]:
     best: dict[str, Reading] = {}
-    for text in (*limited, *free):
-        reading = _reading(text, free[0], worst_fit)
-        if text.text and (text.text not in best or reading.fit > best[text.text].fit):
-            best[text.text] = reading
+    for decoder in (limited, free):
+        for text in decoder:
+            reading = replace(_reading(text, free[0], worst_fit), free=decoder is free)
+            if text.text and (text.text not in best or reading.fit > best[text.text].fit):
+                best[text.text] = reading
     return tuple(sorted(best.values(), key=lambda reading: -reading.fit))
 
 
@@ -487,4 +491,4 @@ def _reading(text: _Scored, free: _Scored, worst_fit: float) -> Reading:
     fit = (text.score - free.score) / max(1.0, abs(free.score))
     # Without blanks, for "good bye" and "goodbye" are the same.
     alike = fuzz.ratio(text.text.replace(" ", ""), free.text.replace(" ", "")) / 100 >= ALIKE
-    return Reading(text.text, fit, doubtful=fit < worst_fit and not alike)
+    return Reading(text.text, fit, fit < worst_fit and not alike, text.score)

