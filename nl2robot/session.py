@@ -57,6 +57,7 @@ class Session:
         """While a run of this session goes on; others may use the same robot in between."""
         self._told_end = threading.Event()
         operator.watch(self._show, "program")
+        terminal.accompany(operator)
 
     def perform(self, utterance: str, heard: str | None = None) -> ExitStatus:
         """Understand an utterance, have its program approved, run it."""

@@ -14,7 +14,7 @@ import tempfile
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from rich.console import Console
 from rich.markup import escape
@@ -28,6 +28,9 @@ from nl2robot.plain import visible
 from nl2robot.rehearsal import DryRun
 from nl2robot.review import Review
 from nl2robot.translation import Translation
+
+if TYPE_CHECKING:
+    from nl2robot.operator import Operator
 
 Decision = Literal["approve", "edit", "reject"]
 DATA = Path(__file__).parent / "data" / "terminal.yaml"
@@ -61,6 +64,9 @@ class Terminal:
         """Go on in a language."""
         self.language = language
         self.words = _words(language)
+
+    def accompany(self, operator: Operator) -> None:
+        """Somebody operates a robot from here; what it does may matter to how lines are read."""
 
     # --- before the run
 

@@ -11,9 +11,10 @@ from __future__ import annotations
 
 import queue
 import threading
-from collections.abc import Callable, Iterable, Iterator
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Any, Final
 
 from nl2robot.errors import UserError
 from nl2robot.speech.audio import Samples
@@ -73,7 +74,12 @@ class Cried:
     word: str
 
 
-Event = Woke | Hears | Said | Slept | Cried
+@dataclass(frozen=True)
+class Ended:
+    """There is no more sound: a recording is over."""
+
+
+Event = Woke | Hears | Said | Slept | Cried | Ended
 
 
 class VoiceInput:
@@ -197,6 +203,30 @@ def _without_first_words(heard: Heard) -> Heard:
     return replace(heard, readings=(*heard.readings, *shorter))
 
 
+class OwnVoice:
+    """What the robot is saying, as its events tell: it must not obey itself."""
+
+    _ECHO: Final = 0.5
+    """Seconds for which a room, and a detector, may still be at its last word."""
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._text = ""
+        self._ended: float | None = None
+
+    def note(self, kind: str, data: Mapping[str, Any]) -> None:
+        """An event of the kinds `speech` and `program`."""
+        if kind == "speech":
+            self._text, self._ended = str(data["text"]).lower(), None
+        elif data["what"] == "result" or data["what"] == "state":
+            self._ended = self._clock()
+
+    def says(self, word: str) -> bool:
+        """Whether the robot is saying a word itself."""
+        over = self._ended is not None and self._clock() - self._ended > self._ECHO
+        return not over and word.lower() in self._text
+
+
 class SpokenLines:
     """Lines from a microphone, in a thread of its own."""
 
@@ -242,5 +272,6 @@ class SpokenLines:
                     return
                 for event in self._voice.feed(block):
                     self._events.put(event)
+            self._events.put(Ended())
         except UserError as error:
             self._events.put(error)

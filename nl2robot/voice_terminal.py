@@ -8,9 +8,21 @@ from collections.abc import Callable, Iterable
 from rich.console import Console
 
 from nl2robot.errors import ExitStatus, UserError
+from nl2robot.operator import Operator
 from nl2robot.speech.audio import Samples
 from nl2robot.terminal import Terminal
-from nl2robot.voice import Cried, Event, Hears, Said, Slept, SpokenLines, VoiceInput, Woke
+from nl2robot.voice import (
+    Cried,
+    Ended,
+    Event,
+    Hears,
+    OwnVoice,
+    Said,
+    Slept,
+    SpokenLines,
+    VoiceInput,
+    Woke,
+)
 
 LOOK_EVERY = 0.05
 """Seconds between two looks at the keyboard."""
@@ -27,16 +39,24 @@ class VoiceTerminal(Terminal):
         voice_for: Callable[[str], VoiceInput],
         language: str = "en",
         console: Console | None = None,
+        own_voice: OwnVoice | None = None,
     ) -> None:
         """`blocks` of sound come from the microphone; `voice_for` a language says how they are
         heard, and raises `UserError` where they cannot be."""
+        self._own_voice = own_voice or OwnVoice()
         self._voice_for = voice_for
         self._spoken = SpokenLines(voice_for(language), blocks)
         self._prompt = ""
         self._deaf = False
-        """The microphone is gone; the keyboard is left."""
+        """The microphone is gone, or the recording over; the keyboard is left."""
+        self._no_keyboard = False
+        """A robot in a corridor has none."""
         super().__init__(console, language)
         self._spoken.start()
+
+    @property
+    def somebody_is_there(self) -> bool:
+        return True
 
     def speak(self, language: str) -> None:
         before = getattr(self, "language", language)
@@ -47,6 +67,9 @@ class VoiceTerminal(Terminal):
             self._spoken.use(self._voice_for(language))
         except UserError as error:  # it can still be typed in
             self.console.print(str(error), markup=False)
+
+    def accompany(self, operator: Operator) -> None:
+        operator.watch(self._own_voice.note, "speech", "program")
 
     def close(self) -> None:
         """Listen no more."""
@@ -71,7 +94,7 @@ class VoiceTerminal(Terminal):
         self.heard = None
         if self._deaf:
             return super().typed(seconds)
-        typed = super().typed(0)
+        typed = None if self._no_keyboard else super().typed(0)
         if typed:
             return typed
         return self._said(self._next(seconds))
@@ -83,11 +106,15 @@ class VoiceTerminal(Terminal):
         if awake:
             self._spoken.wake()
         while True:
-            if self.keyboard_ready(0 if not self._deaf else LOOK_EVERY):
+            if not self._no_keyboard and self.keyboard_ready(LOOK_EVERY if self._deaf else 0):
                 line = sys.stdin.readline()
-                if not line:
+                if line:
+                    return line.rstrip("\n")
+                if sys.stdin.isatty():  # Ctrl-D
                     raise EOFError
-                return line.rstrip("\n")
+                self._no_keyboard = True
+            if self._deaf and self._no_keyboard:
+                raise EOFError
             said = None if self._deaf else self._said(self._next(LOOK_EVERY))
             if said is not None:
                 return said
@@ -110,6 +137,8 @@ class VoiceTerminal(Terminal):
                 self._show(f"{text} …")
             case Cried(word):
                 return word
+            case Ended():
+                self._deaf = True
             case Said("") | Slept():
                 self._show_prompt(self._prompt)
             case Said(text, doubtful=False):

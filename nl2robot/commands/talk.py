@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
@@ -18,11 +18,13 @@ from nl2robot.speech.hotword import HotWord, StopWord, default_word
 from nl2robot.speech.listening import Manner
 from nl2robot.speech.microphone import Microphone
 from nl2robot.terminal import answers
-from nl2robot.voice import PATIENCE, VoiceInput
+from nl2robot.voice import PATIENCE, OwnVoice, VoiceInput
 from nl2robot.voice_terminal import VoiceTerminal
 
 BLOCK = 0.1
 """Seconds of a recording that come at a time."""
+SILENCE = 3.0
+"""Seconds behind a recording: what is said at its end is over by then."""
 
 
 @contextmanager
@@ -31,23 +33,32 @@ def voice_terminal(options: argparse.Namespace) -> Iterator[VoiceTerminal]:
     `UserError` where there is none, or no speech model."""
     knowledge = Knowledge(names_of(options), routines=open_routines())
 
+    own_voice = OwnVoice()
+    aloud = options.speak is True or options.robot != "sim"
+
     def voice_for(language: str) -> VoiceInput:
         word = options.hot_word if language == options.lang else None
-        return voice_input(knowledge, language, word)
+        says_itself = own_voice.says if aloud else lambda word: False
+        return voice_input(knowledge, language, word, says_itself)
 
     with ExitStack() as stack:
         if isinstance(options.voice, str):
             blocks = as_it_came(Path(options.voice))
         else:
             blocks = stack.enter_context(Microphone(options.device)).blocks()
-        terminal = VoiceTerminal(blocks, voice_for, options.lang)
+        terminal = VoiceTerminal(blocks, voice_for, options.lang, own_voice=own_voice)
         stack.callback(terminal.close)
         word = options.hot_word or default_word(options.lang)
         terminal.console.print(terminal.words["say_hot_word"].format(word=word), markup=False)
         yield terminal
 
 
-def voice_input(knowledge: Knowledge, language: str, word: str | None = None) -> VoiceInput:
+def voice_input(
+    knowledge: Knowledge,
+    language: str,
+    word: str | None = None,
+    says_itself: Callable[[str], bool] = lambda word: False,
+) -> VoiceInput:
     """What hears commands and answers about them in a language, after the hot `word`."""
     ear = Ear(need(language), knowledge, language)
     hot_word = HotWord(language, word)
@@ -61,18 +72,17 @@ def voice_input(knowledge: Knowledge, language: str, word: str | None = None) ->
         hot_word,
         StopWord(language),
         hot_words=[hot_word.word],
+        says_itself=says_itself,
     )
 
 
 def as_it_came(recording: Path) -> Iterator[Samples]:
-    """A recording at the pace of its speakers; then silence for ever. Raises `AudioError`."""
+    """A recording at the pace of its speakers, and some silence. Raises `AudioError`."""
     import numpy as np
 
     samples, step = read(recording).samples, int(BLOCK * RATE)
+    samples = np.concatenate([samples, np.zeros(int(SILENCE * RATE), np.int16)])
     began = time.monotonic()
-    at = 0
-    while True:
-        block = samples[at : at + step]
-        at += step
-        time.sleep(max(0.0, began + at / RATE - time.monotonic()))
-        yield np.pad(block, (0, step - len(block)))
+    for at in range(0, len(samples), step):
+        time.sleep(max(0.0, began + (at + step) / RATE - time.monotonic()))
+        yield samples[at : at + step]

@@ -16,7 +16,7 @@ from nl2robot.speech.listening import Listener, Manner
 from nl2robot.speech.recogniser import Heard, Reading
 from nl2robot.speech.voices import joined, voice
 from nl2robot.translation import Talk
-from nl2robot.voice import Cried, Hears, Said, Slept, SpokenLines, VoiceInput, Woke
+from nl2robot.voice import Cried, Hears, OwnVoice, Said, Slept, SpokenLines, VoiceInput, Woke
 from nl2robot.voice_services import MOST_OPEN, Microphones
 from robot_api.errors import InvalidCall
 from sim.world import load_world
@@ -125,6 +125,19 @@ def test_the_robot_does_not_obey_itself() -> None:
     ear = an_ear(says_itself={"stop", "hey robot"}.__contains__)
     ear.busy(True)
     assert happens(ear, STOP, HOT, *SPEECH) == []
+
+
+def test_the_robot_knows_what_it_says_and_for_how_long() -> None:
+    now = 0.0
+    own = OwnVoice(lambda: now)
+    assert not own.says("stop")
+    own.note("speech", {"text": "The bus stop is over there.", "language": "en"})
+    assert own.says("stop")
+    assert not own.says("halt")
+    own.note("program", {"what": "result", "method": "say"})
+    assert own.says("stop")  # it still sounds
+    now = 1.0
+    assert not own.says("stop")
 
 
 def test_what_may_have_been_something_else_is_asked_again() -> None:
