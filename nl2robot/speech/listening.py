@@ -109,7 +109,10 @@ class Decoder(Protocol):
 
     def accept(self, samples: Samples) -> str: ...
 
-    def end(self, audio: Audio) -> Heard: ...
+    def pause(self) -> None:
+        """They have stopped, perhaps for good; there is time to make `end` ready."""
+
+    def end(self) -> Heard: ...
 
 
 class Listener:
@@ -208,6 +211,8 @@ class Listener:
             yield TooLong(self.seconds)
         elif quiet <= _frames(self.manner.after):  # the rest waits until they go on
             yield from self._decode()
+        elif quiet == _frames(self.manner.after) + 1 and self._decoder is not None:
+            self._decoder.pause()
 
     def _decode(self, *, everything: bool = False) -> Iterator[Event]:
         """Hand on what was said since the last time."""
@@ -226,7 +231,7 @@ class Listener:
         audio = Audio(np.concatenate(self._speech[:kept]))
         at = _seconds(self._last)
         self._be_quiet()
-        return SpeechEnded(at, audio, self._decoder.end(audio) if self._decoder else None)
+        return SpeechEnded(at, audio, self._decoder.end() if self._decoder else None)
 
     def _be_quiet(self) -> None:
         self._speech = None

@@ -4,11 +4,13 @@
     streaming.begin()
     for samples in blocks:
         partial = streaming.accept(samples)  # what it sounds like so far
-    heard = streaming.end(audio)             # `audio` is all that was accepted
+    streaming.pause()                        # they have stopped, perhaps for good
+    heard = streaming.end()
 
 The model wants speech of a certain loudness, and of live speech it is not known beforehand. The
 first words, and what was said before, tell it well enough; where they were far out, all is decoded
-again.
+again. So it is where somebody goes on after a pause, for in the pause the decoders were ended, so
+that what they had found is there when the pause turns out to be the end.
 """
 
 from __future__ import annotations
@@ -38,8 +40,9 @@ class Streaming:
         """`phrases` and `worst_fit` as for `Recogniser.recognise`."""
         self._recogniser = recogniser
         self._loudness = _Loudness()
-        self._first: list[Samples] = []  # until there is enough of it
+        self._sound: list[Samples] = []  # since `begin`
         self._decoding: Decoding | None = None
+        self._heard: Heard | None = None
         self.expect(phrases, worst_fit=worst_fit)
 
     def expect(self, phrases: Sequence[str] | None, *, worst_fit: float = WORST_FIT) -> None:
@@ -49,33 +52,44 @@ class Streaming:
 
     def begin(self) -> None:
         """Somebody begins to speak; speech that was not ended is forgotten."""
-        self._first = []
-        self._decoding = None
+        self._sound = []
+        self._decoding = self._heard = None
         self._loudness.begin()
 
     def accept(self, samples: Samples) -> str:
         """Goes on with a block of any length; returns the words so far. Raises SpeechError if the
         model knows none of the phrases."""
+        self._heard = None
+        self._sound.append(samples)
         if self._decoding is None:
-            self._first.append(samples)
-            if sum(map(len, self._first)) < FIRST * RATE:
+            if sum(map(len, self._sound)) < FIRST * RATE:
                 return ""
-            samples = np.concatenate(self._first)
-            self._first = []
-            gain = self._loudness.guess(samples)
+            samples = np.concatenate(self._sound)
             self._decoding = self._recogniser.open(
-                self._phrases, worst_fit=self._worst_fit, gain=gain
+                self._phrases, worst_fit=self._worst_fit, gain=self._loudness.guess(samples)
             )
         self._decoding.feed(self._loudness.held_back(samples))
         return self._decoding.so_far
 
-    def end(self, audio: Audio) -> Heard:
-        """What was said in all that was accepted since `begin`, which is `audio`."""
-        decoding, self._decoding = self._decoding, None
-        if decoding is None or self._loudness.was_far_out:
-            self._loudness.guess(audio.samples)
-            return self._recogniser.recognise(audio, self._phrases, worst_fit=self._worst_fit)
-        return decoding.finish()
+    def pause(self) -> None:
+        """Makes ready what `end` will give if nothing more is accepted."""
+        if self._heard is None:
+            self._loudness.is_known()
+            decoding, self._decoding = self._decoding, None
+            if decoding is None or self._loudness.was_far_out:
+                audio = Audio(np.concatenate([*self._sound, np.zeros(0, np.int16)]))
+                self._loudness.guess(audio.samples)
+                self._heard = self._recogniser.recognise(
+                    audio, self._phrases, worst_fit=self._worst_fit
+                )
+            else:
+                self._heard = decoding.finish()
+
+    def end(self) -> Heard:
+        """What was said in all that was accepted since `begin`."""
+        self.pause()
+        assert self._heard is not None
+        return self._heard
 
 
 class _Loudness:
@@ -94,6 +108,10 @@ class _Loudness:
         self._peak = max(self._peak, _peak(first))
         self._gain = _gain(max(self._peak, round(MEMORY * self._before)))
         return self._gain
+
+    def is_known(self) -> None:
+        """From what was said by now; the speech before tells nothing more."""
+        self._before = 0
 
     def held_back(self, samples: Samples) -> Samples:
         """The next samples, which will be multiplied with the guessed gain; where the speech became

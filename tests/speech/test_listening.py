@@ -233,6 +233,24 @@ def test_clipped_speech_is_still_heard(recogniser: Recogniser) -> None:
     assert end.heard.text == "go to the pharmacy and say good morning"
 
 
+def test_who_goes_on_after_a_pause_has_said_one_thing(recogniser: Recogniser) -> None:
+    """When the pause is half over, the text of what was said so far is made ready."""
+    samples = np.concatenate([PHARMACY[:-4000], quiet(0.4), VISITOR[4000:], quiet(1)])
+    (end,) = ended(heard(Listener(Streaming(recogniser, PHRASES)), samples))
+    assert end.heard is not None
+    assert end.heard.text.startswith("go to the pharmacy and say good morning wait for a visitor")
+    assert end.heard.text.endswith("radiology")
+
+
+def test_the_text_is_there_before_the_pause_is_over(recogniser: Recogniser) -> None:
+    decoder = Streaming(recogniser, PHRASES)
+    listener = Listener(decoder)
+    heard(listener, np.concatenate([quiet(0.5), PHARMACY, quiet(0.25)]))
+    assert listener.speaking
+    assert decoder._heard is not None
+    assert decoder._heard.text == "go to the pharmacy and say good morning"
+
+
 def test_after_a_shout_a_whisper_is_decoded_again_as_loud_as_it_should_have_been(
     recogniser: Recogniser, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -332,7 +350,9 @@ class Words:
         self._blocks += 1
         return "word " * (self._blocks // 10)
 
-    def end(self, audio: Audio) -> Any:
+    def pause(self) -> None: ...
+
+    def end(self) -> Any:
         return None
 
 
