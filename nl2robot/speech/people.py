@@ -116,12 +116,18 @@ class SimulatedVoices:
             return scenes.audio(scenes.at_snr(echoing, self._noise, NOISE, self._rng))
 
     def recognised(self, audio: Audio, asked: Asked) -> str:
-        """The answer, as an option has it if it is one; empty if nothing was made out."""
+        """The option that was answered, else the words that were heard; empty if none were."""
         from nl2robot.speech.answers import expect, hear_answer
+        from nl2robot.speech.recogniser import SpeechError
 
         recogniser = self._recogniser_for(asked.language)
         if asked.options:
-            answer = hear_answer(recogniser, audio, expect(list(asked.options), asked.language))
+            options = list(asked.options)
+            expected = "yes-no" if {*map(str.lower, options)} == {"yes", "no"} else options
+            try:
+                answer = hear_answer(recogniser, audio, expect(expected, asked.language))
+            except SpeechError:  # it knows none of the words: then the touchscreen will have to do
+                return recogniser.recognise(audio).text
             return answer.answer or answer.heard
         heard = recogniser.recognise(audio, self._phrases_for(asked.language))
         return (heard.free_text or "") if heard.doubtful else heard.text

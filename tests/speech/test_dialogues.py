@@ -3,6 +3,7 @@ and what the robot makes of it is what it heard."""
 
 from __future__ import annotations
 
+import re
 import threading
 import time
 from collections.abc import Iterator
@@ -56,6 +57,24 @@ def test_alice_is_asked_what_she_wants_and_answers(
     assert 25 < len(samples) / rate < 60
     assert abs(samples[: 15 * rate]).max() == 0  # on the way
     assert abs(samples[15 * rate :]).max() > 0.2
+
+
+def test_henry_is_asked_what_he_drinks_and_is_understood_at_once(
+    recogniser: Recogniser, tmp_path: Path
+) -> None:
+    wishes = Wishes(speak=tmp_path / "henry.wav", voices=True, voice="espeak")
+    ward = Simulation(load_world("ward"), seed=1)
+    events: list[tuple[str, str | None]] = []
+    with aloud(wishes, ward.world) as sound:
+        assert sound is not None
+        robot = simulated(ward, sound(lambda: ward.time))
+        robot.subscribe(lambda kind, data: events.append((kind, data.get("text"))))
+        assert robot.call("find", {"thing": "Henry"}, StopFlag())
+        question = {"question": "What would you like?", "options": ["water", "tea", "coffee"]}
+        assert robot.call("ask", question, StopFlag()) == "water"
+        robot.close()
+    told = [event for event in events if event[0] in ("speech", "heard", "screen")]
+    assert told == [("speech", "What would you like?"), ("heard", "water")]
 
 
 @pytest.mark.parametrize(
@@ -256,3 +275,17 @@ def test_a_language_that_cannot_be_heard_is_told_of() -> None:
 def test_nothing_is_made_where_nothing_is_wished_for() -> None:
     with aloud(Wishes(), load_world("ward")) as sound:
         assert sound is None
+
+
+def test_the_example_in_the_docs_runs() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "speaking.md").read_text("utf-8")
+    (example,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    exec(compile(example, "docs/speaking.md", "exec"), {})
+
+
+def test_options_that_the_model_cannot_hear_are_left_to_the_screen(
+    people: SimulatedVoices,
+) -> None:
+    sound = people.sound_of("Alice", "qwrtz", "en")
+    heard = people.recognised(sound, Asked("en", None, ["qwrtz", "xyzzq"]))
+    assert heard not in ("qwrtz", "xyzzq")
