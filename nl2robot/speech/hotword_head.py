@@ -7,6 +7,7 @@ nl2robot; those for words of one's own lie in the user's data folder.
 from __future__ import annotations
 
 import re
+import unicodedata
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -75,4 +76,6 @@ def load_head(language: str, word: str) -> Head | None:
 
 
 def file_name(word: str) -> str:
-    return "-".join(re.findall(r"\w+", word.lower())) + ".npz"
+    """Of plain letters: "arrête" lies in arrete.npz."""
+    letters = unicodedata.normalize("NFKD", word.lower()).encode("ascii", "ignore").decode()
+    return "-".join(re.findall(r"\w+", letters)) + ".npz"

@@ -146,7 +146,7 @@ def test_a_name_that_can_never_be_heard_is_refused(recogniser: Recogniser, word:
 
 
 def test_a_language_without_hot_words_is_said() -> None:
-    with pytest.raises(UserError, match="no hot word for the language 'it'. There are: en, de"):
+    with pytest.raises(UserError, match=r"no hot word for the language 'it'. There are: en, de"):
         HotWord("it")
     with pytest.raises(UserError, match="no hot word"):
         StopWord("it")
