@@ -39,6 +39,8 @@ class Hearing:
     def accept(self, samples: Samples) -> str:
         return self.heard.text
 
+    def pause(self) -> None: ...
+
     def end(self, audio: Audio) -> Heard:
         return self.heard
 
