@@ -8,12 +8,13 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
+from grammar.language import load_language
 from grammar.samples import samples
 from grammar.vocabulary import vocabulary
 from nl2robot.knowledge import Knowledge
 from nl2robot.speech.audio import RATE, Audio, read
 from nl2robot.speech.listening import COMMANDS, Listener, Manner, has_speech
-from nl2robot.speech.recogniser import Heard, Recogniser, choose
+from nl2robot.speech.recogniser import Decoding, Heard, Recogniser, choose
 from nl2robot.speech.streaming import Streaming
 from nl2robot.speech.vocabulary import Missing, missing_words
 from nl2robot.translation import Planner, Talk, Translation, translate
@@ -27,7 +28,7 @@ class Ear:
         lexicon = knowledge.lexicon(language)
         self.knowledge = knowledge
         self.language = language
-        self._recogniser = Recogniser(model, language)
+        self.recogniser = Recogniser(model, language)
         self._phrases = [
             *(sentence for topic in samples(lexicon, language).values() for sentence in topic),
             *vocabulary(lexicon, language),
@@ -39,22 +40,31 @@ class Ear:
         audio = recording if isinstance(recording, Audio) else read(recording)
         if not has_speech(audio):
             return Heard("", 0.0, (), False, None, (), audio.seconds, 0.0)
-        return self.chosen(self._recogniser.recognise(audio, self._phrases))
+        return self.chosen(self.recogniser.recognise(audio, self._phrases))
 
     def listener(self, manner: Manner = COMMANDS, also: Sequence[str] = ()) -> Listener:
         """Hears live what `hear` hears of recordings, but for the choice: see `chosen`. `also` is
         what may be said besides commands."""
-        return Listener(Streaming(self._recogniser, [*self._phrases, *also]), manner)
+        return Listener(Streaming(self.recogniser, [*self._phrases, *also]), manner)
 
     def get_ready(self, also: Sequence[str] = ()) -> None:
         """Make the first command as fast as those after it: decoders are slow until they were used
         once."""
         noise = np.random.default_rng(0).normal(0, 500, RATE // 2).astype(np.int16)
-        self._recogniser.recognise(Audio(noise), [*self._phrases, *also])
+        self.recogniser.recognise(Audio(noise), [*self._phrases, *also])
+
+    def open(self, gain: float = 1.0) -> Decoding:
+        """A decoding of a command to be fed with sound while it comes; `chosen` chooses among what
+        it finds."""
+        return self.recogniser.open(self._phrases, gain=gain)
 
     def chosen(self, heard: Heard, also: Container[str] = ()) -> Heard:
         """The reading that is understood, or is one of `also`."""
         return choose(heard, lambda text: text in also or self._is_understood(text))
+
+    def program(self, text: str) -> str | None:
+        """What a command means when it is typed."""
+        return self._translate(text).program
 
     def _is_understood(self, text: str) -> bool:
         translation = self._translate(text)
@@ -64,17 +74,16 @@ class Ear:
         """The words in names of this world that the model can never hear, each with a way round."""
         world = self.knowledge.world
         names = [item.name for items in (world.places, world.people) for item in items]
-        return missing_words(self._recogniser, names)
+        return missing_words(self.recogniser, names)
 
     def translate(
         self, heard: Heard, planner: Planner = "auto", talk: Talk | None = None
     ) -> Translation:
         """The program for what was heard; nothing, and a question back, if that is in doubt."""
         translation = self._translate(heard.text, planner, None if heard.doubtful else talk)
+        phrase = load_language(self.language).phrase
         if not heard.text:
-            return msgspec.structs.replace(
-                translation, message="Nothing was heard. Please say it again, a little louder."
-            )
+            return msgspec.structs.replace(translation, message=phrase("heard_nothing"))
         if translation.program is None or not heard.doubtful:
             return translation
         return msgspec.structs.replace(
@@ -85,8 +94,7 @@ class Ear:
             source=None,
             explanation="",
             confidence=heard.confidence * 0.5,
-            message=f'It sounded like "{heard.text}", but perhaps it was'
-            f' "{heard.free_text}". Please say it again, or type it.',
+            message=phrase("heard_unsure", text=heard.text, perhaps=heard.free_text),
             suggestions=(heard.text,),
         )
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 
 from rich.console import Console
 
+from grammar.language import load_language
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.operator import Operator
 from nl2robot.speech.audio import Samples
@@ -146,7 +147,8 @@ class VoiceTerminal(Terminal):
                 self.heard = text
                 return text
             case Said(text, perhaps=perhaps):
-                unsure = self.words["unsure"].format(text=text, perhaps=perhaps)
+                phrase = load_language(self.language).phrase
+                unsure = phrase("heard_unsure", text=text, perhaps=perhaps)
                 self._show(f"\n{unsure}\n")
                 self._show_prompt(self._prompt)
                 self._spoken.wake()

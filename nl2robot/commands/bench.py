@@ -1,16 +1,27 @@
-"""`nl2robot bench`: how fast everything is on this machine, in one table."""
+"""`nl2robot bench`: how fast everything is on this machine, in one table; `nl2robot bench hearing`:
+how well it hears."""
 
 from __future__ import annotations
 
 import argparse
 import json
+from typing import TYPE_CHECKING
 
 from nl2robot.errors import ExitStatus
+
+if TYPE_CHECKING:
+    from nl2robot.terminal import Terminal
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="as one JSON object")
-    parser.add_argument("only", nargs="*", help="the parts to measure (default: all)")
+    parser.add_argument("only", nargs="*", help="the parts to measure (default: all but hearing)")
+    hearing = parser.add_argument_group(
+        "hearing", "with the part hearing: commands and answers, synthesised and in noise"
+    )
+    hearing.add_argument("--quick", action="store_true", help="a smaller sample")
+    hearing.add_argument("--lang", default="en", help="the language that is spoken (en, de, fr)")
+    hearing.add_argument("--seed", type=int, default=1, help="for another sample")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -18,6 +29,8 @@ def run(options: argparse.Namespace) -> int:
     from nl2robot.terminal import Terminal
 
     terminal = Terminal()
+    if "hearing" in options.only:
+        return _hearing(options, terminal)
     table = terminal.table("part", "what", "measured", "aim")
     results = []
     for part in options.only or PARTS:
@@ -28,4 +41,38 @@ def run(options: argparse.Namespace) -> int:
         print(json.dumps({f"{f.part}: {f.what}": [f.value, f.unit] for f in results}))
     else:
         terminal.console.print(table)
+    return ExitStatus.OK
+
+
+def _hearing(options: argparse.Namespace, terminal: Terminal) -> int:
+    from rich.progress import Progress
+
+    from nl2robot.hearing_benchmark import CONDITIONS, megabytes, run
+
+    with Progress(console=terminal.console, transient=True) as progress:
+        task = progress.add_task("Listening", total=None)
+        tally = run(
+            options.lang,
+            "quick" if options.quick else "full",
+            options.seed,
+            lambda done, of: progress.update(task, completed=done, total=of),
+        )
+    rows = list(tally.rows())
+    speed = {
+        "from the end of the sound to the program, median (ms)": round(tally.seconds * 1000),
+        "real-time factor, median": round(tally.real_time_factor, 3),
+        "memory (MB)": round(megabytes()),
+        "trials": len(tally.outcomes),
+    }
+    if options.json:
+        columns = [*CONDITIONS, "all"]
+        shares = {what: dict(zip(columns, figures, strict=True)) for what, figures in rows}
+        print(json.dumps({**shares, **speed}))
+        return ExitStatus.OK
+    table = terminal.table("what", *CONDITIONS, "all")
+    for what, figures in rows:
+        table.add_row(what, *figures)
+    terminal.console.print(table)
+    for what, figure in speed.items():
+        terminal.console.print(f"{what}: {figure}")
     return ExitStatus.OK

@@ -30,24 +30,24 @@ import vosk
 from nl2robot.errors import UserError
 from nl2robot.models import ModelError, need
 from nl2robot.speech.audio import RATE, Audio, Samples
+from nl2robot.speech.levels import Silence, gain_for
 from nl2robot.speech.vocabulary import spell_numbers
 
 vosk.SetLogLevel(-1)  # its C++ log goes to standard error
 
 # Before and after the speech, silence: without it the model loses the first and last sounds.
 PADDING = 0.3  # seconds
-LOUDNESS = 0.6  # the peak that a recording is brought to; the model was trained on full ones
-MOST_GAIN = 30.0
-# Below this loudest moment (root mean square of 30 ms, 1 = full scale) there is nothing to hear.
-SILENCE = 0.001
 BLOCK = RATE // 4  # samples handed over at a time
 MOST_LISTS = 16  # of phrases that are kept ready to be decoded with
 MOST_IDLE = 2  # decoders kept for each: as many as there are sounds at a time
 PUNCTUATION = '-–.,;:!?…"“”„«»()'
 
-# The second opinion: when a text is believed that free decoding does not agree with.
+# The second opinion: when a text is believed that free decoding does not agree with. Chosen by
+# `nl2robot.speech.opinions` among ways to tell; see docs/voice.md.
 ALIKE = 0.9  # texts this similar are the same words
-WORST_FIT = -0.05  # how much of its score a text may be behind free decoding
+WORST_FIT = -0.08  # how much of its score a text may be behind free decoding, where ...
+DISAGREEMENT = 0.2  # ... as much counts as behind if it has nothing in common with the free text,
+UNSURENESS = 0.1  # ... and as much if the limited decoder had no confidence in its words at all
 READINGS = 10  # of each decoder
 
 
@@ -71,7 +71,7 @@ class Reading:
 
     text: str
     # How well it fits the sound: the share of its score by which it is ahead of the best free
-    # reading (0). A worse fit than about -0.05 is hardly ever what was said.
+    # reading (0). A much worse fit is hardly ever what was said.
     fit: float
     doubtful: bool
     # Log likelihood of sound and words together; to be compared with readings of one decoder only.
@@ -179,14 +179,16 @@ class Recogniser:
         audio: Audio,
         phrases: Sequence[str] | None = None,
         *,
-        worst_fit: float = WORST_FIT,
+        worst_fit: float | None = None,
     ) -> Heard:
         """What is said in `audio`.
 
         `phrases` is what may be said: single words, names, and, better, whole sample sentences, for
         the recogniser learns from them which word follows which. Words the model does not know are
         left out (`unknown_words` tells which). None: anything may be said, and nothing is doubtful.
-        `worst_fit` is by how much of its score free decoding may fit better before it is believed.
+        `worst_fit` is by how much of its score free decoding may fit better before it is believed,
+        for sounds too short to count anything else; without it, `WORST_FIT` with what the two
+        decoders have in common and how sure the limited one is.
         Raises SpeechError if the model knows none of the words.
         """
         started = time.perf_counter()
@@ -198,7 +200,7 @@ class Recogniser:
         self,
         phrases: Sequence[str] | None = None,
         *,
-        worst_fit: float = WORST_FIT,
+        worst_fit: float | None = None,
         gain: float = 1.0,
     ) -> Decoding:
         """A decoding to be fed with sound while it comes; `phrases` and `worst_fit` as above.
@@ -281,13 +283,13 @@ class Decoding:
     """
 
     def __init__(
-        self, recogniser: Recogniser, grammar: _Grammar | None, worst_fit: float, gain: float
+        self, recogniser: Recogniser, grammar: _Grammar | None, worst_fit: float | None, gain: float
     ) -> None:
         self._grammar = grammar
         self._worst_fit = worst_fit
         self._gain = gain
         self._samples = 0
-        self._silent = _Silence()
+        self._silent = Silence()
         self._recogniser = recogniser
         wanted: list[tuple[_Grammar | None, int]] = [(grammar, 0)]
         if grammar is not None:
@@ -323,11 +325,12 @@ class Decoding:
         if scored:
             limited, free = (_scored(decoder.results) for decoder in scored)
             limited = [_Scored(self._written(text.text), text.score) for text in limited]
+            trusted = _Trust(free[0], heard.confidence, self._worst_fit)
             heard = replace(
                 heard,
-                doubtful=_reading(limited[0], free[0], self._worst_fit).doubtful,
+                doubtful=trusted.reading(limited[0]).doubtful,
                 free_text=free[0].text,
-                readings=_readings(limited, free, self._worst_fit),
+                readings=_readings(limited, free, trusted),
             )
         for key, decoder in self._decoders.items():
             self._recogniser._take_back(decoder.anew(), *key)
@@ -418,34 +421,6 @@ def load(code: str) -> Recogniser:
     return Recogniser(need(code), code)
 
 
-def gain_for(samples: Samples) -> float:
-    """What makes this sound as loud as the model is used to."""
-    peak = max(1.0, float(np.abs(samples.astype(np.float32)).max())) if len(samples) else 1.0
-    return min(MOST_GAIN, LOUDNESS * 32767 / peak)
-
-
-class _Silence:
-    """True as long as nothing fed was loud enough to be speech; so is less than one frame."""
-
-    def __init__(self) -> None:
-        self._silent = True
-        self._rest = np.zeros(0, np.float32)
-
-    def __bool__(self) -> bool:
-        return self._silent
-
-    def feed(self, samples: Samples) -> None:
-        if not self._silent:
-            return
-        frame = RATE * 30 // 1000
-        sound = np.concatenate([self._rest, samples.astype(np.float32) / 32768])
-        whole = len(sound) // frame * frame
-        self._rest = sound[whole:]
-        if whole:
-            levels = np.sqrt(np.square(sound[:whole].reshape(-1, frame)).mean(axis=1))
-            self._silent = float(levels.max()) < SILENCE
-
-
 def _scored(results: Sequence[Mapping[str, Any]]) -> list[_Scored]:
     """The likeliest texts with their scores, at least one."""
     texts = [_Scored("", 0.0)]
@@ -473,22 +448,35 @@ def _heard(words: tuple[Word, ...], seconds: float) -> Heard:
     )
 
 
+@dataclass(frozen=True)
+class _Trust:
+    """What is believed of a text beside the best free one."""
+
+    free: _Scored
+    confidence: float  # of the limited decoder in its words
+    worst_fit: float | None
+
+    def reading(self, text: _Scored) -> Reading:
+        from rapidfuzz import fuzz
+
+        fit = (text.score - self.free.score) / max(1.0, abs(self.free.score))
+        # Without blanks, for "good bye" and "goodbye" are the same.
+        same = fuzz.ratio(text.text.replace(" ", ""), self.free.text.replace(" ", "")) / 100
+        if self.worst_fit is None:
+            behind = DISAGREEMENT * (1 - same) + UNSURENESS * (1 - self.confidence)
+            doubtful = fit - behind < WORST_FIT
+        else:
+            doubtful = fit < self.worst_fit
+        return Reading(text.text, fit, doubtful and same < ALIKE, text.score)
+
+
 def _readings(
-    limited: Sequence[_Scored], free: Sequence[_Scored], worst_fit: float
+    limited: Sequence[_Scored], free: Sequence[_Scored], trusted: _Trust
 ) -> tuple[Reading, ...]:
     best: dict[str, Reading] = {}
     for decoder in (limited, free):
         for text in decoder:
-            reading = replace(_reading(text, free[0], worst_fit), free=decoder is free)
+            reading = replace(trusted.reading(text), free=decoder is free)
             if text.text and (text.text not in best or reading.fit > best[text.text].fit):
                 best[text.text] = reading
     return tuple(sorted(best.values(), key=lambda reading: -reading.fit))
-
-
-def _reading(text: _Scored, free: _Scored, worst_fit: float) -> Reading:
-    from rapidfuzz import fuzz
-
-    fit = (text.score - free.score) / max(1.0, abs(free.score))
-    # Without blanks, for "good bye" and "goodbye" are the same.
-    alike = fuzz.ratio(text.text.replace(" ", ""), free.text.replace(" ", "")) / 100 >= ALIKE
-    return Reading(text.text, fit, fit < worst_fit and not alike, text.score)

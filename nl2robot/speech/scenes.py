@@ -105,17 +105,20 @@ def music(seconds: float, rng: np.random.Generator) -> Signal:
     return _peak(mixed)
 
 
-def echo(rng: np.random.Generator, seconds: float = 0.5) -> Signal:
+def echo(rng: np.random.Generator, seconds: float = 0.5, direct: float = 6.0) -> Signal:
     """The impulse response of a room, `seconds` its reverberation time (to -60 dB): the direct
     sound, some early reflections, and exponentially decaying noise (Moorer 1979), of which the
-    high tones die away in half the time, as walls and air swallow them."""
+    high tones die away in half the time, as walls and air swallow them. The direct sound is by
+    `direct` decibels stronger than all that follows: about 6 where somebody stands a metre away."""
     length = int(seconds * RATE)
     decay = -6.9 * np.arange(length) / length
     low = _coloured(length, rng, slope=-1.0) * np.exp(decay)
     high = rng.standard_normal(length) * np.exp(2 * decay)
-    response = np.asarray(0.05 * low + 0.05 * high, np.float32)
+    response = np.asarray(0.05 * (low + high), np.float32)
     for _ in range(6):
         response[int(rng.uniform(0.003, 0.04) * RATE)] += float(rng.uniform(-0.4, 0.4))
+    response[0] = 0.0
+    response *= np.float32(10 ** (-direct / 20) / np.sqrt(np.sum(np.square(response))))
     response[0] = 1.0
     return response
 

@@ -1,7 +1,7 @@
 """What a benchmark of hearing plays: sentences in several voices, in quiet and in noisy rooms.
 
     stage = Stage("en", seed=1)
-    for trial in stage.trials("remark", ["the soup was cold"], quick=True): ...
+    for trial in stage.trials("remark", ["the soup was cold"]): ...
 
 Everything is synthesised here and the same for the same seed, except that a neural voice never
 says a sentence quite the same way twice.
@@ -101,14 +101,14 @@ class Stage:
 
     def trials(self, kind: str, sayings: Sequence[str], most: int | None = None) -> Iterator[Trial]:
         """Each saying once in a quiet room and once at each level, the speakers and the noises in
-        turn; `most`: that many, evenly chosen."""
+        turn; `most`: that many of them, chosen by chance."""
         conditions = [None, *LEVELS]
         all_of_them = [
             (text, decibels, n) for n, text in enumerate(sayings) for decibels in conditions
         ]
         if most is not None and most < len(all_of_them):
-            picked = np.linspace(0, len(all_of_them) - 1, most).round().astype(int)
-            all_of_them = [all_of_them[i] for i in picked]
+            picked = self._rng.permutation(len(all_of_them))[:most]
+            all_of_them = [all_of_them[i] for i in sorted(picked)]
         for text, decibels, n in all_of_them:
             speaker = self.speakers[n % len(self.speakers)]
             noise = NOISES[(n // len(self.speakers)) % len(NOISES)] if decibels is not None else ""
