@@ -26,7 +26,7 @@ from nl2robot.speech.embeddings import STEP, STEP_SECONDS, Embeddings, Embedding
 from nl2robot.speech.hotword_head import Head, load_head
 from nl2robot.speech.hotword_words import WORDS, Words
 
-SMOOTH: Final = 2
+SMOOTH: Final = 3
 """Steps of 80 ms over which the score of a hot word is averaged: surer, and so much later."""
 HELD: Final = 1.2
 """Seconds for which a word that was heard is not heard again: nobody says it twice so fast."""

@@ -39,7 +39,7 @@ Hear = Callable[[Samples], list[Detection]]
 SNRS: Final = (None, 20, 10, 5, 0)  # dB; None: no noise
 KINDS: Final = ("talk", "babble", "corridor", "corridor with talk")
 SAYINGS: Final = 200  # of which the babble is mixed
-IN_TIME: Final = (-0.2, 1.2)
+IN_TIME: Final = (-0.35, 1.2)
 """Seconds from a word's end within which its detection counts."""
 
 

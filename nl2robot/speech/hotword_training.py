@@ -58,8 +58,8 @@ STOP_STEPS: Final = 5
 # called its absence.
 HOT_WINDOW: Final = 0.32
 STOP_WINDOW: Final = 0.24
-HOT_THRESHOLD: Final = 0.5
-STOP_THRESHOLD: Final = 0.5
+HOT_THRESHOLD: Final = 0.8
+STOP_THRESHOLD: Final = 0.8
 PROCESSES: Final = 2
 BLURRED: Final = (-0.14, 0.8)
 
