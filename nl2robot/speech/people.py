@@ -37,6 +37,8 @@ SLOWEST, FASTEST = 0.85, 1.05
 LOWEST, HIGHEST = 0.85, 1.15
 ECHO: Final = 0.3
 """Seconds of reverberation: a furnished room."""
+DIRECT: Final = 5.0
+"""Decibels by which what comes straight is louder than its echo: from about a metre away."""
 NOISE: Final = 20.0
 """Decibels by which a person nearby is louder than the corridor."""
 _AROUND: Final = 0.3
@@ -86,7 +88,7 @@ class SimulatedVoices:
         self._speaker = speaker
         self._clock = clock
         self._rng = np.random.default_rng(seed)
-        self._room = scenes.echo(self._rng, ECHO)
+        self._room = _from_nearby(scenes.echo(self._rng, ECHO))
         self._noise = scenes.corridor(_NOISE_SECONDS, self._rng)
         self._lock = threading.Lock()  # for the random numbers
 
@@ -131,6 +133,14 @@ class SimulatedVoices:
             return answer.answer or answer.heard
         heard = recogniser.recognise(audio, self._phrases_for(asked.language))
         return (heard.free_text or "") if heard.doubtful else heard.text
+
+
+def _from_nearby(room: scenes.Signal) -> scenes.Signal:
+    """The room's impulse response for somebody who stands close to the microphone."""
+    echo = room[1:]
+    wanted = abs(float(room[0])) / 10 ** (DIRECT / 20)
+    near = echo * (wanted / max(float(np.linalg.norm(echo)), 1e-9))
+    return np.concatenate([room[:1], near.astype(np.float32)])
 
 
 def _attended(work: Callable[[], T], stop: StopFlag) -> T:
