@@ -20,7 +20,8 @@ from nl2robot.hearing import Ear
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.models import need
 from nl2robot.speech.answers import expect, hear_answer
-from nl2robot.speech.recogniser import BLOCK, PUNCTUATION, gain_for
+from nl2robot.speech.levels import gain_for
+from nl2robot.speech.recogniser import BLOCK, PUNCTUATION
 from nl2robot.speech.trials import LEVELS, Stage, Trial, spoken
 from nl2robot.speech.vocabulary import number_words, spell_numbers
 from sim.world import load_world

@@ -20,7 +20,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from nl2robot.speech.audio import RATE, Audio, Samples
-from nl2robot.speech.recogniser import WORST_FIT, Decoding, Heard, Recogniser, gain_for
+from nl2robot.speech.levels import gain_for
+from nl2robot.speech.recogniser import WORST_FIT, Decoding, Heard, Recogniser
 
 FIRST = 0.6  # seconds of sound that tell the loudness of the rest; some of it is before the speech
 MEMORY = 0.5  # what the loudness of the last speech counts for that of the next

@@ -10,7 +10,7 @@ import pytest
 from nl2robot.commands.talk import voice_input
 from nl2robot.errors import UserError
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
-from nl2robot.speech.audio import RATE, Audio, Samples, read
+from nl2robot.speech.audio import RATE, Samples, read
 from nl2robot.speech.hotword import Detection
 from nl2robot.speech.listening import Listener, Manner
 from nl2robot.speech.recogniser import Heard, Reading
@@ -41,7 +41,7 @@ class Hearing:
 
     def pause(self) -> None: ...
 
-    def end(self, audio: Audio) -> Heard:
+    def end(self) -> Heard:
         return self.heard
 
 
