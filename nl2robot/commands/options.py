@@ -119,6 +119,14 @@ def add_sound(parser: argparse.ArgumentParser) -> None:
         help="the simulated people answer aloud, and the robot has to hear them",
     )
     parser.add_argument(
+        "--mic",
+        nargs="?",
+        const=True,
+        default=False,
+        metavar="NAME",
+        help="you answer what the robot asks: at this microphone",
+    )
+    parser.add_argument(
         "--robot-voice",
         metavar="NAME",
         help='the robot\'s voice: "piper", "espeak", or its full name',
@@ -136,14 +144,20 @@ def _sound_file(given: str) -> Path:
 @contextmanager
 def sound_of(options: argparse.Namespace, world: World, language: str) -> Iterator[SoundFor | None]:
     """What `add_sound` lets people ask for; None if they did not."""
-    if not (options.speak or options.voices):
+    if not (options.speak or options.voices or options.mic):
         if options.robot_voice:
             raise UserError("A voice is chosen, but nothing is spoken. Add --speak.")
         yield None
         return
     from nl2robot.speech.aloud import Wishes, aloud
 
-    wishes = Wishes(options.speak, options.voices, options.robot_voice, language, options.seed)
+    if options.voices and options.mic:
+        raise UserError(
+            "Either the simulated people answer or you do. Leave --voices or --mic out."
+        )
+    wishes = Wishes(
+        options.speak, options.voices, options.robot_voice, language, options.mic, options.seed
+    )
     with aloud(wishes, world) as sound:
         yield sound
 

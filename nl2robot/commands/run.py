@@ -88,12 +88,12 @@ def open_session(
 
 @contextmanager
 def _station(options: argparse.Namespace, world: World, log: RunLog) -> Iterator[Station]:
-    heard = options.speak or options.voices
+    heard = options.speak or options.voices or options.mic
     if options.robot != "sim":
         if heard:
             raise UserError(
                 "Only a robot simulated here can be heard."
-                " Leave --robot out, or --speak and --voices."
+                " Leave --robot out, or --speak, --voices and --mic."
             )
         with remote_station(options.robot, world, log, token=options.token) as station:
             yield station

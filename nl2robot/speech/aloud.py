@@ -1,4 +1,4 @@
-"""A run that is heard: what `--speak` and `--voices` ask for, put together for a simulated robot.
+"""A run that is heard: what `--speak`, `--voices` and `--mic` ask for, for a simulated robot.
 
     with aloud(Wishes(speak=Path("run.wav"), voices=True), world) as sound:
         simulated_station(world, log, sound=sound)
@@ -21,9 +21,11 @@ from nl2robot.speech.kept import KeptSounds, folder
 from nl2robot.speech.loudspeaker import Nowhere, Output, SoundCard, SoundError, WavFile
 from nl2robot.speech.speaking import Speaker, Utterance
 from nl2robot.speech.voices import Voice, espeak, voice
-from robot_api.capabilities.sound import Sound, Voices
+from robot_api.capabilities.sound import Ears, Sound, Voices
 
 if TYPE_CHECKING:
+    from nl2robot.speech.audio import Samples
+    from nl2robot.speech.replies import Replies
     from robot_api.driver import StopFlag
     from sim.world import World
 
@@ -45,6 +47,8 @@ class Wishes:
     """The robot's voice, by name or kind ("piper", "espeak")."""
     language: str = "en"
     """The one that it begins with."""
+    microphone: bool | str = False
+    """Somebody real answers, at the microphone; or at the one with this in its name."""
     seed: int = 0
 
 
@@ -54,7 +58,7 @@ def aloud(
 ) -> Iterator[SoundFor | None]:
     """What a simulated robot needs for it; None if nothing is wished for. `tell` gets a sentence
     where something cannot be heard, by default on standard error. Raises `UserError`."""
-    if not (wishes.speak or wishes.voices):
+    if not (wishes.speak or wishes.voices or wishes.microphone):
         yield None
         return
     tell = tell or _complain
@@ -62,7 +66,13 @@ def aloud(
     if wishes.speak:
         next(robots_voice(wishes.language).speak("Hello."), None)  # loads it, or tells why not
     if wishes.voices:
-        _check_ears(wishes.language)
+        next(espeak(wishes.language).speak("Hello."), None)
+    replies = None
+    if wishes.voices or wishes.microphone:
+        replies = _replies(wishes.language, world)
+    ears = None
+    if replies is not None and wishes.microphone:
+        ears = _ears(wishes, replies)
     output = _output(wishes, tell)
     speakers: list[Speaker] = []
 
@@ -78,7 +88,10 @@ def aloud(
         speakers.append(speaker)
         heard = wishes.speak and type(output) is not Nowhere
         loudspeaker = RobotVoice(speaker) if heard else None
-        return Sound(loudspeaker, voices=_people(wishes, world, speaker, clock))
+        people = None
+        if replies is not None and wishes.voices:
+            people = _people(wishes, world, replies, speaker, clock)
+        return Sound(loudspeaker, ears=ears, voices=people)
 
     try:
         yield sound_for
@@ -115,11 +128,27 @@ def _robots_voice(language: str, wishes: Wishes) -> Voice:
     return voice(language, wishes.voice)
 
 
-def _check_ears(language: str) -> None:
+def _replies(language: str, world: World) -> Replies:
     from nl2robot.speech.recogniser import load
+    from nl2robot.speech.replies import Replies
 
-    next(espeak(language).speak("Hello."), None)
     load(language)
+    return Replies(load, cache(lambda language: _said_here(world, language)))
+
+
+def _ears(wishes: Wishes, replies: Replies) -> Ears:
+    from nl2robot.speech.microphone import Microphone
+    from nl2robot.speech.replies import AtMicrophone
+
+    device = wishes.microphone if isinstance(wishes.microphone, str) else None
+
+    @contextmanager
+    def microphone() -> Iterator[Iterator[Samples]]:
+        with Microphone(device) as opened:
+            yield opened.blocks()
+
+    with microphone():  # or it is told now that there is none
+        return AtMicrophone(microphone, replies)
 
 
 def _output(wishes: Wishes, tell: Callable[[str], None]) -> Output:
@@ -134,15 +163,13 @@ def _output(wishes: Wishes, tell: Callable[[str], None]) -> Output:
         return Nowhere()
 
 
-def _people(wishes: Wishes, world: World, speaker: Speaker, clock: Clock) -> Voices | None:
-    if not wishes.voices:
-        return None
+def _people(
+    wishes: Wishes, world: World, replies: Replies, speaker: Speaker, clock: Clock
+) -> Voices:
     from nl2robot.speech.people import SimulatedVoices
-    from nl2robot.speech.recogniser import load
 
     return SimulatedVoices(
-        recogniser_for=load,
-        phrases_for=cache(lambda language: _said_here(world, language)),
+        replies=replies,
         genders={person.name: person.gender for person in world.people},
         speaker=speaker,
         clock=clock,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 import zlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, TypeVar
@@ -23,7 +23,7 @@ from nl2robot.speech.voices import Sound, espeak, joined
 from robot_api.errors import NotPossible
 
 if TYPE_CHECKING:
-    from nl2robot.speech.recogniser import Recogniser
+    from nl2robot.speech.replies import Replies
     from nl2robot.speech.speaking import Speaker
     from robot_api.capabilities.sound import Asked
     from robot_api.driver import StopFlag
@@ -73,17 +73,15 @@ class SimulatedVoices:
     def __init__(
         self,
         *,
-        recogniser_for: Callable[[str], Recogniser],
-        phrases_for: Callable[[str], Sequence[str]],
+        replies: Replies,
         genders: Mapping[str, str | None],
         speaker: Speaker,
         clock: Callable[[], float],
         seed: int = 0,
     ) -> None:
-        """`recogniser_for` and `phrases_for` a language: what hears, and what may be said where
-        there are no options. `speaker` lets it be heard at the times of `clock`."""
-        self._recogniser_for = recogniser_for
-        self._phrases_for = phrases_for
+        """`replies` makes words of what is heard. `speaker` lets it be heard at the times of
+        `clock`."""
+        self.replies = replies
         self._genders = genders
         self._speaker = speaker
         self._clock = clock
@@ -99,7 +97,7 @@ class SimulatedVoices:
             said = Sound(at_microphone.samples, RATE)
             playing = self._speaker.play(said, max(0.0, self._clock() - said.seconds))
             stop.on_set(playing.cancel)
-            heard = _attended(lambda: self.recognised(at_microphone, asked), stop)
+            heard = _attended(lambda: self.replies.recognised(at_microphone, asked), stop)
         except UserError as error:
             raise NotPossible(str(error)) from error
         playing.wait()
@@ -116,23 +114,6 @@ class SimulatedVoices:
         with self._lock:
             echoing = scenes.echoing(signal, self._room)
             return scenes.audio(scenes.at_snr(echoing, self._noise, NOISE, self._rng))
-
-    def recognised(self, audio: Audio, asked: Asked) -> str:
-        """The option that was answered, else the words that were heard; empty if none were."""
-        from nl2robot.speech.answers import expect, hear_answer
-        from nl2robot.speech.recogniser import SpeechError
-
-        recogniser = self._recogniser_for(asked.language)
-        if asked.options:
-            options = list(asked.options)
-            expected = "yes-no" if {*map(str.lower, options)} == {"yes", "no"} else options
-            try:
-                answer = hear_answer(recogniser, audio, expect(expected, asked.language))
-            except SpeechError:  # it knows none of the words: then the touchscreen will have to do
-                return recogniser.recognise(audio).text
-            return answer.answer or answer.heard
-        heard = recogniser.recognise(audio, self._phrases_for(asked.language))
-        return (heard.free_text or "") if heard.doubtful else heard.text
 
 
 def _from_nearby(room: scenes.Signal) -> scenes.Signal:

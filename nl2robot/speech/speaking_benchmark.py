@@ -80,10 +80,10 @@ def understood() -> list[tuple[str, str, str, str]]:
     """Each answer as another person says it: who, what, which option it is, which was heard, or
     else the words that were."""
     from nl2robot.speech.recogniser import load
+    from nl2robot.speech.replies import Replies
 
     people = SimulatedVoices(
-        recogniser_for=load,
-        phrases_for=lambda language: (),
+        replies=Replies(load, lambda language: ()),
         genders={"Alice": "female", "Clara": "female", "Grace": "female"},
         speaker=Speaker(Handed(lambda sound, at: None)),
         clock=lambda: 0.0,
@@ -92,7 +92,7 @@ def understood() -> list[tuple[str, str, str, str]]:
     for number, (said, options, meant) in enumerate(ANSWERS):
         person = PEOPLE[number % len(PEOPLE)]
         sound = people.sound_of(person, said, "en")
-        heard = people.recognised(sound, Asked("en", None, options))
+        heard = people.replies.recognised(sound, Asked("en", None, options))
         results.append((person, said, meant, match_answer(heard, options) or heard))
     return results
 

@@ -6,19 +6,23 @@ from __future__ import annotations
 import re
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+import numpy as np
 import pytest
 import soundfile
+from numpy.typing import NDArray
 
 from nl2robot import cli, models
 from nl2robot.errors import UserError
 from nl2robot.speech.aloud import RobotVoice, Wishes, aloud
+from nl2robot.speech.audio import RATE
 from nl2robot.speech.loudspeaker import Handed
 from nl2robot.speech.people import FEMALE, MALE, SimulatedVoices, person_called
 from nl2robot.speech.recogniser import Recogniser
+from nl2robot.speech.replies import AtMicrophone, Microphone, Replies
 from nl2robot.speech.speaking import Speaker
 from nl2robot.speech.voices import Sound as Samples
 from nl2robot.speech.voices import voice
@@ -214,8 +218,9 @@ def test_everybody_has_a_voice_of_their_own_and_keeps_it() -> None:
 def people(recogniser: Recogniser) -> Iterator[SimulatedVoices]:
     speaker = Speaker(Handed(lambda sound, at: None))
     yield SimulatedVoices(
-        recogniser_for=lambda language: recogniser,
-        phrases_for=lambda language: ["yes", "no", "the pharmacy"],
+        replies=Replies(
+            lambda language: recogniser, lambda language: ["yes", "no", "the pharmacy"]
+        ),
         genders={"Alice": "female", "Henry": "male"},
         speaker=speaker,
         clock=lambda: 0.0,
@@ -261,8 +266,7 @@ def test_a_language_that_cannot_be_heard_is_told_of() -> None:
 
     speaker = Speaker(Handed(lambda sound, at: None))
     people = SimulatedVoices(
-        recogniser_for=no_model,
-        phrases_for=lambda language: [],
+        replies=Replies(no_model, lambda language: []),
         genders={},
         speaker=speaker,
         clock=lambda: 0.0,
@@ -283,9 +287,43 @@ def test_the_example_in_the_docs_runs() -> None:
     exec(compile(example, "docs/speaking.md", "exec"), {})
 
 
+def at_a_microphone(*sounds: Sequence[int]) -> Microphone:
+    """One that hears these sounds, and then nothing for a long time."""
+
+    @contextmanager
+    def opened() -> Iterator[Iterator[NDArray[np.int16]]]:
+        quiet = np.zeros(RATE, np.int16)
+        yield iter([quiet, *(np.asarray(sound, np.int16) for sound in sounds), *[quiet] * 20])
+
+    return opened
+
+
+def test_somebody_real_answers_at_the_microphone(people: SimulatedVoices) -> None:
+    said = people.sound_of("Henry", "ward b please", "en").samples
+    ears = AtMicrophone(at_a_microphone(said), people.replies)
+    assert ears.hear(StopFlag(), 5.0, Asked("en", "Where to?", ["ward a", "ward b"])) == "ward b"
+
+
+def test_a_number_is_expected_of_how_many(people: SimulatedVoices) -> None:
+    said = people.sound_of("Alice", "twelve", "en").samples
+    ears = AtMicrophone(at_a_microphone(said), people.replies)
+    assert ears.hear(StopFlag(), 5.0, Asked("en", "How many patients are here?")) == "12"
+
+
+def test_nobody_answers_at_the_microphone_and_a_stop_ends_the_waiting(
+    people: SimulatedVoices,
+) -> None:
+    ears = AtMicrophone(at_a_microphone(), people.replies)
+    assert ears.hear(StopFlag(), 5.0, Asked("en", "Where to?")) is None
+    stop = StopFlag()
+    stop.set()
+    with pytest.raises(Stopped):
+        ears.hear(stop, 5.0, Asked("en", "Where to?"))
+
+
 def test_options_that_the_model_cannot_hear_are_left_to_the_screen(
     people: SimulatedVoices,
 ) -> None:
     sound = people.sound_of("Alice", "qwrtz", "en")
-    heard = people.recognised(sound, Asked("en", None, ["qwrtz", "xyzzq"]))
+    heard = people.replies.recognised(sound, Asked("en", None, ["qwrtz", "xyzzq"]))
     assert heard not in ("qwrtz", "xyzzq")

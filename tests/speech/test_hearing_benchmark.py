@@ -31,9 +31,9 @@ def test_a_radio_plays_as_long_as_told() -> None:
 
 
 def test_words_left_out_put_in_and_mistaken_are_counted() -> None:
-    said = "go to the lobby".split()
+    said = ["go", "to", "the", "lobby"]
     assert word_errors(said, said) == 0
-    assert word_errors(said, "go the lobby now".split()) == 2
+    assert word_errors(said, ["go", "the", "lobby", "now"]) == 2
     assert word_errors(said, []) == 4
 
 
