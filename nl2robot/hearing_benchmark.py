@@ -28,7 +28,7 @@ from sim.world import load_world
 
 CONDITIONS = ("quiet", *(f"{level:g} dB" for level in LEVELS))
 MOST = {"quick": 15, "full": 100}
-"""Trials of each kind: the quick form takes about a minute on two idle cores."""
+"""Trials of each kind: the quick form takes two minutes of computing."""
 NOBODY = {"quick": 6, "full": 60}
 _NUMBERS = (12, 15, 21, 30, 47, 60, 99, 100, 105, 250)
 
