@@ -109,13 +109,19 @@ class Spotter:
             self._quiet += CHUNK / RATE
         self._chunks += 1
         ended = self._decoder.AcceptWaveform(chunk.tobytes())  # at a pause, a result is complete
-        if not ended and self._chunks % EVERY:
+        over = self._quiet > HANGOVER or self._chunks * CHUNK / RATE > LONGEST
+        if not (ended or over) and self._chunks % EVERY:
             return None
-        heard = json.loads(self._decoder.Result() if ended else self._decoder.PartialResult())
-        starts = self._starts(heard.get("result" if ended else "partial_result", []))
+        if ended or over:
+            heard = self._decoder.Result() if ended else self._decoder.FinalResult()
+            starts = self._starts(json.loads(heard).get("result", []))
+        else:
+            starts = self._starts(
+                json.loads(self._decoder.PartialResult()).get("partial_result", [])
+            )
         new, self._found = len(starts) > self._found, 0 if ended else len(starts)
         began = self._began
-        if self._quiet > HANGOVER or self._chunks * CHUNK / RATE > LONGEST:
+        if over:
             self._end()
         time = self._fed / RATE
         if not new or time - self._heard < HELD:
