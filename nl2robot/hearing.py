@@ -40,10 +40,10 @@ class Ear:
         audio = recording if isinstance(recording, Audio) else read(recording)
         if not has_speech(audio):
             return Heard("", 0.0, (), False, None, (), audio.seconds, 0.0)
-        return self.chosen(self.recogniser.recognise(audio, self._phrases))
+        return self.understood(self.recogniser.recognise(audio, self._phrases))
 
     def listener(self, manner: Manner = COMMANDS, also: Sequence[str] = ()) -> Listener:
-        """Hears live what `hear` hears of recordings, but for the choice: see `chosen`. `also` is
+        """Hears live what `hear` hears of recordings, but for the choice: see `understood`. `also` is
         what may be said besides commands."""
         return Listener(Streaming(self.recogniser, [*self._phrases, *also]), manner)
 
@@ -54,11 +54,11 @@ class Ear:
         self.recogniser.recognise(Audio(noise), [*self._phrases, *also])
 
     def open(self, gain: float = 1.0) -> Decoding:
-        """A decoding of a command to be fed with sound while it comes; `chosen` chooses among what
+        """A decoding of a command to be fed with sound while it comes; `understood` chooses among what
         it finds."""
         return self.recogniser.open(self._phrases, gain=gain)
 
-    def chosen(self, heard: Heard, also: Container[str] = ()) -> Heard:
+    def understood(self, heard: Heard, also: Container[str] = ()) -> Heard:
         """The reading that is understood, or is one of `also`."""
         return choose(heard, lambda text: text in also or self._is_understood(text))
 

@@ -162,7 +162,7 @@ class _Bench:
         for start in range(0, len(samples), BLOCK):
             decoding.feed(samples[start : start + BLOCK])
         ended = time.perf_counter()
-        heard = self._ear.chosen(decoding.finish())
+        heard = self._ear.understood(decoding.finish())
         translation = self._ear.translate(heard)
         done = time.perf_counter()
         program = translation.program

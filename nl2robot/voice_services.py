@@ -145,7 +145,7 @@ class Microphones:
                 return {"what": "partial", "text": text}
             case SpeechEnded():
                 assert event.heard is not None
-                heard = opened.ear.chosen(event.heard)
+                heard = opened.ear.understood(event.heard)
                 translation = opened.ear.translate(heard, talk=self._talk_of(opened.talk))
                 return {
                     "what": "heard",

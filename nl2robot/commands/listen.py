@@ -96,7 +96,7 @@ class _Commands:
 
     def spoken(self, speech: SpeechEnded) -> None:
         assert speech.heard is not None
-        self._print(self._ear.chosen(speech.heard))
+        self._print(self._ear.understood(speech.heard))
 
     def _print(self, heard: Heard) -> None:
         translation = self._ear.translate(heard, self._options.planner)

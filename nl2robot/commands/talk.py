@@ -68,7 +68,7 @@ def voice_input(
     manner = Manner(patience=PATIENCE)
     return VoiceInput(
         lambda: ear.listener(manner, also),
-        lambda heard: ear.chosen(heard, also=said),
+        lambda heard: ear.understood(heard, also=said),
         hot_word,
         StopWord(language),
         hot_words=[hot_word.word],

@@ -50,7 +50,7 @@ def measure(recordings: Sequence[Audio], ear: Ear, repeats: int = REPEATS) -> di
                 if isinstance(event, SpeechEnded) and event.heard is not None and not heard:
                     heard = True
                     texts.append(time.perf_counter() - started - last)
-                    ear.translate(ear.chosen(event.heard))
+                    ear.translate(ear.understood(event.heard))
                     programs.append(time.perf_counter() - started - last)
     pause = COMMANDS.pause
     return {

@@ -21,7 +21,7 @@ import numpy as np
 
 from nl2robot.speech.audio import RATE, Audio, Samples
 from nl2robot.speech.levels import gain_for
-from nl2robot.speech.recogniser import WORST_FIT, Decoding, Heard, Recogniser
+from nl2robot.speech.recogniser import Decoding, Heard, Recogniser
 
 FIRST = 0.6  # seconds of sound that tell the loudness of the rest; some of it is before the speech
 MEMORY = 0.5  # what the loudness of the last speech counts for that of the next
@@ -36,7 +36,7 @@ class Streaming:
         recogniser: Recogniser,
         phrases: Sequence[str] | None = None,
         *,
-        worst_fit: float = WORST_FIT,
+        worst_fit: float | None = None,
     ) -> None:
         """`phrases` and `worst_fit` as for `Recogniser.recognise`."""
         self._recogniser = recogniser
@@ -46,7 +46,7 @@ class Streaming:
         self._heard: Heard | None = None
         self.expect(phrases, worst_fit=worst_fit)
 
-    def expect(self, phrases: Sequence[str] | None, *, worst_fit: float = WORST_FIT) -> None:
+    def expect(self, phrases: Sequence[str] | None, *, worst_fit: float | None = None) -> None:
         """What may be said from the next `begin` on."""
         self._phrases = phrases
         self._worst_fit = worst_fit

@@ -13,8 +13,7 @@ import pytest
 
 from nl2robot.commands.listen import live
 from nl2robot.errors import UserError
-from nl2robot.speech import recogniser as recognition
-from nl2robot.speech import scenes, streaming
+from nl2robot.speech import levels, scenes, streaming
 from nl2robot.speech.audio import RATE, Audio, Samples, read
 from nl2robot.speech.listening import (
     ANSWERS,
@@ -311,7 +310,7 @@ def test_the_loudness_is_held_back_rather_than_clipped() -> None:
     loudness = streaming._Loudness()
     loudness.begin()
     gain = loudness.guess(np.array([1000, -1000], np.int16))
-    assert gain * 1000 == pytest.approx(recognition.LOUDNESS * 32767)
+    assert gain * 1000 == pytest.approx(levels.LOUDNESS * 32767)
     for peak in (1000, 20_000, -32768, 500):
         kept = loudness.held_back(np.array([peak], np.int16)).astype(float)
         assert abs(kept[0] * gain) <= 32767
