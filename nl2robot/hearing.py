@@ -43,8 +43,8 @@ class Ear:
         return self.understood(self.recogniser.recognise(audio, self._phrases))
 
     def listener(self, manner: Manner = COMMANDS, also: Sequence[str] = ()) -> Listener:
-        """Hears live what `hear` hears of recordings, but for the choice: see `understood`. `also` is
-        what may be said besides commands."""
+        """Hears live what `hear` hears of recordings, but for the choice (`understood`). `also`
+        is what may be said besides commands."""
         return Listener(Streaming(self.recogniser, [*self._phrases, *also]), manner)
 
     def get_ready(self, also: Sequence[str] = ()) -> None:
@@ -54,8 +54,8 @@ class Ear:
         self.recogniser.recognise(Audio(noise), [*self._phrases, *also])
 
     def open(self, gain: float = 1.0) -> Decoding:
-        """A decoding of a command to be fed with sound while it comes; `understood` chooses among what
-        it finds."""
+        """A decoding of a command to be fed with sound while it comes; `understood` chooses among
+        what it finds."""
         return self.recogniser.open(self._phrases, gain=gain)
 
     def understood(self, heard: Heard, also: Container[str] = ()) -> Heard:
