@@ -27,7 +27,7 @@ COMMANDS = {
     "phrases": "what can be said here, by topic",
     "chat": "the same as a conversation in the terminal",
     "hotword": "say each time the hot word is heard",
-    "listen": "turn a recording into a program, or into an answer",
+    "listen": "turn what is said, or a recording, into a program or an answer",
     "routines": "commands with a name: list, explain, learn, change, forget",
     "serve": "the robot server on one port, a simulated hospital by default",
     "log": "show past runs, and replay them in the simulator",

@@ -1,11 +1,24 @@
-"""Speech to text on this machine alone.
+"""Speech in and out, on this machine alone.
 
-audio        any recording -> 16 kHz mono samples
-levels       how loud it is
-recogniser   samples and what may be said -> the words, and whether to believe them
-answers      what may be answered to a question, and which answer was given
-vocabulary   words that the speech model can never hear, and what to call them instead
-digits       which digit a short sound is, by the sound alone; digits_training makes it
-scenes       noise and rooms; trials: what is said in them to measure how well it is heard
-benchmark    how fast it is
+Hearing
+    audio        any recording or live sound -> 16 kHz mono samples; webm: what browsers record
+    microphone   samples as they come
+    listening    when somebody speaks; streaming: their words while they do
+    recogniser   samples and what may be said -> the words, and whether to believe them
+    answers      what may be answered to a question, and which answer was given
+    replies      what somebody replied to the robot, at a microphone
+    vocabulary   words that the speech model can never hear, and what to call them instead
+    digits       which digit a short sound is, by the sound alone; digits_training makes it
+    hotword      "hey robot" and "stop", always; spotting: any other word; hotword_training
+
+Speaking
+    voices       text -> sound; sentences: what is spoken at a time; kept: what was spoken before
+    speaking     one text after the other, silent at once; loudspeaker: where the sound goes
+    people       the voices of the simulated people
+    aloud        a run that is heard
+
+Measuring
+    levels       how loud a sound is
+    scenes       noise and rooms; trials: what is said in them to measure how well it is heard
+    benchmark    how fast it is; delay, hotword_benchmark, speaking_benchmark
 """
