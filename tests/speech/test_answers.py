@@ -206,7 +206,7 @@ def test_the_second_ear_decides_between_digits_that_sound_alike(
     monkeypatch.setattr(digits, "load", lambda language: Ear())
     expected = expect("digits", "en")
     voice = Audio(np.ones(8000, np.int16))
-    answer = answer_in(heard(("eight", 32.0), ("six", 31.0)), voice, expected)
+    answer = answer_in(heard(("eight", 32.0), ("six", 31.6)), voice, expected)
     assert (answer.answer, [digit for digit, _ in answer.likely]) == ("6", ["6", "8"])
     rows = answer_in(heard(("eight eight", 32.0)), voice, expected)
     assert rows.answer == "88"  # for the recogniser alone

@@ -13,7 +13,8 @@ import soundfile
 from nl2robot.models import ModelError
 from nl2robot.speech import benchmark
 from nl2robot.speech.audio import RATE, Audio, read
-from nl2robot.speech.recogniser import Heard, Reading, Recogniser, SpeechError, choose, gain_for
+from nl2robot.speech.levels import gain_for
+from nl2robot.speech.recogniser import Heard, Reading, Recogniser, SpeechError, choose
 from tests.speech.conftest import RECORDED, SHOWN
 
 # A small ward's way of talking: more words than the recordings hold, and ones that sound alike.
