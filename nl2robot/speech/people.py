@@ -20,6 +20,7 @@ from nl2robot.speech import scenes
 from nl2robot.speech.audio import RATE, Audio
 from nl2robot.speech.loudspeaker import resampled
 from nl2robot.speech.voices import Sound, espeak, joined
+from robot_api.capabilities.sound import Unsure
 from robot_api.errors import NotPossible
 
 if TYPE_CHECKING:
@@ -102,7 +103,8 @@ class SimulatedVoices:
             raise NotPossible(str(error)) from error
         playing.wait()
         stop.check()
-        return heard or None
+        # Whether that was it, nobody who is simulated would know to answer.
+        return (heard.words if isinstance(heard, Unsure) else heard) or None
 
     def sound_of(self, person: str, words: str, language: str) -> Audio:
         """It at the robot's microphone."""

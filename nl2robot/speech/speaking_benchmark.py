@@ -15,7 +15,7 @@ from nl2robot.speech.people import SimulatedVoices
 from nl2robot.speech.speaking import Speaker
 from nl2robot.speech.voices import Voice, joined, voice
 from robot_api.capabilities.matching import match_answer
-from robot_api.capabilities.sound import Asked
+from robot_api.capabilities.sound import Asked, Unsure
 
 TEXTS: Final = (
     "Good morning.",
@@ -93,7 +93,8 @@ def understood() -> list[tuple[str, str, str, str]]:
         person = PEOPLE[number % len(PEOPLE)]
         sound = people.sound_of(person, said, "en")
         heard = people.replies.recognised(sound, Asked("en", None, options))
-        results.append((person, said, meant, match_answer(heard, options) or heard))
+        words = heard.words if isinstance(heard, Unsure) else heard
+        results.append((person, said, meant, match_answer(words, options) or words))
     return results
 
 

@@ -15,7 +15,7 @@ from robot_api.capabilities.base import Capability
 from robot_api.capabilities.languages import language_data
 from robot_api.capabilities.matching import match_answer, match_question
 from robot_api.capabilities.simulation import InSimulation
-from robot_api.capabilities.sound import SILENT, Asked, Sound
+from robot_api.capabilities.sound import SILENT, Asked, Sound, Unsure
 from robot_api.driver import StopFlag
 from robot_api.errors import NotFound, TimedOut
 from robot_api.methods import MAX_TEXT
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 ANSWER_TIMEOUT = 10.0
 """Seconds that somebody has to begin an answer."""
 _TRIES = 2
+_YES_NO = ["yes", "no"]
 
 
 @dataclass(frozen=True)
@@ -64,9 +65,10 @@ class Hearing(Capability):
         question: str | None = None,
         options: Sequence[str] | None = None,
         person: str | None = None,
-    ) -> str | None:
+    ) -> str | Unsure | None:
         """The words of whoever speaks within `timeout` seconds, or None. What was asked, the
-        answers that count and who is asked may help to recognise them."""
+        answers that count and who is asked may help to recognise them; an answer that was heard
+        badly is `Unsure`."""
 
     @abstractmethod
     def prepared(self, language: str) -> Sequence[Prepared]:
@@ -79,7 +81,7 @@ class Hearing(Capability):
     def listen(self, stop: StopFlag, prompt: str | None, timeout: float) -> str:
         if prompt:
             self._say(stop, prompt)
-        heard = self.hear(stop, timeout, prompt)
+        heard = _words(self.hear(stop, timeout, prompt))
         if heard is None:
             raise TimedOut(
                 f"I listened for {timeout:g} seconds, but nobody spoke. "
@@ -97,11 +99,17 @@ class Hearing(Capability):
         for attempt in range(_TRIES):
             self._say(stop, f"{language.again} {question}" if misheard else question)
             heard = self.hear(stop, ANSWER_TIMEOUT, question, options, person)
-            if heard is None:
+            if isinstance(heard, Unsure) and options and heard.perhaps in options:
+                if self._confirmed(stop, heard.perhaps, person):
+                    return heard.perhaps
+                misheard = attempt == 0
+                continue
+            words = _words(heard)
+            if words is None:
                 continue
             if not options:
-                return heard[:MAX_TEXT]
-            answer = match_answer(heard, options, self.language)
+                return words[:MAX_TEXT]
+            answer = match_answer(words, options, self.language)
             if answer is not None:
                 return answer
             misheard = attempt == 0
@@ -112,6 +120,13 @@ class Hearing(Capability):
                 else "Nobody answered my question. Ask again when somebody is there."
             )
         return self._screen.touch(stop, options, f"{question} {language.choose}")
+
+    def _confirmed(self, stop: StopFlag, perhaps: str, person: str | None) -> bool:
+        """Whether somebody says that this is what they answered."""
+        question = language_data(self.language).was_that.format(perhaps)
+        self._say(stop, question)
+        heard = _words(self.hear(stop, ANSWER_TIMEOUT, question, _YES_NO, person))
+        return heard is not None and match_answer(heard, _YES_NO, self.language) == "yes"
 
     def answer(self, stop: StopFlag, question: str | None) -> str:
         asked = self.listen(stop, None, ANSWER_TIMEOUT) if question is None else question
@@ -126,6 +141,10 @@ class Hearing(Capability):
             self._speech.say(stop, text)
         elif self._screen is not None:
             self._screen.show(stop, text, None, None)
+
+
+def _words(heard: str | Unsure | None) -> str | None:
+    return heard.words if isinstance(heard, Unsure) else heard
 
 
 class EmulatedHearing(Hearing):
@@ -154,7 +173,7 @@ class EmulatedHearing(Hearing):
         question: str | None = None,
         options: Sequence[str] | None = None,
         person: str | None = None,
-    ) -> str | None:
+    ) -> str | Unsure | None:
         if self._sound.ears is not None:
             asked = Asked(self.language, question, options, person)
             heard = self._sound.ears.hear(stop, timeout, asked)
@@ -162,7 +181,7 @@ class EmulatedHearing(Hearing):
             heard = self._emulation.next_answer(options[0] if options else "yes")
         self._emulation.pass_time(timeout if heard is None else min(2.0, timeout), stop)
         if heard is not None:
-            self._emulation.publish("heard", text=heard, person=person)
+            self._emulation.publish("heard", text=_words(heard), person=person)
         return heard
 
     def prepared(self, language: str) -> Sequence[Prepared]:
@@ -191,7 +210,7 @@ class SimulatedHearing(InSimulation, Hearing):
         question: str | None = None,
         options: Sequence[str] | None = None,
         person: str | None = None,
-    ) -> str | None:
+    ) -> str | Unsure | None:
         ears, voices = self._sound.ears, self._sound.voices
         asked = Asked(self.language, question, options, person)
         if ears is not None:
@@ -214,7 +233,7 @@ class SimulatedHearing(InSimulation, Hearing):
     def is_here(self, person: str) -> bool:
         return bool(self.simulation.visible(person))
 
-    def _published(self, heard: str | None, person: str | None) -> str | None:
+    def _published(self, heard: str | Unsure | None, person: str | None) -> str | Unsure | None:
         if heard:
-            self.simulation.emit("heard", {"text": heard, "person": person})
+            self.simulation.emit("heard", {"text": _words(heard), "person": person})
         return heard or None

@@ -21,6 +21,7 @@ class _Raw(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A language as `languages.yaml` writes it: phrases parted by commas."""
 
     again: str
+    was_that: str
     choose: str
     no_answer: str
     plain_yes: str
@@ -45,6 +46,8 @@ class Language:
 
     again: str = "?"
     """Said when an answer was not understood."""
+    was_that: str = "{}?"
+    """Asked about an answer that was heard badly, which stands for the braces."""
     choose: str = "?"
     """Said when the options are offered on the screen."""
     no_answer: str = "?"
@@ -103,6 +106,7 @@ def _languages() -> dict[str, Language]:
 def _language(raw: _Raw) -> Language:
     return Language(
         again=raw.again,
+        was_that=raw.was_that,
         choose=raw.choose,
         no_answer=raw.no_answer,
         plain_yes=_phrases(raw.plain_yes),

@@ -30,6 +30,14 @@ class Asked:
     """Who is asked, where it is not anybody."""
 
 
+@dataclass(frozen=True)
+class Unsure:
+    """Words that were heard badly, and the option that they probably were."""
+
+    words: str
+    perhaps: str
+
+
 class Loudspeaker(Protocol):
     def speaking(
         self, stop: StopFlag, text: str, language: str, volume: int
@@ -41,8 +49,9 @@ class Loudspeaker(Protocol):
 
 
 class Ears(Protocol):
-    def hear(self, stop: StopFlag, timeout: float, asked: Asked) -> str | None:
-        """The words of whoever begins to speak within `timeout` seconds, or None. Raises
+    def hear(self, stop: StopFlag, timeout: float, asked: Asked) -> str | Unsure | None:
+        """The words of whoever begins to speak within `timeout` seconds, or None; where there are
+        options, perhaps `Unsure`, and then the robot asks whether that was it. Raises
         `Stopped`."""
         ...
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from robot_api.capabilities.sound import Asked, Sound, Unsure
 from robot_api.driver import Event, StopFlag
 from robot_api.drivers import EmulatedDriver, emulated
 from robot_api.errors import TimedOut
@@ -49,6 +50,36 @@ def test_an_answer_that_is_not_understood_is_asked_for_again() -> None:
     bystander = Bystander(robot)
     assert where_to(robot) == "pharmacy"
     assert bystander.spoken == ["Where to?", "I am sorry, I did not understand you. Where to?"]
+
+
+class BadEars:
+    """A robot in a noisy corridor."""
+
+    def __init__(self, *heard: str | Unsure | None) -> None:
+        self.heard = list(heard)
+        self.asked: list[Asked] = []
+
+    def hear(self, stop: StopFlag, timeout: float, asked: Asked) -> str | Unsure | None:
+        self.asked.append(asked)
+        return self.heard.pop(0)
+
+
+def test_what_was_heard_badly_is_asked_about() -> None:
+    ears = BadEars(Unsure("fare missy", "pharmacy"), "yes, exactly")
+    robot = emulated(sound=Sound(ears=ears))
+    bystander = Bystander(robot)
+    assert where_to(robot) == "pharmacy"
+    assert bystander.spoken == ["Where to?", "Was that “pharmacy”?"]
+    assert ears.asked[1].options == ["yes", "no"]
+
+
+@pytest.mark.parametrize("answer", ["no", None, "what?", Unsure("yeti", "yes")])
+def test_what_is_not_confirmed_is_not_taken(answer: str | Unsure | None) -> None:
+    ears = BadEars(Unsure("fare missy", "pharmacy"), answer, "radiology")
+    robot = emulated(sound=Sound(ears=ears))
+    bystander = Bystander(robot)
+    assert where_to(robot) == "radiology"
+    assert bystander.spoken[2] == "I am sorry, I did not understand you. Where to?"
 
 
 def test_after_two_misunderstandings_the_touchscreen_helps() -> None:
