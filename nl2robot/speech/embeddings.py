@@ -7,6 +7,7 @@ apart from them needs only a small head, see `nl2robot.speech.hotword`.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 from typing import Any, Final
 
@@ -27,6 +28,9 @@ _FRAMES_A_STEP: Final = 8
 _FRAMES: Final = 76  # of the spectrogram, for an embedding
 _BANDS: Final = 32
 _LEAD: Final = 9  # steps of which the first embedding looks at a part
+WINDOW: Final = 12_640
+"""Samples that one embedding is made of, 0.79 s: 76 frames of 10 ms with their edges."""
+_WINDOWS_AT_ONCE: Final = 64
 _AT_ONCE: Final = 750  # steps of a long sound, a minute: bounds the memory
 
 
@@ -73,6 +77,17 @@ def embed(samples: Samples) -> Embeddings:
         # The network's last layer reshapes as if there were one embedding: undone here.
         found.append(embeddings.reshape(SIZE, -1).T)
     return np.concatenate(found) if found else np.zeros((0, SIZE), np.float32)
+
+
+def embed_windows(windows: Sequence[NDArray[np.float32]]) -> Embeddings:
+    """One embedding each of sounds of `WINDOW` samples, of shape (windows, 96)."""
+    network, found = _embedder(), [np.zeros((0, SIZE), np.float32)]
+    for start in range(0, len(windows), _WINDOWS_AT_ONCE):
+        spectra = [_spectrogram(window) for window in windows[start : start + _WINDOWS_AT_ONCE]]
+        frames = np.stack([frames[-_FRAMES:, :, None] for frames in spectra])
+        (embeddings,) = network.run(None, {"input_1": frames})
+        found.append(embeddings.reshape(-1, SIZE))
+    return np.concatenate(found)
 
 
 def _spectrogram(sound: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -7,6 +7,7 @@ import pytest
 
 from nl2robot.speech import digits
 from nl2robot.speech.audio import RATE, Audio, read
+from nl2robot.speech.embeddings import WINDOW
 from tests.speech.conftest import RECORDED
 
 
@@ -27,7 +28,7 @@ def test_a_word_without_quiet_around_it_is_left_as_it_is() -> None:
 
 def test_a_sound_is_put_into_the_window_at_full_loudness() -> None:
     window = digits.placed(tone(0.3, 10), 0.5)
-    assert len(window) == digits.WINDOW == len(digits.placed(tone(2, 10), 0.5))
+    assert len(window) == WINDOW == len(digits.placed(tone(2, 10), 0.5))
     assert np.abs(window).max() == pytest.approx(digits.LOUDNESS, rel=0.01)
     assert not window[:3000].any()
 
