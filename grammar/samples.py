@@ -33,8 +33,29 @@ def _samples(lexicon: Lexicon, language: Language) -> dict[str, list[str]]:
     return result
 
 
-def _filled(example: str, lexicon: Lexicon, language: Language) -> str | None:
-    """The example with names of the lexicon in its slots; None where there are none."""
+@functools.lru_cache(maxsize=16)
+def all_samples(lexicon: Lexicon, code: str = "en") -> tuple[str, ...]:
+    """The same examples with every name of this world in every slot, one after the other: from
+    whole sentences a recogniser learns which words stand together."""
+    language = load_language(code)
+    slots = {slot for each in language.help.values() for one in each for slot, _ in _slots(one)}
+    most = max((len(names_for(slot, lexicon)) for slot in slots), default=1)
+    filled = (
+        _filled(example, lexicon, language, shift)
+        for shift in range(most)
+        for examples in language.help.values()
+        for example in examples
+    )
+    return tuple(dict.fromkeys(each for each in filled if each))
+
+
+def _slots(example: str) -> list[tuple[str, str]]:
+    return _SLOT.findall(example)
+
+
+def _filled(example: str, lexicon: Lexicon, language: Language, shift: int = 0) -> str | None:
+    """The example with names of the lexicon in its slots, from the one of this number on; None
+    where there are none."""
     used: dict[str, int] = {}
 
     def fill(match: re.Match[str]) -> str:
@@ -44,7 +65,7 @@ def _filled(example: str, lexicon: Lexicon, language: Language) -> str | None:
         used[slot] = number + 1
         if number >= len(names):
             raise LookupError(slot)
-        name = names[number]
+        name = names[(number + shift) % len(names)]
         if slot == "place":
             return place_called(name, lexicon, language)
         name = naming(lexicon, language).called(name)

@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 
 from grammar.language import load_language
-from grammar.samples import samples
+from grammar.samples import all_samples
 from grammar.vocabulary import vocabulary
 from nl2robot.knowledge import Knowledge
 from nl2robot.speech.audio import RATE, Audio, read
@@ -30,7 +30,7 @@ class Ear:
         self.language = language
         self.recogniser = Recogniser(model, language)
         self._phrases = [
-            *(sentence for topic in samples(lexicon, language).values() for sentence in topic),
+            *all_samples(lexicon, language),
             *vocabulary(lexicon, language),
         ]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -14,9 +15,10 @@ import grammar
 from grammar.language import languages, load_language
 from grammar.lexicon import Lexicon
 from grammar.meanings import MEANINGS
+from grammar.naming import naming
 from grammar.program import write_program
 from grammar.sampler import random_sentence, sensible
-from grammar.samples import samples
+from grammar.samples import all_samples, samples
 from grammar.understand import understand
 from robot_api.methods import METHODS
 from robot_api.stub import stub
@@ -81,3 +83,15 @@ def test_every_phrase_that_the_code_says_exists(language: str) -> None:
     )
     said = set(re.findall(r'(?:\.phrase|\bd\.say|\.sentence)\(\s*"(\w+)"', code))
     assert said <= load_language(language).phrases.keys()
+
+
+@pytest.mark.parametrize("language", languages())
+def test_everybody_in_a_world_stands_in_whole_sentences(language: str) -> None:
+    lexicon = hospital(language)
+    said = " ".join(all_samples(lexicon, language)).lower()
+    for person in lexicon.people:  # places may be inflected
+        called = naming(lexicon, load_language(language)).called(person.name)
+        assert called.lower() in said, person
+    assert {*itertools.chain(*samples(lexicon, language).values())} <= {
+        *all_samples(lexicon, language)
+    }
