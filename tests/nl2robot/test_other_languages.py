@@ -15,6 +15,8 @@ KNOWLEDGE = Knowledge(load_world(DEFAULT_WORLD))
     [
         ("en", "sprich Deutsch", "de"),
         ("en", "Deutsch bitte", "de"),
+        ("en", "sprich Französisch", "fr"),
+        ("fr", "speak German", "de"),
         ("en", "en français s'il te plaît", "fr"),
         ("de", "speak English please", "en"),
         ("de", "auf Englisch bitte", "en"),
