@@ -109,8 +109,7 @@ def _station(options: argparse.Namespace, world: World, log: RunLog) -> Iterator
             sound=sound,
         ) as simulated,
     ):
-        if heard:  # a German sentence in an English voice is not understood
-            simulated.simulation.set_language(options.lang)
+        simulated.simulation.set_language(options.lang)  # who is spoken to in German answers so
         yield simulated
 
 
