@@ -154,7 +154,7 @@ def _serve() -> Iterator[Figure]:
                 "serve", "stop to zero speed, median", statistics.median(delays), "ms", "50"
             )
             yield Figure("serve", "stop to zero speed, worst of 10", max(delays), "ms", "50")
-            yield Figure("serve", "memory after that", _megabytes(server.pid), "MB")
+            yield Figure("serve", "memory after that", megabytes(server.pid), "MB")
         finally:
             server.terminate()
             server.wait()
@@ -199,7 +199,7 @@ def _environment(home: Path) -> dict[str, str]:
     return {**os.environ, "NL2ROBOT_HOME": str(home)}
 
 
-def _megabytes(pid: int) -> float:
+def megabytes(pid: int) -> float:
     """Resident memory of a process, where the system tells (Linux)."""
     try:
         status = Path(f"/proc/{pid}/status").read_text(encoding="ascii")

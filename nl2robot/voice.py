@@ -9,6 +9,7 @@ clock: time is counted in samples. `SpokenLines` runs it beside the keyboard.
 
 from __future__ import annotations
 
+import logging
 import queue
 import threading
 import time
@@ -28,6 +29,8 @@ from nl2robot.speech.listening import (
     TooLong,
 )
 from nl2robot.speech.recogniser import Heard
+
+_log: Final = logging.getLogger(__name__)
 
 PATIENCE: Final = 8.0
 """Seconds that somebody may think after the hot word, or after a question."""
@@ -208,23 +211,25 @@ class OwnVoice:
 
     _ECHO: Final = 0.5
     """Seconds for which a room, and a detector, may still be at its last word."""
+    _SLOWEST: Final = 8.0
+    """Letters a second: a text that nobody tells the end of is over by then."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
         self._text = ""
-        self._ended: float | None = None
+        self._ends = 0.0
 
     def note(self, kind: str, data: Mapping[str, Any]) -> None:
         """An event of the kinds `speech` and `program`."""
         if kind == "speech":
-            self._text, self._ended = str(data["text"]).lower(), None
-        elif data["what"] == "result" or data["what"] == "state":
-            self._ended = self._clock()
+            self._text = str(data["text"]).lower()
+            self._ends = self._clock() + 1.0 + len(self._text) / self._SLOWEST
+        elif data["what"] in ("result", "state"):
+            self._ends = min(self._ends, self._clock())
 
     def says(self, word: str) -> bool:
         """Whether the robot is saying a word itself."""
-        over = self._ended is not None and self._clock() - self._ended > self._ECHO
-        return not over and word.lower() in self._text
+        return self._clock() <= self._ends + self._ECHO and word.lower() in self._text
 
 
 class SpokenLines:
@@ -275,3 +280,7 @@ class SpokenLines:
             self._events.put(Ended())
         except UserError as error:
             self._events.put(error)
+        except Exception:  # noqa: BLE001 - a fault of ours must not leave somebody speaking to a deaf robot
+            _log.debug("Listening failed", exc_info=True)
+            told = "Listening failed, so nothing more is heard. Type instead, or start again."
+            self._events.put(UserError(told))

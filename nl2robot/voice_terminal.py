@@ -46,6 +46,7 @@ class VoiceTerminal(Terminal):
         heard, and raises `UserError` where they cannot be."""
         self._own_voice = own_voice or OwnVoice()
         self._voice_for = voice_for
+        self._heard_language = language
         self._spoken = SpokenLines(voice_for(language), blocks)
         self._prompt = ""
         self._deaf = False
@@ -60,12 +61,12 @@ class VoiceTerminal(Terminal):
         return True
 
     def speak(self, language: str) -> None:
-        before = getattr(self, "language", language)
         super().speak(language)
-        if language == before:
+        if language == self._heard_language:
             return
         try:
             self._spoken.use(self._voice_for(language))
+            self._heard_language = language
         except UserError as error:  # it can still be typed in
             self.console.print(str(error), markup=False)
 

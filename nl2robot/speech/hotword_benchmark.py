@@ -15,11 +15,11 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
-from pathlib import Path
 from typing import Final, NamedTuple
 
 import numpy as np
 
+from nl2robot.benchmark import megabytes
 from nl2robot.errors import UserError
 from nl2robot.models import find
 from nl2robot.speech import scenes
@@ -236,20 +236,11 @@ def _cost(stage: Stage) -> Iterator[Measured]:
     if find("en"):
         detectors["two stages"] = lambda: Spotter(load("en"), "hey robot")
     for name, make in detectors.items():
-        before = _megabytes()
+        before = megabytes(os.getpid())
         hear = block_by_block(make)
         wall, used = time.perf_counter(), time.process_time()
         hear(samples)
         seconds = len(samples) / RATE
         yield Measured(f"{name}: real-time factor", (time.perf_counter() - wall) / seconds, "")
         yield Measured(f"{name}: of a core", (time.process_time() - used) / seconds * 100, "%")
-        yield Measured(f"{name}: memory more", _megabytes() - before, "MB")
-
-
-def _megabytes() -> float:
-    """Resident memory of this process, where the system tells (Linux)."""
-    try:
-        status = Path("/proc/self/status").read_text(encoding="ascii")
-    except OSError:
-        return float("nan")
-    return int(status.split("VmRSS:")[1].split()[0]) / 1024
+        yield Measured(f"{name}: memory more", megabytes(os.getpid()) - before, "MB")

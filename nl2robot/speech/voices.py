@@ -36,7 +36,7 @@ _PAUSE: Final = 0.2
 _INITIALISE_FAILED: Final = -1
 _RETRIEVAL: Final = 1  # AUDIO_OUTPUT_RETRIEVAL: samples come to the callback
 _UTF8: Final = 1  # and neither espeakSSML nor espeakPHONEMES: text is text
-_RATE, _VOLUME, _PITCH = 1, 2, 3  # espeak_PARAMETER
+_RATE, _PITCH = 1, 3  # espeak_PARAMETER
 _SLOWEST, _FASTEST = 80, 450  # words a minute that espeak-ng takes
 
 
@@ -121,6 +121,20 @@ def joined(sounds: Iterable[Sound]) -> Sound:
     return Sound(np.concatenate([piece.samples for piece in heard]), heard[0].rate)
 
 
+def _piecewise(
+    text: str, sound_of: Callable[[str], Sound], stopped: Callable[[], bool]
+) -> Iterator[Sound]:
+    """The pieces of a text one after the other; what was made while it was stopped is dropped."""
+    for piece in pieces(text):
+        if stopped():
+            return
+        sound = sound_of(piece)
+        if stopped():
+            return
+        if sound.seconds:
+            yield sound
+
+
 # --- espeak-ng -----------------------------------------------------------------------------------
 
 
@@ -145,14 +159,7 @@ class _Espeak:
         pitch: float = 1.0,
         stopped: Callable[[], bool] = never,
     ) -> Iterator[Sound]:
-        for piece in pieces(text):
-            if stopped():
-                return
-            sound = self._sound(piece, speed, pitch, stopped)
-            if stopped():
-                return
-            if sound.seconds:
-                yield sound
+        return _piecewise(text, lambda piece: self._sound(piece, speed, pitch, stopped), stopped)
 
     def _sound(self, text: str, speed: float, pitch: float, stopped: Callable[[], bool]) -> Sound:
         library, rate = _espeak_library()
@@ -240,14 +247,7 @@ class _Piper:
         from piper import SynthesisConfig
 
         config = SynthesisConfig(length_scale=1 / speed)
-        for piece in pieces(text):
-            if stopped():
-                return
-            sound = self._sound(piece, config)
-            if stopped():
-                return
-            if sound.seconds:
-                yield sound
+        return _piecewise(text, lambda piece: self._sound(piece, config), stopped)
 
     def _sound(self, text: str, config: Any) -> Sound:
         with self._lock:

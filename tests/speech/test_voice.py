@@ -140,6 +140,10 @@ def test_the_robot_knows_what_it_says_and_for_how_long() -> None:
     assert own.says("stop")  # it still sounds
     now = 1.0
     assert not own.says("stop")
+    own.note("speech", {"text": "Mind the stop.", "language": "en"})
+    assert own.says("stop")
+    now = 9.0  # nobody told that it is over: whoever cries stop then is somebody else
+    assert not own.says("stop")
 
 
 def test_what_may_have_been_something_else_is_asked_again() -> None:
@@ -163,6 +167,18 @@ def test_an_unplugged_microphone_is_told_once() -> None:
     with pytest.raises(UserError, match="unplugged"):
         lines.next(5.0)
     assert lines.next(0.0) is None
+
+
+def test_a_fault_while_listening_is_told_and_the_keyboard_stays(caplog) -> None:
+    def blocks():
+        yield HOT
+        raise ZeroDivisionError
+
+    lines = SpokenLines(an_ear(), blocks())
+    lines.start()
+    assert lines.next(5.0) == Woke("hey robot")
+    with pytest.raises(UserError, match="Type instead"):
+        lines.next(5.0)
 
 
 # --- with a real model ---------------------------------------------------------------------------
