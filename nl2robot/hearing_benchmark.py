@@ -105,7 +105,12 @@ class _Bench:
         self._ear = Ear(need(language), knowledge, language)
         self._stage = Stage(language, seed)
         lexicon = knowledge.lexicon(language)
-        known = [sentence for topic in samples(lexicon, language).values() for sentence in topic]
+        known = [
+            sentence
+            for topic in samples(lexicon, language).values()
+            for sentence in topic
+            if self._ear.program(sentence) is not None  # some are for the application
+        ]
         order = np.random.default_rng(seed).permutation(len(known))
         self._known = [known[n] for n in order]
 
@@ -170,7 +175,7 @@ class _Bench:
         return Outcome(
             trial,
             heard.text,
-            right=program == wanted,
+            right=program is not None and program == wanted,
             asked=program is None,
             errors=word_errors(self._spelled(trial.said), self._spelled(heard.text)),
             seconds=done - ended,

@@ -13,7 +13,7 @@ from nl2robot.hearing import Ear
 from nl2robot.knowledge import Knowledge
 from nl2robot.models import need
 from nl2robot.routines import open_routines
-from nl2robot.speech.audio import RATE, Samples, read
+from nl2robot.speech.audio import RATE, Audio, Samples, read
 from nl2robot.speech.hotword import HotWord, StopWord, default_word
 from nl2robot.speech.listening import Manner
 from nl2robot.speech.microphone import Microphone
@@ -43,7 +43,7 @@ def voice_terminal(options: argparse.Namespace) -> Iterator[VoiceTerminal]:
 
     with ExitStack() as stack:
         if isinstance(options.voice, str):
-            blocks = as_it_came(Path(options.voice))
+            blocks = as_it_came(read(Path(options.voice)))
         else:
             blocks = stack.enter_context(Microphone(options.device)).blocks()
         terminal = VoiceTerminal(blocks, voice_for, options.lang, own_voice=own_voice)
@@ -76,12 +76,12 @@ def voice_input(
     )
 
 
-def as_it_came(recording: Path) -> Iterator[Samples]:
-    """A recording at the pace of its speakers, and some silence. Raises `AudioError`."""
+def as_it_came(recording: Audio) -> Iterator[Samples]:
+    """A recording at the pace of its speakers, and some silence."""
     import numpy as np
 
-    samples, step = read(recording).samples, int(BLOCK * RATE)
-    samples = np.concatenate([samples, np.zeros(int(SILENCE * RATE), np.int16)])
+    step = int(BLOCK * RATE)
+    samples = np.concatenate([recording.samples, np.zeros(int(SILENCE * RATE), np.int16)])
     began = time.monotonic()
     for at in range(0, len(samples), step):
         time.sleep(max(0.0, began + (at + step) / RATE - time.monotonic()))

@@ -6,13 +6,10 @@ speaker's clock at which something is said: a file keeps to it, a sound card pla
 
 from __future__ import annotations
 
-import ctypes
-import ctypes.util
 import threading
 import time
 from collections import deque
 from collections.abc import Callable, Generator
-from functools import cache
 from pathlib import Path
 from typing import Any, Final, Protocol
 
@@ -20,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nl2robot.errors import UserError
+from nl2robot.speech.alsa import quieten
 from nl2robot.speech.voices import Sound
 
 RATE: Final = 22_050
@@ -83,7 +81,7 @@ class SoundCard:
         """`backends` of miniaudio, for tests its null backend. Raises `SoundError`."""
         import miniaudio
 
-        _quieten_alsa()
+        quieten()
         # Never the null backend by itself: it would play, and nobody would hear anything.
         real = [each for each in miniaudio.Backend if each is not miniaudio.Backend.NULL]
         try:
@@ -245,19 +243,3 @@ def resampled(sound: Sound, rate: int) -> NDArray[np.int16]:
     import soxr
 
     return np.asarray(soxr.resample(sound.samples, sound.rate, rate), np.int16)
-
-
-@cache
-def _quieten_alsa() -> None:
-    """ALSA writes to standard error whatever it does not find while it looks for sound cards."""
-    name = ctypes.util.find_library("asound")
-    if name is None:
-        return
-    try:
-        ctypes.CDLL(name).snd_lib_error_set_handler(_HANDLER)
-    except (OSError, AttributeError):
-        return
-
-
-_HANDLER: Final = ctypes.CFUNCTYPE(None)(lambda: None)
-"""Takes what ALSA has to say; C lets a function ignore the arguments it is given."""

@@ -10,15 +10,13 @@ half-way is an `AudioError`.
 
 from __future__ import annotations
 
-import contextlib
-import ctypes
 import queue
 import threading
 from collections.abc import Callable, Generator, Iterator, Sequence
-from functools import cache
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
+from nl2robot.speech.alsa import quieten
 from nl2robot.speech.audio import AudioError, Converter, Samples
 
 if TYPE_CHECKING:
@@ -126,7 +124,7 @@ def devices(backends: Sequence[Backend] = ()) -> list[str]:
 def _captures(backends: list[Backend]) -> list[dict[str, Any]]:
     import miniaudio
 
-    _quieten_alsa()
+    quieten()
     try:
         found = miniaudio.Devices(backends)
         # Without a sound card, miniaudio falls back on one that is always there and always silent.
@@ -158,16 +156,6 @@ def _opened(name: str | None, backends: list[Backend]) -> CaptureDevice:
         )
     except miniaudio.MiniaudioError as error:
         raise _refused() from error
-
-
-@cache
-def _quieten_alsa() -> Any:
-    """Without this, ALSA writes dozens of lines to standard error of what it looked for and did
-    not find. Returns the function that it calls instead, which must live on."""
-    handler = ctypes.CFUNCTYPE(None)(lambda: None)
-    with contextlib.suppress(OSError, AttributeError):  # a system without ALSA
-        ctypes.CDLL("libasound.so.2").snd_lib_error_set_handler(handler)
-    return handler
 
 
 def _named(name: str, there: list[dict[str, Any]]) -> dict[str, Any]:

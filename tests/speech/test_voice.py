@@ -7,8 +7,9 @@ import base64
 import numpy as np
 import pytest
 
+from nl2robot import cli
 from nl2robot.commands.talk import voice_input
-from nl2robot.errors import UserError
+from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.speech.audio import RATE, Samples, read
 from nl2robot.speech.hotword import Detection
@@ -179,6 +180,13 @@ def test_a_fault_while_listening_is_told_and_the_keyboard_stays(caplog) -> None:
     assert lines.next(5.0) == Woke("hey robot")
     with pytest.raises(UserError, match="Type instead"):
         lines.next(5.0)
+
+
+def test_a_recording_that_is_not_there_is_told_before_anything_begins(tmp_path, capsys) -> None:
+    assert cli.main(["chat", "--voice", str(tmp_path / "nope.wav")]) == ExitStatus.BAD_INPUT
+    said = capsys.readouterr()
+    assert "is not there" in said.err
+    assert not said.out
 
 
 # --- with a real model ---------------------------------------------------------------------------
