@@ -1,8 +1,9 @@
 """Fetching a large file and unpacking it, so that nothing half-done is ever left in place.
 
-`fetch` goes over HTTP and resumes; `npm_pack` asks the user's own npm; `unpack` takes one folder
-out of a zip or tar archive. All of them raise `DownloadError`, whose text is a half-sentence ("npm
-is not installed") that the caller puts into a sentence; what the disk refuses stays an `OSError`.
+`fetch` goes over HTTP and resumes; `npm_pack` and `pip_download` ask the user's own npm and pip;
+`unpack` takes one folder out of a zip or tar archive. All of them raise `DownloadError`, whose text
+is a half-sentence ("npm is not installed") that the caller puts into a sentence; what the disk
+refuses stays an `OSError`.
 Nothing here knows what a speech model is.
 """
 
@@ -11,14 +12,16 @@ from __future__ import annotations
 import contextlib
 import errno
 import hashlib
+import importlib.util
 import os
 import shutil
 import subprocess
+import sys
 import tarfile
 import threading
 import time
 import zipfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path, PurePosixPath
@@ -67,8 +70,6 @@ class Silent:
 @contextlib.contextmanager
 def shown(file: IO[str] | None = None) -> Iterator[Progress]:
     """A `Progress` for people, on standard error: a bar on a terminal, else a line every tenth."""
-    import sys
-
     out = file or sys.stderr
     if not out.isatty():
         yield _Lines(out)
@@ -243,7 +244,7 @@ def _size(path: Path) -> int:
     return path.stat().st_size if path.exists() else 0
 
 
-# ── through npm ──────────────────────────────────────────────────────────────────────────────
+# ── through the user's package managers ──────────────────────────────────────────────────────
 
 
 def npm_pack(spec: str, folder: Path, size: int, what: str, progress: Progress) -> Path:
@@ -260,47 +261,111 @@ def npm_pack(spec: str, folder: Path, size: int, what: str, progress: Progress) 
     command += ["--ignore-scripts", "--loglevel=error", "--fetch-retries=1"]
     command += ["--fetch-retry-mintimeout=1000", f"--fetch-timeout={int(STALL_SECONDS * 1000)}"]
     progress.start(what, size)
-    log = folder / "npm.log"
+    failed, said = _run(command, folder, cache, size, progress)
+    return _fetched(folder, "*.tgz", failed, said, _npm_reason(spec, said))
+
+
+def pip_download(
+    spec: str, platform: str, folder: Path, size: int, what: str, progress: Progress
+) -> Path:
+    """Let pip fetch the wheel of `spec` ("name==1.0.0") for any `platform` into `folder`; its path.
+
+    pip asks whatever index it is set up for. Nothing of the wheel is installed or run, so that it
+    may be one for another platform. `size` is its expected size in bytes.
+    """
+    if importlib.util.find_spec("pip") is None:  # as in an environment that uv made
+        raise DownloadError("pip is not installed", unreachable=True)
+    # An older pip shows no progress in a form for programs: in a temporary folder of our own we see
+    # how much has come so far. A cache would keep a second copy for ever.
+    unfinished = folder / "unfinished"
+    unfinished.mkdir()
+    command = [sys.executable, "-m", "pip", "download", spec, "--dest", str(folder)]
+    command += ["--no-deps", "--only-binary=:all:", "--platform", platform]
+    command += ["--implementation=py", "--abi=none", "--no-cache-dir", "--no-input"]
+    command += ["--progress-bar=off", "--disable-pip-version-check"]
+    command += ["--retries=1", f"--timeout={STALL_SECONDS:.0f}"]
+    places = dict.fromkeys(("TMPDIR", "TEMP", "TMP"), str(unfinished))
+    progress.start(what, size)
+    failed, said = _run(command, folder, unfinished, size, progress, os.environ | places)
+    return _fetched(folder, "*.whl", failed, said, _pip_reason(spec, said))
+
+
+def _run(
+    command: list[str],
+    folder: Path,
+    growing: Path,
+    size: int,
+    progress: Progress,
+    environment: Mapping[str, str] | None = None,
+) -> tuple[bool, str]:
+    """Whether the command failed, and what it said; `growing` tells how far it is."""
+    log = folder / "said.log"
     with log.open("wb") as output:
         process = subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT, cwd=folder
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            cwd=folder,
+            env=environment,
         )
         try:
             while True:
                 with contextlib.suppress(subprocess.TimeoutExpired):
                     process.wait(0.2)
                     break
-                progress.at(min(size, _bytes_below(cache)))
+                progress.at(min(size, _bytes_below(growing)))
         finally:
             process.kill()
             process.wait()
-    tarballs = list(folder.glob("*.tgz"))
-    if process.returncode or not tarballs:
-        said = log.read_text("utf-8", "replace")
-        if "ENOSPC" in said:
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        raise DownloadError(_npm_reason(spec, said), unreachable=True)
-    progress.at(size)
-    return tarballs[0]
+    if not process.returncode:
+        progress.at(size)
+    return process.returncode != 0, log.read_text("utf-8", "replace")
+
+
+def _fetched(folder: Path, pattern: str, failed: bool, said: str, reason: str) -> Path:
+    archives = list(folder.glob(pattern))
+    if archives and not failed:
+        return archives[0]
+    if "ENOSPC" in said or f"[Errno {errno.ENOSPC}]" in said:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    raise DownloadError(reason, unreachable=True)
 
 
 def _bytes_below(folder: Path) -> int:
     total = 0
-    for path in folder.rglob("*"):
-        with contextlib.suppress(OSError):  # npm renames its files while we look
-            total += path.stat().st_size if path.is_file() else 0
+    for place, _, names in os.walk(folder):  # unlike rglob, it bears folders that vanish meanwhile
+        for name in names:
+            with contextlib.suppress(OSError):
+                total += Path(place, name).stat().st_size
     return total
 
 
-def _npm_reason(spec: str, log: str) -> str:
-    if any(code in log for code in ("E404", "ETARGET", "E403")):
+def _npm_reason(spec: str, said: str) -> str:
+    if any(code in said for code in ("E404", "ETARGET", "E403")):
         return f"the npm registry that npm is set up for does not have {spec}"
     unreached = ("ENOTFOUND", "ECONNREFUSED", "ETIMEDOUT", "EAI_AGAIN", "ECONNRESET", "ENETUNREACH")
-    if any(code in log for code in unreached):
+    if any(code in said for code in unreached):
         return "npm cannot reach its registry"
-    lines = [line for line in log.splitlines() if line.startswith(("npm error", "npm ERR!"))]
-    said = lines[0].removeprefix("npm error").removeprefix("npm ERR!").strip() if lines else ""
-    return f"npm could not fetch {spec}" + (f" (it said: {said})" if said else "")
+    return f"npm could not fetch {spec}" + _quoted(said, "npm error", "npm ERR!")
+
+
+def _pip_reason(spec: str, said: str) -> str:
+    # Asked first: pip goes on to say that an index which it did not reach has no such package.
+    if "connection broken by" in said or "Max retries exceeded" in said:
+        return "pip cannot reach its package index"
+    if "No matching distribution found" in said:
+        return f"the package index that pip is set up for does not have {spec}"
+    return f"pip could not fetch {spec}" + _quoted(said, "ERROR:")
+
+
+def _quoted(said: str, *marks: str) -> str:
+    """The first line of those that a mark shows to be an error, in brackets."""
+    for line in said.splitlines():
+        for mark in marks:
+            if line.startswith(mark) and (rest := line.removeprefix(mark).strip()):
+                return f" (it said: {rest})"
+    return ""
 
 
 # ── unpacking ────────────────────────────────────────────────────────────────────────────────
@@ -414,8 +479,6 @@ def locked(path: Path, progress: Progress) -> Iterator[None]:
 
 
 def _try_lock(file: IO[bytes]) -> bool:
-    import sys
-
     try:
         if sys.platform == "win32":
             import msvcrt

