@@ -16,11 +16,22 @@ RECORDED = Path(__file__).parent / "recordings"  # synthesised for these tests, 
 
 @pytest.fixture(scope="session")
 def recogniser() -> Recogniser:
-    """The English one, fetched if need be; where that fails the test is skipped, in CI failed."""
+    """The English one."""
+    _fetched("en")
+    return load("en")
+
+
+@pytest.fixture(scope="session")
+def second_model() -> Path:
+    """The folder of the second English speech model."""
+    return _fetched("en-moonshine")
+
+
+def _fetched(code: str) -> Path:
+    """The model, fetched if need be; where that fails the test is skipped, in CI failed."""
     try:
-        models.get("en")
+        return models.get(code)
     except models.ModelError as error:
         if os.environ.get("CI") == "true":
             pytest.fail(str(error))
         pytest.skip(str(error))
-    return load("en")
