@@ -15,6 +15,7 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.speech.audio import RATE, Audio, read
 from nl2robot.speech.listening import COMMANDS, Listener, Manner, has_speech
 from nl2robot.speech.recogniser import Decoding, Heard, Recogniser, choose
+from nl2robot.speech.second_ear import second_ear
 from nl2robot.speech.streaming import Streaming
 from nl2robot.speech.vocabulary import Missing, missing_words
 from nl2robot.translation import Planner, Talk, Translation, translate
@@ -28,8 +29,8 @@ class Ear:
         lexicon = knowledge.lexicon(language)
         self.knowledge = knowledge
         self.language = language
-        self.recogniser = Recogniser(model, language)
-        self._phrases = [
+        self.recogniser = Recogniser(model, language, second_ear(language))
+        self.phrases = [
             *all_samples(lexicon, language),
             *vocabulary(lexicon, language),
         ]
@@ -40,23 +41,23 @@ class Ear:
         audio = recording if isinstance(recording, Audio) else read(recording)
         if not has_speech(audio):
             return Heard("", 0.0, (), False, None, (), audio.seconds, 0.0)
-        return self.understood(self.recogniser.recognise(audio, self._phrases))
+        return self.understood(self.recogniser.recognise(audio, self.phrases))
 
     def listener(self, manner: Manner = COMMANDS, also: Sequence[str] = ()) -> Listener:
         """Hears live what `hear` hears of recordings, but for the choice (`understood`). `also`
         is what may be said besides commands."""
-        return Listener(Streaming(self.recogniser, [*self._phrases, *also]), manner)
+        return Listener(Streaming(self.recogniser, [*self.phrases, *also]), manner)
 
     def get_ready(self, also: Sequence[str] = ()) -> None:
         """Make the first command as fast as those after it: decoders are slow until they were used
         once."""
         noise = np.random.default_rng(0).normal(0, 500, RATE // 2).astype(np.int16)
-        self.recogniser.recognise(Audio(noise), [*self._phrases, *also])
+        self.recogniser.recognise(Audio(noise), [*self.phrases, *also])
 
     def open(self, gain: float = 1.0) -> Decoding:
         """A decoding of a command to be fed with sound while it comes; `understood` chooses among
         what it finds."""
-        return self.recogniser.open(self._phrases, gain=gain)
+        return self.recogniser.open(self.phrases, gain=gain)
 
     def understood(self, heard: Heard, also: Container[str] = ()) -> Heard:
         """The reading that is understood, or is one of `also`."""

@@ -112,10 +112,11 @@ class _Answers:
     def __init__(self, options: argparse.Namespace, model: Path) -> None:
         from nl2robot.speech.answers import expect
         from nl2robot.speech.recogniser import Recogniser
+        from nl2robot.speech.second_ear import second_ear
 
         self._json = options.json
         self._expected = expect(options.expect, options.lang)
-        self._recogniser = Recogniser(model, options.lang)
+        self._recogniser = Recogniser(model, options.lang, second_ear(options.lang))
 
     def recording(self, audio: Audio) -> None:
         from nl2robot.speech.answers import Answer, hear_answer

@@ -8,6 +8,9 @@ for how well their words fit the sound, and so
 - where free words fit much better and are other words, the result is marked `doubtful`;
 - all readings of both are kept, the best fitting first, for the grammar to choose from (`choose`).
 
+Where there is a second ear for the language (`second_ear`), it takes the place of the free decoder:
+it hears better, and tells how far each reading is to be believed.
+
 The figures in docs/voice.md were measured with the constants in this file.
 """
 
@@ -31,6 +34,7 @@ from nl2robot.errors import UserError
 from nl2robot.models import ModelError, need
 from nl2robot.speech.audio import RATE, Audio, Samples
 from nl2robot.speech.levels import Silence, gain_for
+from nl2robot.speech.second_ear import Evidence, SecondEar, second_ear
 from nl2robot.speech.vocabulary import spell_numbers
 
 vosk.SetLogLevel(-1)  # its C++ log goes to standard error
@@ -49,6 +53,12 @@ WORST_FIT = -0.08  # how much of its score a text may be behind free decoding, w
 DISAGREEMENT = 0.2  # ... as much counts as behind if it has nothing in common with the free text,
 UNSURENESS = 0.1  # ... and as much if the limited decoder had no confidence in its words at all
 READINGS = 10  # of each decoder
+
+# With a second ear.
+LEAST_BELIEF = 0.45  # of what is not doubtful
+CANDIDATES = 6  # of the limited decoder that it judges
+SECOND_PADDING = 0.15  # seconds of silence around the speech: see the digits in docs/voice.md
+LONGEST = 30.0  # seconds that it can hear at once; nothing that long is a command
 
 
 class SpeechError(UserError):
@@ -77,6 +87,12 @@ class Reading:
     # Log likelihood of sound and words together; to be compared with readings of one decoder only.
     score: float = 0.0
     free: bool = False  # found where anything may be said
+    evidence: Evidence | None = None  # of a second ear
+
+    @property
+    def confidence(self) -> float:
+        """0..1."""
+        return self.evidence.belief if self.evidence else max(0.0, min(1.0, 1 + self.fit))
 
 
 @dataclass(frozen=True)
@@ -108,7 +124,7 @@ def choose(heard: Heard, understood: Callable[[str], bool]) -> Heard:
             return replace(
                 heard,
                 text=reading.text,
-                confidence=max(0.0, min(1.0, 1 + reading.fit)),
+                confidence=reading.confidence,
                 words=(),
                 doubtful=False,
             )
@@ -122,6 +138,7 @@ class _Grammar:
     """What may be said, for vosk."""
 
     json: str
+    phrases: tuple[str, ...]
     as_written: dict[str, str]  # words of the model that people write otherwise
 
     def written(self, text: str) -> str:
@@ -137,9 +154,11 @@ class _Scored:
 class Recogniser:
     """A loaded speech model. May be used from several threads at once."""
 
-    def __init__(self, model: Path, language: str) -> None:
-        """`model` is the folder of a vosk model. Raises ModelError if it cannot be used."""
+    def __init__(self, model: Path, language: str, second: SecondEar | None = None) -> None:
+        """`model` is the folder of a vosk model, `second` judges what is heard with it. Raises
+        ModelError if the model cannot be used."""
         self.language = language
+        self.second = second
         self._grammars: dict[tuple[str, ...], _Grammar] = {}
         self._idle: dict[tuple[_Grammar | None, int], list[_Decoder]] = {}
         self._lock = threading.Lock()
@@ -187,8 +206,9 @@ class Recogniser:
         the recogniser learns from them which word follows which. Words the model does not know are
         left out (`unknown_words` tells which). None: anything may be said, and nothing is doubtful.
         `worst_fit` is by how much of its score free decoding may fit better before it is believed,
-        for sounds too short to count anything else; without it, `WORST_FIT` with what the two
-        decoders have in common and how sure the limited one is.
+        for sounds too short to count anything else. Without it, the second ear tells what to
+        believe; where there is none, `WORST_FIT` with what the two decoders have in common and how
+        sure the limited one is.
         Raises SpeechError if the model knows none of the words.
         """
         started = time.perf_counter()
@@ -245,7 +265,8 @@ class Recogniser:
                 "The speech model knows none of the words that may be said here. "
                 "Use other words, or another language."
             )
-        return _Grammar(json.dumps(list(spoken), ensure_ascii=False), as_written)
+        limits = json.dumps(list(spoken), ensure_ascii=False)
+        return _Grammar(limits, tuple(phrases), as_written)
 
     def _decoder(self, grammar: _Grammar | None, alternatives: int) -> _Decoder:
         """One that is done, or a new one. A used one is several times as fast: it keeps the parts
@@ -291,10 +312,14 @@ class Decoding:
         self._samples = 0
         self._silent = Silence()
         self._recogniser = recogniser
+        self._second = recogniser.second if worst_fit is None else None
+        self._loud: list[Samples] = []  # for the second ear
         wanted: list[tuple[_Grammar | None, int]] = [(grammar, 0)]
         if grammar is not None:
             # With alternatives libvosk gives scores, without them confidences.
-            wanted += [(grammar, READINGS), (None, READINGS)]
+            wanted.append((grammar, READINGS))
+            if self._second is None:
+                wanted.append((None, READINGS))
         self._decoders = {key: recogniser._decoder(*key) for key in wanted}
         self._feed(np.zeros(int(PADDING * RATE), np.int16))
 
@@ -303,8 +328,10 @@ class Decoding:
         length."""
         self._samples += len(samples)
         self._silent.feed(samples)
-        loud = samples.astype(np.float32) * self._gain
-        self._feed(np.clip(loud, -32768, 32767).astype(np.int16))
+        loud = np.clip(samples.astype(np.float32) * self._gain, -32768, 32767).astype(np.int16)
+        if self._second is not None:
+            self._loud.append(loud)
+        self._feed(loud)
 
     @property
     def so_far(self) -> str:
@@ -322,7 +349,9 @@ class Decoding:
         self._each(_Decoder.finish)
         sure, *scored = self._decoders.values()
         heard = _heard(self._words(sure), seconds)
-        if scored:
+        if self._second is not None:
+            heard = self._judged(heard, self._second)
+        elif scored:
             limited, free = (_scored(decoder.results) for decoder in scored)
             limited = [_Scored(self._written(text.text), text.score) for text in limited]
             trusted = _Trust(free[0], heard.confidence, self._worst_fit)
@@ -336,6 +365,41 @@ class Decoding:
             self._recogniser._take_back(decoder.anew(), *key)
         self._decoders = {}
         return replace(heard, seconds_taken=time.perf_counter() - started)
+
+    def _judged(self, heard: Heard, ear: SecondEar) -> Heard:
+        """What was heard, as the second ear hears and believes it."""
+        if heard.seconds_of_audio > LONGEST:
+            return replace(heard, doubtful=True, free_text=heard.text)
+        quiet = np.zeros(int(SECOND_PADDING * RATE), np.int16)
+        sound = np.concatenate([quiet, *self._loud, quiet])
+        if self._grammar is None:
+            free = ear.free(sound)
+            return replace(heard, text=free, words=heard.words if free == heard.text else ())
+        _, limited = self._decoders.values()
+        candidates = [self._written(text.text) for text in _scored(limited.results)]
+        opinion = ear.hear(sound, self._grammar.phrases, candidates[:CANDIDATES])
+        readings = tuple(
+            Reading(
+                each.text,
+                each.likelihood - opinion.readings[0].likelihood,
+                each.evidence.belief < LEAST_BELIEF,
+                each.likelihood,
+                evidence=each.evidence,
+            )
+            for each in opinion.readings
+        )
+        if not readings:
+            return replace(heard, doubtful=bool(heard.text), free_text=opinion.free)
+        best = readings[0]
+        return replace(
+            heard,
+            text=best.text,
+            confidence=best.confidence,
+            words=heard.words if best.text == heard.text else (),
+            doubtful=best.doubtful,
+            free_text=opinion.free,
+            readings=readings,
+        )
 
     def _feed(self, samples: Samples) -> None:
         sound = samples.tobytes()
@@ -418,7 +482,7 @@ def _helpers() -> ThreadPoolExecutor:
 @lru_cache(maxsize=3)
 def load(code: str) -> Recogniser:
     """The recogniser of an installed language, loaded once. Raises ModelError if not installed."""
-    return Recogniser(need(code), code)
+    return Recogniser(need(code), code, second_ear(code))
 
 
 def _scored(results: Sequence[Mapping[str, Any]]) -> list[_Scored]:

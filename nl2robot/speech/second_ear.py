@@ -1,0 +1,152 @@
+"""The second ear: a neural recogniser that judges whole utterances, beside the one that hears them
+word by word.
+
+    ear = SecondEar(Moonshine(folder))
+    opinion = ear.hear(samples, phrases, candidates=["go to the pharmacy"])
+    opinion.readings[0].text, opinion.readings[0].evidence.belief, opinion.free
+
+It says how likely any words are, given the sound, so it also judges what others have heard. Which
+of that is to be believed is told by four things: how likely the words are by the sound alone, how
+long they are, how likely they are to be said here at all, and whether the other recogniser heard
+the same (`nl2robot.belief_benchmark` compares this with other ways, and fits the weights).
+"""
+
+from __future__ import annotations
+
+import re
+import threading
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from math import exp
+from operator import mul
+from typing import Final
+
+from nl2robot.models import find
+from nl2robot.speech.audio import Samples
+from nl2robot.speech.expectation import Expectation
+from nl2robot.speech.moonshine import Moonshine
+from nl2robot.speech.vocabulary import spell_numbers
+
+CANDIDATES: Final = 6  # of its own that are judged
+_LISTS: Final = 16  # of phrases whose expectation is kept
+_QUOTES_AND_END: Final = re.compile(r'["“”]|[.,?!;:]+$')
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What speaks for a text."""
+
+    unlikely: float  # minus log likelihood of the text given the sound
+    subwords: int
+    unexpected: float  # minus log probability of a subword of it, on average, before any sound
+    agreed: bool  # the other recogniser heard it as well
+
+    @property
+    def belief(self) -> float:
+        """The probability (0..1) that this was said, if it makes sense."""
+        return 1 / (1 + exp(-sum(map(mul, WEIGHTS, self.row))))
+
+    @property
+    def row(self) -> tuple[float, ...]:
+        """As `WEIGHTS` counts it."""
+        return 1.0, self.unlikely, self.subwords, self.unexpected, self.agreed
+
+
+WEIGHTS: Final = (3.36, -0.378, 0.144, -0.553, 3.49)
+"""Of a logistic regression, fitted by `nl2robot.belief_benchmark`."""
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A text, as the other recogniser would write it."""
+
+    text: str
+    likelihood: float  # log, of the text given the sound
+    evidence: Evidence
+
+
+@dataclass(frozen=True)
+class Opinion:
+    """What the second ear makes of a sound."""
+
+    free: str  # where anything may be said; empty for none
+    readings: tuple[Judged, ...]  # the best first
+
+
+class SecondEar:
+    """May be used from several threads at once."""
+
+    def __init__(self, model: Moonshine, language: str = "en") -> None:
+        self._model = model
+        self._language = language
+        self._expectation = lru_cache(maxsize=_LISTS)(self._expected)
+        self._lock = threading.Lock()
+
+    def hear(
+        self, samples: Samples, phrases: Sequence[str], candidates: Iterable[str] = ()
+    ) -> Opinion:
+        """`phrases` are what may be said, `candidates` what others heard, the likeliest first."""
+        sound = self._model.listen(samples)
+        names = _Names(phrases)
+        with self._lock:
+            expectation = self._expectation(tuple(phrases))
+        free = sound.texts(width=1)[0].text
+        own = [text.text for text in sound.texts(expectation)[:CANDIDATES]]
+        others = [names.written(text) for text in candidates]
+        agreed = {self._plain(text) for text in others}
+        judged: dict[str, Judged] = {}
+        texts = [text for text in dict.fromkeys([*own, *others, free]) if text]
+        for text, likelihood in zip(texts, sound.likelihoods(texts), strict=True):
+            plain = self._plain(text)
+            numbers = self._model.subwords.of(text)
+            evidence = Evidence(
+                unlikely=-likelihood,
+                subwords=len(numbers) + 1,
+                unexpected=-expectation.of(numbers) / (len(numbers) + 1),
+                agreed=plain in agreed,
+            )
+            each = Judged(plain, likelihood, evidence)
+            if plain and (plain not in judged or evidence.belief > judged[plain].evidence.belief):
+                judged[plain] = each
+        best = sorted(judged.values(), key=lambda each: -each.evidence.belief)
+        return Opinion(self._plain(free), tuple(best))
+
+    def free(self, samples: Samples) -> str:
+        """What is said where anything may be said; empty for nothing."""
+        return self._plain(self._model.listen(samples).texts()[0].text)
+
+    def _expected(self, phrases: tuple[str, ...]) -> Expectation:
+        names = _Names(phrases)
+        return self._model.expectation(
+            [f"{names.written(phrase)}{end}" for phrase in phrases for end in ".?"]
+        )
+
+    def _plain(self, text: str) -> str:
+        """As the other recogniser writes, but for the commas: they divide orders."""
+        words = _QUOTES_AND_END.sub("", text.lower()).replace("%", " percent").replace("-", " ")
+        return " ".join(spell_numbers(words, self._language).split())
+
+
+@cache
+def second_ear(language: str) -> SecondEar | None:
+    """The one of this language, loaded once; None if none is installed."""
+    folder = find(f"{language}-moonshine")
+    return SecondEar(Moonshine(folder), language) if folder else None
+
+
+class _Names:
+    """Words that begin with a capital letter wherever they stand."""
+
+    def __init__(self, phrases: Iterable[str]) -> None:
+        self._written = {
+            word.lower(): word
+            for phrase in phrases
+            for word in phrase.split()[1:]
+            if word[:1].isupper()
+        }
+
+    def written(self, text: str) -> str:
+        """As people write a sentence, without its end."""
+        sentence = " ".join(self._written.get(word, word) for word in text.split())
+        return sentence[:1].upper() + sentence[1:]
