@@ -80,52 +80,58 @@ class SecondEar:
     def __init__(self, model: Moonshine, language: str = "en") -> None:
         self._model = model
         self._language = language
-        self._expectation = lru_cache(maxsize=_LISTS)(self._expected)
+        self._expected = lru_cache(maxsize=_LISTS)(self._expected_of)
         self._lock = threading.Lock()
 
     def hear(
         self, samples: Samples, phrases: Sequence[str], candidates: Iterable[str] = ()
     ) -> Opinion:
         """`phrases` are what may be said, `candidates` what others heard, the likeliest first."""
-        sound = self._model.listen(samples)
-        names = _Names(phrases)
         with self._lock:
-            expectation = self._expectation(tuple(phrases))
+            expected = self._expected(tuple(phrases))
+        sound = self._model.listen(samples)
         free = sound.texts(width=1)[0].text
-        own = [text.text for text in sound.texts(expectation)[:CANDIDATES]]
-        others = [names.written(text) for text in candidates]
-        agreed = {self._plain(text) for text in others}
+        own = [text.text for text in sound.texts(expected.sentences)[:CANDIDATES]]
+        others = [expected.words.written(text) for text in candidates]
+        agreed = {self._plain(text, expected.words) for text in others}
         judged: dict[str, Judged] = {}
         texts = [text for text in dict.fromkeys([*own, *others, free]) if text]
         for text, likelihood in zip(texts, sound.likelihoods(texts), strict=True):
-            plain = self._plain(text)
+            plain = self._plain(text, expected.words)
             numbers = self._model.subwords.of(text)
             evidence = Evidence(
                 unlikely=-likelihood,
                 subwords=len(numbers) + 1,
-                unexpected=-expectation.of(numbers) / (len(numbers) + 1),
+                unexpected=-expected.sentences.of(numbers) / (len(numbers) + 1),
                 agreed=plain in agreed,
             )
             each = Judged(plain, likelihood, evidence)
             if plain and (plain not in judged or evidence.belief > judged[plain].evidence.belief):
                 judged[plain] = each
         best = sorted(judged.values(), key=lambda each: -each.evidence.belief)
-        return Opinion(self._plain(free), tuple(best))
+        return Opinion(self._plain(free, expected.words), tuple(best))
 
     def free(self, samples: Samples) -> str:
         """What is said where anything may be said; empty for nothing."""
-        return self._plain(self._model.listen(samples).texts()[0].text)
+        return self._plain(self._model.listen(samples).texts()[0].text, _Words(()))
 
-    def _expected(self, phrases: tuple[str, ...]) -> Expectation:
-        names = _Names(phrases)
-        return self._model.expectation(
-            [f"{names.written(phrase)}{end}" for phrase in phrases for end in ".?"]
-        )
+    def _expected_of(self, phrases: tuple[str, ...]) -> _Expected:
+        words = _Words(phrases)
+        sentences = [f"{words.written(phrase)}{end}" for phrase in phrases for end in ".?"]
+        return _Expected(words, self._model.expectation(sentences))
 
-    def _plain(self, text: str) -> str:
+    def _plain(self, text: str, words: _Words) -> str:
         """As the other recogniser writes, but for the commas: they divide orders."""
-        words = _QUOTES_AND_END.sub("", text.lower()).replace("%", " percent").replace("-", " ")
-        return " ".join(spell_numbers(words, self._language).split())
+        plain = words.joined(_QUOTES_AND_END.sub("", text.lower()).replace("%", " percent"))
+        return " ".join(spell_numbers(plain, self._language).split())
+
+
+@dataclass(frozen=True)
+class _Expected:
+    """What is likely to be said where some phrases may be said."""
+
+    words: _Words
+    sentences: Expectation
 
 
 @cache
@@ -135,18 +141,23 @@ def second_ear(language: str) -> SecondEar | None:
     return SecondEar(Moonshine(folder), language) if folder else None
 
 
-class _Names:
-    """Words that begin with a capital letter wherever they stand."""
+class _Words:
+    """How the words of some phrases are written."""
 
     def __init__(self, phrases: Iterable[str]) -> None:
-        self._written = {
-            word.lower(): word
-            for phrase in phrases
-            for word in phrase.split()[1:]
-            if word[:1].isupper()
-        }
+        apart = [phrase.split() for phrase in phrases]
+        names = (word for words in apart for word in words[1:] if word[:1].isupper())
+        self._names = {word.lower(): word for word in names}
+        """Words that begin with a capital letter wherever they stand."""
+        self._joined = {word.lower() for words in apart for word in words if "-" in word}
 
     def written(self, text: str) -> str:
         """As people write a sentence, without its end."""
-        sentence = " ".join(self._written.get(word, word) for word in text.split())
+        sentence = " ".join(self._names.get(word, word) for word in text.split())
         return sentence[:1].upper() + sentence[1:]
+
+    def joined(self, text: str) -> str:
+        """With hyphens only in words that have them here."""
+        return " ".join(
+            word if word in self._joined else word.replace("-", " ") for word in text.split()
+        )

@@ -57,7 +57,9 @@ def test_subwords_are_merged_as_they_were_learned(tmp_path: Path) -> None:
 
 @given(st.text(st.characters(exclude_categories=("C", "Z"), exclude_characters="▁"), min_size=1))
 def test_whatever_is_written_can_be_read_again(word: str) -> None:
-    subwords = Subwords([b"<unk>", b"<s>", b"</s>", *(bytes([b]) for b in range(256)), "▁".encode()])
+    subwords = Subwords(
+        [b"<unk>", b"<s>", b"</s>", *(bytes([b]) for b in range(256)), "▁".encode()]
+    )
     assert subwords.text([BEGIN, *subwords.of(f"{word} {word}"), END]) == f"{word} {word}"
 
 
@@ -78,7 +80,9 @@ def test_what_follows_in_the_sentences_is_likely_and_nothing_is_impossible() -> 
     assert after.argmax() in (12, 13)
     assert after[12] > after[14] > after[50]  # 14 follows 11, though not here
     assert after[50] > np.log(ANYTHING) - 10
-    assert expectation.of([10, 11, 12]) > expectation.of([20, 11, 12]) > expectation.of([50, 51, 52])
+    assert (
+        expectation.of([10, 11, 12]) > expectation.of([20, 11, 12]) > expectation.of([50, 51, 52])
+    )
 
 
 @given(st.lists(st.lists(st.integers(3, 30), min_size=1, max_size=8), min_size=1, max_size=8))
