@@ -24,6 +24,7 @@ from nl2robot.errors import UserError
 from nl2robot.speech import digits
 from nl2robot.speech.audio import Audio
 from nl2robot.speech.recogniser import PUNCTUATION, Heard, Recogniser
+from nl2robot.speech.second_ear import Judged, SecondEar
 from nl2robot.speech.vocabulary import number_words, spell_numbers
 
 # Free words always find something to fit so short a sound, so an answer is only doubted when they
@@ -37,7 +38,11 @@ NOT_LISTED: Final = -3.0
 """Log likelihood, next to the likeliest, of an answer that the recogniser does not even list; it
 lists what is up to 2 behind."""
 BY_SOUND: Final = 0.3
-"""Weight of the second ear's opinion next to the recogniser's (0.25 to 0.5 do as well)."""
+"""Weight of the digits' sound next to the recogniser's opinion (0.25 to 0.5 do as well) ..."""
+BY_SOUND_BESIDE: Final = 1.0
+"""... and next to that and the second ear's (0.6 does as well)."""
+JUDGED: Final = 8
+"""So many texts of the recogniser are judged by the second ear."""
 LARGEST: Final = 999
 """Numbers are heard up to this one."""
 
@@ -62,6 +67,23 @@ class Expected:
     read: Callable[[str], str | None]
     digits_of: str | None = None
     """The language, where single digits are expected: those are also told by their sound alone."""
+    figures: tuple[str, ...] = ()
+    """Numbers as they are written; `phrases` has them in words."""
+
+
+@dataclass(frozen=True)
+class _Limit:
+    """When an answer is believed that the second ear hears: log likelihoods."""
+
+    behind: float  # what is no answer may be so much likelier ...
+    least: float  # ... and so likely it must be
+
+
+BOTH_HEARD: Final = _Limit(behind=12.0, least=-12.0)
+"""Where the recogniser does not doubt the same answer: free words are often wrong of so little."""
+BOTH_HEARD_FIGURES: Final = _Limit(behind=8.0, least=-9.0)
+"""The same for digits and numbers, of which some sounds like whatever is said."""
+ONE_HEARD: Final = _Limit(behind=2.0, least=-4.0)
 
 
 def expected_by(question: str, options: Sequence[str] | None, language: str) -> str | list[str]:
@@ -113,27 +135,76 @@ def expect(what: str | Sequence[str], language: str) -> Expected:
 def hear_answer(recogniser: Recogniser, audio: Audio, expected: Expected) -> Answer:
     """Which of the expected answers is given in `audio`."""
     heard = recogniser.recognise(audio, expected.phrases, worst_fit=WORST_FIT)
-    return answer_in(heard, audio, expected)
+    return answer_in(heard, audio, expected, recogniser.second)
 
 
-def answer_in(heard: Heard, audio: Audio, expected: Expected) -> Answer:
+def answer_in(
+    heard: Heard, audio: Audio, expected: Expected, second: SecondEar | None = None
+) -> Answer:
     """Which answer was given, of what was heard in `audio` with the expected phrases and
-    `WORST_FIT`."""
-    said = heard.free_text if heard.doubtful else heard.text
+    `WORST_FIT`, and what the second ear makes of it."""
+    if second is not None and heard.text:
+        return _judged(heard, audio, expected, second)
     shares = _shares(heard, expected)
     answer = expected.read(heard.text)
-    if expected.digits_of and answer is not None and len(answer) == 1:
-        ear = digits.load(expected.digits_of)
-        by_sound = ear.shares(audio) if ear else None
-        if by_sound:
-            shares = _agreed(shares, by_sound)
-            answer = shares[0][0]
+    said = heard.free_text if heard.doubtful else heard.text
+    by_sound = _by_sound(audio, expected) if answer is not None and len(answer) == 1 else None
+    if by_sound:
+        shares = _agreed(shares, by_sound)
+        answer = shares[0][0]
     if heard.doubtful or answer is None:
         return Answer(said or heard.text, None, 0.0, shares[:2])
     share = dict(shares).get(answer, 1.0)
     if share < UNSURE:
         return Answer(said or heard.text, None, 0.0, shares[:2])
     return Answer(said or heard.text, answer, share, shares[:2])
+
+
+def _judged(heard: Heard, audio: Audio, expected: Expected, second: SecondEar) -> Answer:
+    """The likeliest answer of all opinions together, if the second ear hears it well enough."""
+    limited = [reading.text for reading in heard.readings if not reading.free][:JUDGED]
+    figures = [answer for text in limited if expected.figures and (answer := expected.read(text))]
+    each = expected.phrases if expected.digits_of else ()
+    opinion = second.hear(
+        audio.samples,
+        [*expected.phrases, *expected.figures],
+        filter(None, [*limited, *figures, *each, heard.free_text]),
+    )
+    texts: dict[str, Judged] = {}  # the likeliest of each answer
+    no_answer: Judged | None = None
+    for judged in sorted(opinion.readings, key=lambda judged: judged.likelihood):
+        answer = expected.read(judged.text.replace(",", ""))
+        if answer is None:
+            no_answer = judged
+        else:
+            texts[answer] = judged
+    if not texts:
+        return Answer(opinion.free, None, 0.0)
+    by_words = {answer: log(max(share, 1e-9)) for answer, share in _shares(heard, expected)}
+    scores = {
+        answer: judged.likelihood + (by_words.get(answer, NOT_LISTED) if by_words else 0.0)
+        for answer, judged in texts.items()
+    }
+    by_sound = _by_sound(audio, expected)
+    if by_sound:
+        for answer in scores:
+            scores[answer] += BY_SOUND_BESIDE * log(max(by_sound.get(answer, 1.0), 1e-9))
+    shares = _normalised(scores)
+    answer, share = shares[0]
+    both = not heard.doubtful and max(by_words, key=by_words.__getitem__, default="") == answer
+    limit = ONE_HEARD if not both else BOTH_HEARD_FIGURES if expected.figures else BOTH_HEARD
+    likelihood = texts[answer].likelihood
+    behind = no_answer.likelihood - likelihood if no_answer else 0.0
+    if share < UNSURE or behind > limit.behind or likelihood < limit.least:
+        said = no_answer.text if no_answer and behind > 0 else texts[answer].text
+        return Answer(said, None, 0.0, shares[:2])
+    return Answer(texts[answer].text, answer, share, shares[:2])
+
+
+def _by_sound(audio: Audio, expected: Expected) -> Mapping[str, float] | None:
+    """How likely each digit is by its sound alone; None where that cannot be told."""
+    ear = digits.load(expected.digits_of) if expected.digits_of else None
+    return ear.shares(audio) if ear else None
 
 
 Shares = tuple[tuple[str, float], ...]
@@ -176,9 +247,10 @@ def _digits(language: str) -> Expected:
         words |= dict.fromkeys(alike, str(digit))
 
     def read(text: str) -> str | None:
-        return "".join(words[word] for word in text.split()) or None
+        said = text.split()
+        return "".join(words[word] for word in said) or None if words.keys() >= {*said} else None
 
-    return Expected(tuple(words), read, digits_of=language)
+    return Expected(tuple(words), read, digits_of=language, figures=tuple(map(str, range(10))))
 
 
 def _number(language: str) -> Expected:
@@ -194,7 +266,7 @@ def _number(language: str) -> Expected:
             return one_by_one(text)
         return whole.read(text)
 
-    return Expected(whole.phrases, read)
+    return Expected(whole.phrases, read, figures=tuple(dict.fromkeys(spoken.values())))
 
 
 @cache

@@ -57,7 +57,6 @@ READINGS = 10  # of each decoder
 # With a second ear.
 LEAST_BELIEF = 0.45  # of what is not doubtful
 CANDIDATES = 6  # of the limited decoder that it judges
-SECOND_PADDING = 0.15  # seconds of silence around the speech: see the digits in docs/voice.md
 LONGEST = 30.0  # seconds that it can hear at once; nothing that long is a command
 
 
@@ -313,7 +312,7 @@ class Decoding:
         self._silent = Silence()
         self._recogniser = recogniser
         self._second = recogniser.second if worst_fit is None else None
-        self._loud: list[Samples] = []  # for the second ear
+        self._sound: list[Samples] = []  # for the second ear
         wanted: list[tuple[_Grammar | None, int]] = [(grammar, 0)]
         if grammar is not None:
             # With alternatives libvosk gives scores, without them confidences.
@@ -328,10 +327,10 @@ class Decoding:
         length."""
         self._samples += len(samples)
         self._silent.feed(samples)
-        loud = np.clip(samples.astype(np.float32) * self._gain, -32768, 32767).astype(np.int16)
         if self._second is not None:
-            self._loud.append(loud)
-        self._feed(loud)
+            self._sound.append(samples)
+        loud = samples.astype(np.float32) * self._gain
+        self._feed(np.clip(loud, -32768, 32767).astype(np.int16))
 
     @property
     def so_far(self) -> str:
@@ -370,8 +369,7 @@ class Decoding:
         """What was heard, as the second ear hears and believes it."""
         if heard.seconds_of_audio > LONGEST:
             return replace(heard, doubtful=True, free_text=heard.text)
-        quiet = np.zeros(int(SECOND_PADDING * RATE), np.int16)
-        sound = np.concatenate([quiet, *self._loud, quiet])
+        sound = np.concatenate(self._sound)
         if self._grammar is None:
             free = ear.free(sound)
             return replace(heard, text=free, words=heard.words if free == heard.text else ())

@@ -22,13 +22,17 @@ from math import exp
 from operator import mul
 from typing import Final
 
+import numpy as np
+
 from nl2robot.models import find
-from nl2robot.speech.audio import Samples
+from nl2robot.speech.audio import RATE, Samples
 from nl2robot.speech.expectation import Expectation
-from nl2robot.speech.moonshine import Moonshine
+from nl2robot.speech.levels import gain_for
+from nl2robot.speech.moonshine import Moonshine, Sound
 from nl2robot.speech.vocabulary import spell_numbers
 
 CANDIDATES: Final = 6  # of its own that are judged
+PADDING: Final = 0.15  # seconds; of digits 196 of 200 were heard with 0.15 and 0.3, 179 with none
 _LISTS: Final = 16  # of phrases whose expectation is kept
 _QUOTES_AND_END: Final = re.compile(r'["“”]|[.,?!;:]+$')
 
@@ -89,7 +93,7 @@ class SecondEar:
         """`phrases` are what may be said, `candidates` what others heard, the likeliest first."""
         with self._lock:
             expected = self._expected(tuple(phrases))
-        sound = self._model.listen(samples)
+        sound = self._listened(samples)
         free = sound.texts(width=1)[0].text
         own = [text.text for text in sound.texts(expected.sentences)[:CANDIDATES]]
         others = [expected.words.written(text) for text in candidates]
@@ -113,7 +117,12 @@ class SecondEar:
 
     def free(self, samples: Samples) -> str:
         """What is said where anything may be said; empty for nothing."""
-        return self._plain(self._model.listen(samples).texts()[0].text, _Words(()))
+        return self._plain(self._listened(samples).texts()[0].text, _Words(()))
+
+    def _listened(self, samples: Samples) -> Sound:
+        """As loud as the model is used to, with a little silence around it."""
+        loud = np.clip(samples * np.float32(gain_for(samples)), -32768, 32767).astype(np.int16)
+        return self._model.listen(np.pad(loud, int(PADDING * RATE)))
 
     def _expected_of(self, phrases: tuple[str, ...]) -> _Expected:
         words = _Words(phrases)
