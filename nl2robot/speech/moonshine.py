@@ -53,9 +53,12 @@ class Moonshine:
 
         from nl2robot.models import ModelError
 
+        how = onnxruntime.SessionOptions()
+        # Threads that wait for each other by spinning take several times as long on a busy machine.
+        how.add_session_config_entry("session.intra_op.allow_spinning", "0")
         try:
-            self._encoder = onnxruntime.InferenceSession(folder / "encoder_model.ort")
-            self._decoder = onnxruntime.InferenceSession(folder / "decoder_model_merged.ort")
+            self._encoder = onnxruntime.InferenceSession(folder / "encoder_model.ort", how)
+            self._decoder = onnxruntime.InferenceSession(folder / "decoder_model_merged.ort", how)
             self.subwords = Subwords.load(folder / "tokenizer.bin")
         except Exception as error:  # onnxruntime raises many kinds
             raise ModelError(
