@@ -33,6 +33,7 @@ _MORE: Final = 8  # than that, whatever the length
 _LONGEST_ROUND: Final = 8  # subwords
 _SHORTEST: Final = RATE // 4  # samples the encoder needs
 _HEADS, _PER_HEAD = 8, 36
+_OF_SOUND: Final = ".encoder."  # in the names of what is remembered
 _PUNCTUATION: Final = ".?!,"
 
 
@@ -102,13 +103,14 @@ class Moonshine:
         after = {
             # What is remembered of the sound never changes and is not given again.
             name: before[name]
-            if memory is not None and ".encoder." in name
+            if memory is not None and _OF_SOUND in name
             else found[name.replace("past_key_values", "present")]
             for name in self._memory
         }
         scores = found["logits"]
-        scores = scores - scores.max(-1, keepdims=True)
-        return scores - np.log(np.exp(scores).sum(-1, keepdims=True)), after
+        scores -= scores.max(-1, keepdims=True)
+        scores -= np.log(np.exp(scores).sum(-1, keepdims=True))
+        return scores, after
 
 
 Memory = dict[str, Any]
@@ -158,7 +160,7 @@ class Sound:
                 break
             open_ = [path for _, path in going_on]
             kept = [at for at, _ in going_on]
-            memory = {name: values[kept] for name, values in memory.items()}
+            memory = {name: _rows(name, values, kept) for name, values in memory.items()}
         write = self._model.subwords.text
         return [Text(write(path.numbers), path.likelihood) for path in (done or open_)[: 2 * width]]
 
@@ -185,6 +187,13 @@ class _Path:
     numbers: tuple[int, ...]
     score: float  # of sound and expectation together
     likelihood: float  # of the sound alone
+
+
+def _rows(name: str, values: NDArray[np.float32], kept: Sequence[int]) -> NDArray[np.float32]:
+    """What is remembered of these paths. Of the sound it is the same for all of them."""
+    if _OF_SOUND in name and len(values) == len(kept):
+        return values
+    return values[list(kept)]
 
 
 def _goes_round(numbers: tuple[int, ...]) -> bool:

@@ -94,13 +94,14 @@ class SecondEar:
         with self._lock:
             expected = self._expected(tuple(phrases))
         sound = self._listened(samples)
-        free = sound.texts(width=1)[0].text
-        own = [text.text for text in sound.texts(expected.sentences)[:CANDIDATES]]
+        free = sound.texts(width=1)[0]
+        own = sound.texts(expected.sentences)[:CANDIDATES]
+        likelihoods = {text.text: text.likelihood for text in [free, *own] if text.text}
         others = [expected.words.written(text) for text in candidates]
         agreed = {self._plain(text, expected.words) for text in others}
+        likelihoods |= zip(others, sound.likelihoods(others), strict=True)
         judged: dict[str, Judged] = {}
-        texts = [text for text in dict.fromkeys([*own, *others, free]) if text]
-        for text, likelihood in zip(texts, sound.likelihoods(texts), strict=True):
+        for text, likelihood in likelihoods.items():
             plain = self._plain(text, expected.words)
             numbers = self._model.subwords.of(text)
             evidence = Evidence(
@@ -113,7 +114,7 @@ class SecondEar:
             if plain and (plain not in judged or evidence.belief > judged[plain].evidence.belief):
                 judged[plain] = each
         best = sorted(judged.values(), key=lambda each: -each.evidence.belief)
-        return Opinion(self._plain(free, expected.words), tuple(best))
+        return Opinion(self._plain(free.text, expected.words), tuple(best))
 
     def free(self, samples: Samples) -> str:
         """What is said where anything may be said; empty for nothing."""
