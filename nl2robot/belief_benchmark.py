@@ -118,9 +118,7 @@ WAYS: dict[str, Way] = {
 
 
 def counted(
-    cases: Sequence[Case],
-    halves: Sequence[Sequence[Case]],
-    way_for: Callable[[Sequence[Case]], Way],
+    halves: Sequence[Sequence[Case]], way_for: Callable[[Sequence[Case]], Way]
 ) -> tuple[int, int, int]:
     """Right programs, wrong ones, and remarks or noise acted on, each half by the limit of the
     other; `way_for` makes the way from the half that it may know."""
@@ -167,7 +165,7 @@ def fitted(cases: Sequence[Case], rounds: int = 4) -> Weights:
 
 def _regression(rows: Row, right: Row, steps: int = 4000) -> Weights:
     scale = rows.std(0)
-    scale[0] = 1.0
+    scale[scale == 0] = 1.0  # the constant, too
     scaled, weights = rows / scale, np.zeros(rows.shape[1])
     for _ in range(steps):
         predicted = 1 / (1 + np.exp(-scaled @ weights))
@@ -189,8 +187,8 @@ def main(arguments: Sequence[str]) -> None:
     halves = [[case for case in heard if case.trial.speaker in voices[n::2]] for n in range(2)]
     table = Table("way", "right", "wrong", "remarks and noise acted on")
     for name, way in WAYS.items():
-        table.add_row(name, *map(str, counted(heard, halves, _always(way))))
-    row = counted(heard, halves, lambda known: _weighed(fitted(known)))
+        table.add_row(name, *map(str, counted(halves, _always(way))))
+    row = counted(halves, lambda known: _weighed(fitted(known)))
     table.add_row("second ear: belief, weights fitted to the other half", *map(str, row))
     commands = sum(case.wanted is not None for case in heard)
     console = Console()

@@ -1,11 +1,11 @@
-"""Which digit a short sound is, by the sound alone: a second ear beside the recogniser.
+"""Which digit a short sound is, by the sound alone: an ear for digits beside the recogniser.
 
     shares = load("en").shares(audio)   # {"0": 0.01, ..., "9": 0.93}
 
 The recogniser was trained on sentences. Where one short word is all there is, with its edges cut
 off and the high tones of its s and f lost on the way, it mistakes six for eight. This one was
 trained on just such sounds (`digits_training`): a small network on the speech embedding. Where a
-language has none, there is no second ear, and the recogniser decides alone.
+language has none, there is no such ear, and the recogniser decides alone.
 """
 
 from __future__ import annotations
@@ -116,7 +116,7 @@ def weights(language: str) -> Path:
 
 @lru_cache(maxsize=3)
 def load(language: str) -> DigitEar | None:
-    """The second ear for a language; None where there is none."""
+    """That of a language; None where there is none."""
     path = weights(language)
     if not path.is_file():
         return None

@@ -1,4 +1,4 @@
-"""Trains the second ear for digits (`digits`) on synthesised speech.
+"""Trains the ear for digits (`digits`) on synthesised speech.
 
     python -m nl2robot.speech.digits_training en     # writes nl2robot/data/digits-en.npz
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,8 +12,9 @@ from hypothesis import strategies as st
 from nl2robot.errors import UserError
 from nl2robot.speech import digits
 from nl2robot.speech.answers import answer_in, expect, expected_by, hear_answer
-from nl2robot.speech.audio import Audio, read
+from nl2robot.speech.audio import Audio, Samples, read
 from nl2robot.speech.recogniser import Heard, Reading, Recogniser
+from nl2robot.speech.second_ear import Evidence, Judged, Opinion, SecondEar
 from nl2robot.speech.vocabulary import missing_words, number_words, spell_numbers
 from tests.speech.conftest import RECORDED, SHOWN
 
@@ -194,7 +197,7 @@ def test_what_sounded_like_something_else_can_still_be_asked_about() -> None:
     assert answer.likely == (("6", 1.0),)
 
 
-def test_the_second_ear_decides_between_digits_that_sound_alike(
+def test_their_sound_decides_between_digits_that_are_heard_alike(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """A six whose last sound was lost is an eight to the recogniser."""
@@ -211,6 +214,52 @@ def test_the_second_ear_decides_between_digits_that_sound_alike(
     rows = answer_in(heard(("eight eight", 32.0)), voice, expected)
     assert rows.answer == "88"  # for the recogniser alone
     assert answer_in(heard(("eight", 32.0)), NOTHING, expected).answer == "8"
+
+
+class Judge(SecondEar):
+    """A second ear that thinks this of whatever it hears."""
+
+    def __init__(self, **likelihoods: float) -> None:
+        evidence = Evidence(1.0, 2, 3.0, True)
+        self._readings = [
+            Judged(text.replace("_", " "), likelihood, evidence)
+            for text, likelihood in likelihoods.items()
+        ]
+
+    def hear(
+        self, samples: Samples, phrases: Sequence[str], candidates: Iterable[str] = ()
+    ) -> Opinion:
+        return Opinion("good morning", tuple(self._readings))
+
+
+def test_what_only_the_second_ear_hears_must_be_likely() -> None:
+    expected = expect(WAYS, "en")
+    unsure = heard(("pharmacy", 40.0), doubtful=True)
+    sure = answer_in(unsure, NOTHING, expected, Judge(radiology=-0.5, pharmacy=-9.0))
+    assert (sure.heard, sure.answer) == ("radiology", "radiology")
+    hardly = answer_in(unsure, NOTHING, expected, Judge(radiology=-6.0, pharmacy=-12.0))
+    assert (hardly.answer, hardly.likely[0][0]) == (None, "radiology")  # it can be asked about
+
+
+def test_what_both_hear_is_taken_though_it_could_be_written_otherwise() -> None:
+    """ "Tea" alone is freely a "d"."""
+    tea = Judge(tea=-5.0, d=-0.5)
+    answer = answer_in(heard(("tea", 40.0)), NOTHING, expect("tea, coffee", "en"), tea)
+    assert answer.answer == "tea"
+    alone = heard(("coffee", 40.0))
+    assert answer_in(alone, NOTHING, expect("tea, coffee", "en"), tea).answer is None
+
+
+def test_a_greeting_is_no_digit_though_the_recogniser_hears_one() -> None:
+    judge = Judge(good_morning=-0.1, five=-9.5)
+    answer = answer_in(heard(("five", 32.0)), NOTHING, expect("number", "en"), judge)
+    assert (answer.heard, answer.answer) == ("good morning", None)
+
+
+def test_where_nothing_like_an_answer_is_heard_there_is_none() -> None:
+    judge = Judge(good_morning=-0.1)
+    answer = answer_in(heard(("pharmacy", 32.0)), NOTHING, expect(WAYS, "en"), judge)
+    assert (answer.heard, answer.answer, answer.likely) == ("good morning", None, ())
 
 
 @pytest.mark.parametrize("nothing", ["", " , ,"])

@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from nl2robot.belief_benchmark import WAYS, Case, counted, fitted
 from nl2robot.hearing_benchmark import CONDITIONS, Outcome, Tally, word_errors
 from nl2robot.speech import scenes
 from nl2robot.speech.audio import RATE, Audio
+from nl2robot.speech.second_ear import Evidence
 from nl2robot.speech.trials import Trial, spoken
 
 
@@ -59,3 +61,36 @@ def test_the_table_tells_shares_for_each_condition() -> None:
 def test_there_is_something_to_say_in_each_language(language: str) -> None:
     assert set(spoken(language)) == {"commands", "remarks", "asides", "options"}
     assert all(spoken(language).values())
+
+
+# ── when to believe what was heard ───────────────────────────────────────────────────────────
+
+
+def case(speaker: str, unlikely: float, program: str | None, wanted: str | None) -> Case:
+    trial = Trial("command", "x", speaker, "babble", 5.0, Audio(np.zeros(RATE, np.int16)))
+    evidence = Evidence(unlikely, 6, 3.0, agreed=False)
+    return Case(trial, wanted, ((evidence, program),) if program else (), ())
+
+
+def test_the_limit_is_set_with_some_voices_and_counted_with_others() -> None:
+    way = WAYS["second ear: likelihood"]
+    clear = [case(voice, 1.0, "go", "go") for voice in ("joe", "ann")]
+    noisy = [case(voice, 9.0, "come", "go") for voice in ("joe", "ann")]
+    remarks = [case(voice, 5.0, "go", None) for voice in ("joe", "ann")]
+    silent = [case("joe", 0.0, None, "go")]
+    halves = [
+        [each for each in (*clear, *noisy, *remarks, *silent) if each.trial.speaker == voice]
+        for voice in ("joe", "ann")
+    ]
+    assert counted(halves, lambda known: way) == (2, 0, 0)
+    deaf = [case("tom", 1.0, "come", "go"), case("tom", 5.0, "go", "go")]
+    # tom's limit lets a remark of joe's in, and joe's a wrong program of tom's
+    assert counted([deaf, halves[0]], lambda known: way) == (1, 1, 1)
+
+
+def test_the_weights_of_the_belief_tell_right_from_wrong() -> None:
+    cases = [case("joe", 1.0 + n / 20, "go", "go") for n in range(20)]
+    cases += [case("joe", 6.0 + n / 20, "come", "go") for n in range(20)]
+    constant, unlikely, *_ = fitted(cases)
+    assert unlikely < 0
+    assert constant + unlikely * 1.0 > constant + unlikely * 8.0
