@@ -14,6 +14,7 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.models import need
 from nl2robot.routines import open_routines
 from nl2robot.speech.audio import RATE, Audio, Samples, read
+from nl2robot.speech.full_duplex import FullDuplex
 from nl2robot.speech.hotword import HotWord, StopWord, default_word
 from nl2robot.speech.listening import Manner
 from nl2robot.speech.microphone import Microphone
@@ -28,7 +29,9 @@ SILENCE = 3.0
 
 
 @contextmanager
-def voice_terminal(options: argparse.Namespace) -> Iterator[VoiceTerminal]:
+def voice_terminal(
+    options: argparse.Namespace, duplex: FullDuplex | None = None
+) -> Iterator[VoiceTerminal]:
     """A terminal that listens to the microphone or the recording that the options name. Raises
     `UserError` where there is none, or no speech model."""
     knowledge = Knowledge(names_of(options), routines=open_routines())
@@ -36,16 +39,21 @@ def voice_terminal(options: argparse.Namespace) -> Iterator[VoiceTerminal]:
     own_voice = OwnVoice()
     aloud = options.speak is True or options.robot != "sim"
 
+    def robot_says(word: str) -> bool:
+        if duplex is not None:
+            return duplex.hears_nobody()
+        return aloud and own_voice.says(word)
+
     def voice_for(language: str) -> VoiceInput:
         word = options.hot_word if language == options.lang else None
-        says_itself = own_voice.says if aloud else lambda word: False
-        return voice_input(knowledge, language, word, says_itself)
+        return voice_input(knowledge, language, word, robot_says)
 
     with ExitStack() as stack:
         if isinstance(options.voice, str):
             blocks = as_it_came(read(Path(options.voice)))
         else:
-            blocks = stack.enter_context(Microphone(options.device)).blocks()
+            microphone = stack.enter_context(Microphone(options.device))
+            blocks = duplex.hear(microphone.timed_blocks()) if duplex else microphone.blocks()
         terminal = VoiceTerminal(blocks, voice_for, options.lang, own_voice=own_voice)
         stack.callback(terminal.close)
         word = options.hot_word or default_word(options.lang)

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from nl2robot.errors import UserError
 from nl2robot.speech.alsa import quieten
+from nl2robot.speech.echo_cancelling import Played
 from nl2robot.speech.voices import Sound
 
 RATE: Final = 22_050
@@ -77,8 +78,9 @@ class Handed(Nowhere):
 class SoundCard:
     """This machine's loudspeaker."""
 
-    def __init__(self, backends: list[Any] | None = None) -> None:
-        """`backends` of miniaudio, for tests its null backend. Raises `SoundError`."""
+    def __init__(self, backends: list[Any] | None = None, played: Played | None = None) -> None:
+        """`backends` of miniaudio, for tests its null backend. `played` is told what is heard of
+        it. Raises `SoundError`."""
         import miniaudio
 
         quieten()
@@ -98,6 +100,7 @@ class SoundCard:
                 "This machine has no loudspeaker that can be used, so nothing will be heard."
                 " Connect one and start again, or write the sound into a file: --speak FILE.wav."
             ) from error
+        self._played = played
         self._waiting: deque[NDArray[np.int16]] = deque()
         self._changed = threading.Condition()
         self._asked = 0.0  # when the sound card last asked for more
@@ -148,6 +151,9 @@ class SoundCard:
                 block = self._take(count)
                 if not self._waiting:
                     self._changed.notify_all()
+            if self._played is not None:
+                # A period before it, at the least, still lies in the sound card's buffer.
+                self._played.add(block[:, 0], RATE, self._asked + PERIOD / 1000)
             count = yield block
 
     def _take(self, count: int) -> NDArray[np.int16]:

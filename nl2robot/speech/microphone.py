@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import queue
 import threading
+import time
 from collections.abc import Callable, Generator, Iterator, Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Final, TypeVar
@@ -51,7 +52,9 @@ class Microphone:
         """`device` is a part of its name. `backends` are miniaudio's, the system's own by default:
         its null backend is a silent microphone that every machine has. Raises AudioError."""
         self._patience = patience
-        self._blocks: queue.Queue[bytes | None] = queue.Queue(int(BEHIND * 1000 / BLOCK))
+        self._blocks: queue.Queue[tuple[bytes, float] | None] = queue.Queue(
+            int(BEHIND * 1000 / BLOCK)
+        )
         self._too_slow = False
         self._closed = False
         self._device = _in_time(lambda: _opened(device, list(backends)), OPENING)
@@ -75,6 +78,10 @@ class Microphone:
 
     def blocks(self) -> Iterator[Samples]:
         """What it hears from now on, 16 kHz. Raises AudioError when it hears no more."""
+        return (samples for samples, _ in self.timed_blocks())
+
+    def timed_blocks(self) -> Iterator[tuple[Samples, float]]:
+        """As `blocks`, with the time at which each came, on the monotonic clock."""
         converter = Converter(CAPTURED, CHANNELS)
         while True:
             try:
@@ -95,16 +102,17 @@ class Microphone:
                     "This computer is too busy to listen: sound was lost. "
                     "End other programs and start again."
                 )
-            samples = converter.convert(block)
+            sound, came = block
+            samples = converter.convert(sound)
             if len(samples):
-                yield samples
+                yield samples, came
 
     def _receive(self) -> Generator[None, bytearray, None]:
         """Takes what the device sends, in a thread of its own; must not wait."""
         while True:
             block = yield
             try:
-                self._blocks.put_nowait(bytes(block))
+                self._blocks.put_nowait((bytes(block), time.monotonic()))
             except queue.Full:  # half a command may mean the opposite: better none
                 self._too_slow = True
 

@@ -3,7 +3,6 @@
     speaker = Speaker(SoundCard())
     speaker.begin("Good morning.").wait()
     speaker.interrupt()                         # somebody speaks: let them
-    speaker.hears_itself(12.1, 13.0, "good morning")
 
 A thread of its own makes the sound of the next piece while one is played, so whoever stops it waits
 for neither.
@@ -15,9 +14,7 @@ import contextlib
 import queue
 import threading
 import time
-from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -27,27 +24,9 @@ from nl2robot.speech.kept import KeptSounds
 from nl2robot.speech.loudspeaker import Nowhere, Output
 from nl2robot.speech.voices import Sound, Voice, voice
 
-ECHO: Final = 0.25
-"""Seconds for which a room still sounds of what the robot said."""
-MOSTLY: Final = 0.5
-"""The share of what was heard that lies in the robot's own speech before it may be that."""
-ALIKE: Final = 60.0
-"""How much of what was heard (of 100) is found in what was spoken if it is that. In a furnished
-room, 20 dB above a corridor's noise, 15 of 16 sentences came back to the robot as like as that; of
-10 things that people said, 5 were as like as that to one of its 8. In worse rooms its own words
-come back so garbled that they are like nothing."""
-_REMEMBERED: Final = 100  # texts
-
-
-@dataclass(frozen=True)
-class Spoken:
-    """Something the robot said; times of the speaker's clock in seconds."""
-
-    text: str
-    language: str
-    began: float
-    ended: float | None
-    """None while it is being spoken."""
+HELD: Final = 12.0
+"""Seconds after which it goes on, even if nobody has told it to."""
+_POLL: Final = 0.02
 
 
 class Utterance:
@@ -101,7 +80,8 @@ class Speaker:
         self._lock = threading.Lock()  # for what follows, and for writing to the output
         self._current: Utterance | None = None
         self._pending: list[Utterance] = []
-        self._record: deque[Spoken] = deque(maxlen=_REMEMBERED)
+        self._free = threading.Event()  # to begin with the next text
+        self._free.set()
         self._thread = threading.Thread(target=self._work, name="voice", daemon=True)
         self._thread.start()
 
@@ -141,6 +121,14 @@ class Speaker:
         if current is not None:
             current.cancel()
 
+    def hold(self) -> None:
+        """Begin with nothing new before `go_on`: somebody else is speaking."""
+        self._free.clear()
+
+    def go_on(self) -> None:
+        """They have ended."""
+        self._free.set()
+
     def stop(self) -> None:
         """Be silent, and forget what was still to be said."""
         with self._lock:
@@ -156,32 +144,6 @@ class Speaker:
         with self._lock:
             self._output.close()
             self._output = Nowhere()
-
-    # --- what was said ---------------------------------------------------------------------------
-
-    def spoken_since(self, moment: float) -> list[Spoken]:
-        """What has been said since then, or is being said."""
-        with self._lock:
-            return [said for said in self._record if said.ended is None or said.ended >= moment]
-
-    def hears_itself(self, began: float, ended: float, heard: str = "") -> bool:
-        """Whether what a microphone heard from `began` to `ended` is the robot itself: it was
-        speaking most of that time and, if `heard` is given, those words are like its own.
-
-        Give words only where they were understood, without doubt: an echo makes anything of the
-        robot's own. A "stop" is to be obeyed whoever said it: do not ask here about that.
-        """
-        spoken = [said for said in self.spoken_since(began - ECHO) if said.began <= ended]
-        within = sum(
-            max(0.0, min(ended, (said.ended or ended) + ECHO) - max(began, said.began))
-            for said in spoken
-        )
-        if within < MOSTLY * max(ended - began, 1e-3):
-            return False
-        words = _spelled(heard, spoken[0].language)
-        return not words or any(
-            _likeness(words, _spelled(said.text, said.language)) >= ALIKE for said in spoken
-        )
 
     # --- inside ----------------------------------------------------------------------------------
 
@@ -201,6 +163,7 @@ class Speaker:
 
     def _say(self, utterance: Utterance) -> None:
         stopped = utterance.cancelled.is_set
+        self._wait_for_quiet(stopped)
         with self._lock:
             self._current = utterance
         if utterance.sound is not None:
@@ -213,6 +176,12 @@ class Speaker:
         self._output.drain(stopped)
         utterance.whole = not stopped()
 
+    def _wait_for_quiet(self, stopped: Callable[[], bool]) -> None:
+        patience = time.monotonic() + HELD
+        while not stopped() and not self._free.wait(_POLL):
+            if time.monotonic() > patience:
+                self._free.set()
+
     def _write(self, utterance: Utterance, sound: Sound) -> bool:
         """False if it has been cancelled: then nothing is written after the silence."""
         if utterance.gain != 1.0:
@@ -221,15 +190,8 @@ class Speaker:
         with self._lock:
             if utterance.cancelled.is_set():
                 return False
-            self._note(utterance)
             self._output.write(sound, utterance.at)
             return True
-
-    def _note(self, utterance: Utterance) -> None:
-        """It is heard from now on."""
-        if utterance.text and not (self._record and self._record[-1].ended is None):
-            began = self._clock()
-            self._record.append(Spoken(utterance.text, utterance.language, began, None))
 
     def _end(self, utterance: Utterance) -> None:
         with self._lock:
@@ -242,10 +204,6 @@ class Speaker:
         """It is heard no more; needs the lock."""
         if utterance in self._pending:
             self._pending.remove(utterance)
-        if self._current is utterance and self._record and self._record[-1].ended is None:
-            said = self._record.pop()
-            ended = self._clock()
-            self._record.append(Spoken(said.text, said.language, said.began, ended))
 
     def _cancel(self, utterance: Utterance) -> None:
         with self._lock:
@@ -271,19 +229,3 @@ class Speaker:
 
 _LAST_PIECE: Final = 2.0
 """Seconds that a voice may take to finish the piece it is at."""
-
-
-def _spelled(text: str, language: str) -> str:
-    from nl2robot.speech.vocabulary import spell_numbers
-
-    words = spell_numbers(text.lower(), language).replace("-", " ").split()
-    return " ".join(filter(None, (word.strip('-–.,;:!?…"“”„«»()') for word in words)))
-
-
-def _likeness(heard: str, spoken: str) -> float:
-    """0 to 100: how much of what was heard is found in what was spoken, in its order."""
-    from rapidfuzz import fuzz
-
-    if len(heard) > len(spoken):  # more than was spoken: all of it must be like
-        return fuzz.ratio(heard, spoken)
-    return fuzz.partial_ratio(heard, spoken)

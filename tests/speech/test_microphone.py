@@ -68,6 +68,18 @@ def test_the_microphone_that_every_machine_has_gives_silence_at_16_kilohertz() -
     assert not first.any()
 
 
+def test_when_it_was_heard_is_told_however_late_it_is_fetched(
+    plugged: Plugged, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now = 12.0
+    monkeypatch.setattr(microphone, "time", SimpleNamespace(monotonic=lambda: now))
+    with Microphone() as open_one:
+        plugged.hear(stereo(0.5))
+        now = 13.0
+        _, came = next(open_one.timed_blocks())
+    assert came == 12.0
+
+
 def test_what_it_hears_comes_as_it_is_heard(plugged: Plugged) -> None:
     """Of a microphone whose left side is dead."""
     with Microphone() as open_one:

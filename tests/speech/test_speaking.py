@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 import soundfile
 
-from nl2robot.speech import loudspeaker
+from nl2robot.speech import loudspeaker, speaking
+from nl2robot.speech.echo_cancelling import Played
 from nl2robot.speech.loudspeaker import (
     RATE,
     Handed,
@@ -133,6 +134,30 @@ def test_somebody_speaks_and_the_robot_lets_them(desk: Desk) -> None:
     assert len(desk.heard) == 1
 
 
+def test_what_is_next_waits_until_somebody_else_has_ended(desk: Desk) -> None:
+    desk.speaker.hold()
+    text = desk.speaker.begin("Well.")
+    assert not text.over.wait(0.05) and not desk.heard
+    desk.speaker.go_on()
+    assert text.wait(SOON)
+
+
+def test_nobody_is_waited_for_for_ever(desk: Desk, monkeypatch) -> None:
+    monkeypatch.setattr(speaking, "HELD", 0.0)
+    desk.speaker.hold()
+    assert desk.speaker.begin("Well.").wait(SOON)
+
+
+def test_a_stop_drops_what_waits_for_somebody_else(desk: Desk) -> None:
+    desk.speaker.hold()
+    text = desk.speaker.begin("Well.")
+    desk.speaker.stop()
+    assert text.over.is_set() and not desk.speaker.is_speaking
+    desk.speaker.go_on()
+    assert desk.speaker.begin("Ready.").wait(SOON)
+    assert len(desk.heard) == 1
+
+
 def test_a_stop_drops_what_was_still_to_be_said(desk: Desk) -> None:
     desk.reader.may_go_on.clear()
     texts = [desk.speaker.begin(f"Text {number}.") for number in range(3)]
@@ -162,47 +187,6 @@ def test_a_voice_that_fails_is_told_of_once_and_the_robot_goes_on(desk: Desk) ->
     assert not speaker.begin("Hello.").wait(SOON)
     assert desk.told == ["There is no voice on this machine."]
     speaker.close()
-
-
-# --- what it said --------------------------------------------------------------------------------
-
-
-@pytest.fixture
-def said(desk: Desk) -> Speaker:
-    """It asked a question from second 10 to second 13."""
-    desk.table.may_end.clear()
-    desk.clock.now = 10.0
-    question = desk.speaker.begin("Shall I go to ward 3?")
-    assert desk.table.full.wait(SOON)
-    desk.clock.now = 13.0
-    desk.table.may_end.set()
-    assert question.wait(SOON)
-    return desk.speaker
-
-
-def test_what_was_said_and_when(said: Speaker) -> None:
-    [text] = said.spoken_since(12.0)
-    assert (text.text, text.language, text.began) == ("Shall I go to ward 3?", "en", 10.0)
-    assert said.spoken_since(14.0) == []
-
-
-@pytest.mark.parametrize(
-    ("began", "ended", "heard", "itself"),
-    [
-        (10.5, 12.0, "", True),
-        (10.5, 12.0, "go to ward three", True),
-        (10.5, 12.0, "shall i go to what three", True),
-        (10.5, 12.0, "no thank you", False),  # somebody speaks in between
-        (13.0, 13.3, "", True),  # the room still sounds
-        (13.1, 14.0, "go to ward three", False),  # somebody repeats it
-        (20.0, 21.0, "", False),
-        (5.0, 9.0, "go to ward three", False),
-    ],
-)
-def test_the_robot_knows_its_own_voice(
-    said: Speaker, began: float, ended: float, heard: str, itself: bool
-) -> None:
-    assert said.hears_itself(began, ended, heard) is itself
 
 
 # --- a sound card --------------------------------------------------------------------------------
@@ -239,6 +223,19 @@ def test_it_is_silent_within_a_tenth_of_a_second(card: SoundCard) -> None:
     assert not text.wait(SOON)
     assert speaker.begin("").wait(SOON) and card.heard == heard
     speaker.close()
+
+
+def test_who_cancels_echoes_is_told_what_is_played_and_when(monkeypatch) -> None:
+    played = Played()
+    card = SoundCard([miniaudio.Backend.NULL], played)
+    began = time.monotonic()
+    card.write(tone(0.1), 0.0)
+    card.drain(never)
+    assert played.sounds(time.monotonic())
+    ended = time.monotonic()
+    heard = played.between(int(began * 16_000), int(ended * 16_000))
+    assert 0.05 * 16_000 < np.count_nonzero(heard > 500) < 0.15 * 16_000
+    card.close()
 
 
 def test_the_loudspeaker_is_unplugged(card: SoundCard, monkeypatch) -> None:
