@@ -5,8 +5,10 @@ from __future__ import annotations
 import argparse
 import contextlib
 import functools
+import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import yaml
 
@@ -16,6 +18,9 @@ from nl2robot.errors import ExitStatus
 from nl2robot.session import Session
 from nl2robot.terminal import Terminal
 from robot_api.errors import LostConnection, RobotError
+
+if TYPE_CHECKING:
+    from nl2robot.speech.full_duplex import FullDuplex
 
 DATA = Path(__file__).parents[1] / "data" / "chat.yaml"
 
@@ -39,7 +44,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     with contextlib.suppress(ImportError):
         import readline  # noqa: F401  (arrow keys and history in input())
-    with _terminal(options) as terminal, open_session(options, terminal=terminal) as (session, _):
+    duplex = _duplex(options)
+    with (
+        _terminal(options, duplex) as terminal,
+        open_session(options, terminal=terminal, duplex=duplex) as (session, _),
+    ):
         session.listens = session.terminal.somebody_is_there
         session.terminal.console.print(session.terminal.words["greeting"], markup=False)
         while (line := session.next_line() or _next_line(session)) is not None:
@@ -52,14 +61,23 @@ def run(options: argparse.Namespace) -> int:
     return ExitStatus.OK
 
 
+def _duplex(options: argparse.Namespace) -> FullDuplex | None:
+    """Where the robot's loudspeaker and the microphone are both here."""
+    if not (options.voice is True and options.speak is True and options.robot == "sim"):
+        return None
+    from nl2robot.speech.full_duplex import full_duplex
+
+    return full_duplex(lambda message: print(message, file=sys.stderr, flush=True))
+
+
 @contextlib.contextmanager
-def _terminal(options: argparse.Namespace) -> Iterator[Terminal]:
+def _terminal(options: argparse.Namespace, duplex: FullDuplex | None) -> Iterator[Terminal]:
     if not options.voice:
         yield Terminal(language=options.lang)
         return
     from nl2robot.commands.talk import voice_terminal
 
-    with voice_terminal(options) as terminal:
+    with voice_terminal(options, duplex) as terminal:
         yield terminal
 
 

@@ -18,6 +18,7 @@ from nl2robot.paths import data_folder
 if TYPE_CHECKING:
     from nl2robot.runlog import RunLog
     from nl2robot.speech.aloud import SoundFor
+    from nl2robot.speech.full_duplex import FullDuplex
     from sim.world import World
 
 
@@ -142,7 +143,9 @@ def _sound_file(given: str) -> Path:
 
 
 @contextmanager
-def sound_of(options: argparse.Namespace, world: World, language: str) -> Iterator[SoundFor | None]:
+def sound_of(
+    options: argparse.Namespace, world: World, language: str, duplex: FullDuplex | None = None
+) -> Iterator[SoundFor | None]:
     """What `add_sound` lets people ask for; None if they did not."""
     if not (options.speak or options.voices or options.mic):
         if options.robot_voice:
@@ -158,7 +161,7 @@ def sound_of(options: argparse.Namespace, world: World, language: str) -> Iterat
     wishes = Wishes(
         options.speak, options.voices, options.robot_voice, language, options.mic, options.seed
     )
-    with aloud(wishes, world) as sound:
+    with aloud(wishes, world, duplex=duplex) as sound:
         yield sound
 
 

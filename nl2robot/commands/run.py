@@ -28,6 +28,7 @@ from nl2robot.terminal import Terminal
 
 if TYPE_CHECKING:
     from nl2robot.runlog import RunLog
+    from nl2robot.speech.full_duplex import FullDuplex
     from sim.world import World
 
 
@@ -68,12 +69,17 @@ def run(options: argparse.Namespace) -> int:
 
 @contextmanager
 def open_session(
-    options: argparse.Namespace, *, approve_all: bool = False, terminal: Terminal | None = None
+    options: argparse.Namespace,
+    *,
+    approve_all: bool = False,
+    terminal: Terminal | None = None,
+    duplex: FullDuplex | None = None,
 ) -> Iterator[tuple[Session, Station]]:
-    """Open the robot that the options name and sit down at the terminal."""
+    """Open the robot that the options name and sit down at the terminal. `duplex` is what its
+    loudspeaker has in common with the terminal's microphone."""
     log = open_log(options.debug)
     world = world_of(options)
-    with _station(options, world, log) as station, station.connect() as robot:
+    with _station(options, world, log, duplex) as station, station.connect() as robot:
         yield (
             Session(
                 Operator(robot, user_name()),
@@ -87,7 +93,9 @@ def open_session(
 
 
 @contextmanager
-def _station(options: argparse.Namespace, world: World, log: RunLog) -> Iterator[Station]:
+def _station(
+    options: argparse.Namespace, world: World, log: RunLog, duplex: FullDuplex | None
+) -> Iterator[Station]:
     heard = options.speak or options.voices or options.mic
     if options.robot != "sim":
         if heard:
@@ -99,7 +107,7 @@ def _station(options: argparse.Namespace, world: World, log: RunLog) -> Iterator
             yield station
         return
     with (
-        sound_of(options, world, options.lang) as sound,
+        sound_of(options, world, options.lang, duplex) as sound,
         simulated_station(
             world,
             log,

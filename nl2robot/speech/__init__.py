@@ -14,11 +14,13 @@ Hearing
 Speaking
     voices       text -> sound; sentences: what is spoken at a time; kept: what was spoken before
     speaking     one text after the other, silent at once; loudspeaker: where the sound goes
+    echo_cancelling  the robot's own voice, taken out of what is heard
+    full_duplex  who speaks over the robot is let speak; open_microphone: and answers its question
     people       the voices of the simulated people
     aloud        a run that is heard
 
 Measuring
     levels       how loud a sound is
     scenes       noise and rooms; trials: what is said in them to measure how well it is heard
-    benchmark    how fast it is; delay, hotword_benchmark, speaking_benchmark
+    benchmark    how fast it is; delay, hotword_benchmark, speaking_benchmark, echo_benchmark
 """

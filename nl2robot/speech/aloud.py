@@ -11,12 +11,13 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from nl2robot.speech.full_duplex import FullDuplex, full_duplex
 from nl2robot.speech.kept import KeptSounds, folder
 from nl2robot.speech.loudspeaker import Nowhere, Output, SoundCard, SoundError, WavFile
 from nl2robot.speech.speaking import Speaker, Utterance
@@ -54,10 +55,14 @@ class Wishes:
 
 @contextmanager
 def aloud(
-    wishes: Wishes, world: World, tell: Callable[[str], None] | None = None
+    wishes: Wishes,
+    world: World,
+    tell: Callable[[str], None] | None = None,
+    duplex: FullDuplex | None = None,
 ) -> Iterator[SoundFor | None]:
     """What a simulated robot needs for it; None if nothing is wished for. `tell` gets a sentence
-    where something cannot be heard, by default on standard error. Raises `UserError`."""
+    where something cannot be heard, by default on standard error. `duplex` hears at somebody else's
+    microphone what is played. Raises `UserError`."""
     if not (wishes.speak or wishes.voices or wishes.microphone):
         yield None
         return
@@ -70,46 +75,49 @@ def aloud(
     replies = None
     if wishes.voices or wishes.microphone:
         replies = _replies(wishes.language, world)
-    ears = None
-    if replies is not None and wishes.microphone:
-        ears = _ears(wishes, replies)
-    output = _output(wishes, tell)
-    speakers: list[Speaker] = []
+    with ExitStack() as stack:
+        ears, own = None, None
+        if replies is not None and wishes.microphone:
+            if wishes.speak is True and duplex is None:
+                duplex = own = full_duplex(tell)
+            ears = stack.enter_context(_ears(wishes, replies, own))
+        output = _output(wishes, tell, duplex)
+        stack.callback(output.close)
 
-    def sound_for(clock: Clock) -> Sound:
-        in_real_time = isinstance(output, SoundCard)
-        speaker = Speaker(
-            output,
-            voice_for=robots_voice,
-            kept=KeptSounds(folder()),
-            clock=time.monotonic if in_real_time else clock,
-            tell=tell,
-        )
-        speakers.append(speaker)
-        heard = wishes.speak and type(output) is not Nowhere
-        loudspeaker = RobotVoice(speaker) if heard else None
-        people = None
-        if replies is not None and wishes.voices:
-            people = _people(wishes, world, replies, speaker, clock)
-        return Sound(loudspeaker, ears=ears, voices=people)
+        def sound_for(clock: Clock) -> Sound:
+            in_real_time = isinstance(output, SoundCard)
+            speaker = Speaker(
+                output,
+                voice_for=robots_voice,
+                kept=KeptSounds(folder()),
+                clock=time.monotonic if in_real_time else clock,
+                tell=tell,
+            )
+            stack.callback(speaker.close)
+            if duplex is not None:
+                duplex.speaker = speaker
+            heard = wishes.speak and type(output) is not Nowhere
+            loudspeaker = RobotVoice(speaker, duplex) if heard else None
+            people = None
+            if replies is not None and wishes.voices:
+                people = _people(wishes, world, replies, speaker, clock)
+            return Sound(loudspeaker, ears=ears, voices=people)
 
-    try:
         yield sound_for
-    finally:
-        for speaker in speakers:
-            speaker.close()
-        output.close()
 
 
 class RobotVoice:
     """A speaker as the robot's; `robot_api.capabilities.sound.Loudspeaker`."""
 
-    def __init__(self, speaker: Speaker) -> None:
+    def __init__(self, speaker: Speaker, duplex: FullDuplex | None = None) -> None:
         self.speaker = speaker
+        self._duplex = duplex
 
     @contextmanager
     def speaking(self, stop: StopFlag, text: str, language: str, volume: int) -> Iterator[None]:
-        """As `Loudspeaker.speaking`."""
+        """As `Loudspeaker.speaking`; whole or interrupted, it is over."""
+        if self._duplex is not None:
+            self._duplex.gave_way = False  # what was said before is no answer to this
         utterance: Utterance = self.speaker.begin(text, language, volume)
         stop.on_set(utterance.cancel)
         try:
@@ -136,8 +144,11 @@ def _replies(language: str, world: World) -> Replies:
     return Replies(load, cache(lambda language: _said_here(world, language)))
 
 
-def _ears(wishes: Wishes, replies: Replies) -> Ears:
+@contextmanager
+def _ears(wishes: Wishes, replies: Replies, duplex: FullDuplex | None) -> Iterator[Ears]:
+    """With `duplex`, the microphone stays open: who answers may interrupt the question."""
     from nl2robot.speech.microphone import Microphone
+    from nl2robot.speech.open_microphone import OpenMicrophone
     from nl2robot.speech.replies import AtMicrophone
 
     device = wishes.microphone if isinstance(wishes.microphone, str) else None
@@ -148,16 +159,25 @@ def _ears(wishes: Wishes, replies: Replies) -> Ears:
             yield opened.blocks()
 
     with microphone():  # or it is told now that there is none
-        return AtMicrophone(microphone, replies)
+        pass
+    if duplex is None:
+        yield AtMicrophone(microphone, replies)
+        return
+    stays_open = OpenMicrophone(duplex, lambda: Microphone(device))
+    stays_open.start()
+    try:
+        yield AtMicrophone(stays_open, replies)
+    finally:
+        stays_open.close()
 
 
-def _output(wishes: Wishes, tell: Callable[[str], None]) -> Output:
+def _output(wishes: Wishes, tell: Callable[[str], None], duplex: FullDuplex | None) -> Output:
     if isinstance(wishes.speak, Path):
         return WavFile(wishes.speak)
     if not wishes.speak:
         return Nowhere()
     try:
-        return SoundCard()
+        return SoundCard(played=duplex.played if duplex else None)
     except SoundError as error:
         tell(str(error))
         return Nowhere()
