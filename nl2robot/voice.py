@@ -232,6 +232,10 @@ class OwnVoice:
         return self._clock() <= self._ends + self._ECHO and word.lower() in self._text
 
 
+_LAST_BLOCK: Final = 0.3
+"""Seconds that the sound heard last may take. What it is heard with goes when the program ends."""
+
+
 class SpokenLines:
     """Lines from a microphone, in a thread of its own."""
 
@@ -248,6 +252,8 @@ class SpokenLines:
     def close(self) -> None:
         """Listen no more."""
         self._closed.set()
+        if self._thread.is_alive():
+            self._thread.join(_LAST_BLOCK)
 
     def use(self, voice: VoiceInput) -> None:
         """Listen in another way from now on, in another language."""

@@ -8,6 +8,7 @@ with ears() as blocks:                 # from where somebody began to speak over
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator
@@ -15,15 +16,19 @@ from contextlib import AbstractContextManager, contextmanager
 from typing import Final
 
 from nl2robot.errors import UserError
-from nl2robot.speech.audio import RATE, Samples
+from nl2robot.speech.audio import RATE, AudioError, Samples
 from nl2robot.speech.full_duplex import WINDOW, FullDuplex
 from nl2robot.speech.microphone import Microphone
+
+_log: Final = logging.getLogger(__name__)
 
 BEFORE: Final = WINDOW + 0.3
 """Seconds of sound that are always kept: an answer has begun before it is known to be one."""
 MOST: Final = 15.0
 """Seconds of an answer that are kept until somebody listens."""
 _WAIT: Final = 0.2
+_LAST_BLOCK: Final = 0.3
+"""Seconds that the sound heard last may take. What it is heard with goes when the program ends."""
 
 
 class OpenMicrophone:
@@ -51,6 +56,8 @@ class OpenMicrophone:
 
     def close(self) -> None:
         self._closed = True
+        if self._thread is not None:
+            self._thread.join(_LAST_BLOCK)
 
     @contextmanager
     def __call__(self) -> Iterator[Iterator[Samples]]:
@@ -69,6 +76,8 @@ class OpenMicrophone:
                 while not self._blocks:
                     if self._failed is not None:
                         raise self._failed
+                    if self._closed:
+                        return
                     self._changed.wait(_WAIT)
                 samples = self._blocks.popleft()
                 self._kept -= len(samples)
@@ -83,6 +92,9 @@ class OpenMicrophone:
                     self._keep(samples)
         except UserError as error:
             self._failed = error
+        except Exception:  # noqa: BLE001 - a fault of ours must not leave somebody waiting for ever
+            _log.debug("Listening failed", exc_info=True)
+            self._failed = AudioError("Listening failed, so nothing was heard. Ask again.")
         with self._changed:
             self._changed.notify_all()
 

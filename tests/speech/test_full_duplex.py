@@ -2,25 +2,32 @@
 
 from __future__ import annotations
 
+import argparse
 import itertools
 import sys
 import threading
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 
+import miniaudio
 import numpy as np
 import pytest
 
+from nl2robot.commands import chat
+from nl2robot.speech import aloud as aloud_module
 from nl2robot.speech import full_duplex as module
-from nl2robot.speech.aloud import RobotVoice
+from nl2robot.speech.aloud import RobotVoice, Wishes, aloud
 from nl2robot.speech.audio import RATE, AudioError, Samples
+from nl2robot.speech.echo_cancelling import Played
 from nl2robot.speech.full_duplex import BargeIn, FullDuplex, Over, full_duplex
 from nl2robot.speech.listening import FRAME
-from nl2robot.speech.loudspeaker import Nowhere
+from nl2robot.speech.loudspeaker import Nowhere, SoundCard
 from nl2robot.speech.open_microphone import BEFORE, OpenMicrophone
 from nl2robot.speech.speaking import Speaker
 from nl2robot.speech.voices import Sound
 from robot_api.driver import StopFlag
+from sim.world import load_world
 
 SOON = 10.0
 SECOND = RATE // FRAME
@@ -181,6 +188,41 @@ def test_without_the_library_the_robot_speaks_on_and_that_is_told(monkeypatch) -
     assert len(messages) == 1
 
 
+def test_the_simulated_robots_loudspeaker_tells_what_it_plays(room: Room, monkeypatch) -> None:
+    class Card(SoundCard):
+        def __init__(self, played: Played | None) -> None:
+            super().__init__([miniaudio.Backend.NULL], played)
+
+    monkeypatch.setattr(aloud_module, "SoundCard", Card)
+    wishes = Wishes(speak=True, voice="espeak")
+    with aloud(wishes, load_world("ward"), duplex=room.duplex) as sound_for:
+        assert sound_for is not None
+        loudspeaker = sound_for(lambda: 0.0).loudspeaker
+        assert loudspeaker is not None and room.duplex.speaker is not room.speaker
+        with loudspeaker.speaking(StopFlag(), "Hi.", "en", 100):
+            pass
+        assert room.duplex.played.sounds(time.monotonic())
+
+
+@pytest.mark.parametrize(
+    ("options", "here"),
+    [
+        (["--voice", "--speak"], True),
+        (["--voice"], False),
+        (["--speak"], False),
+        (["--voice", "talk.wav", "--speak"], False),
+        (["--voice", "--speak", "run.wav"], False),
+        (["--voice", "--speak", "--robot", "ws://ward:9090"], False),
+    ],
+)
+def test_it_takes_a_loudspeaker_and_a_microphone_that_are_both_here(
+    options: list[str], here: bool
+) -> None:
+    parser = argparse.ArgumentParser()
+    chat.add_arguments(parser)
+    assert (chat._duplex(parser.parse_args(options)) is not None) is here
+
+
 # --- answers that begin before the question has ended --------------------------------------------
 
 
@@ -224,6 +266,30 @@ def test_who_answers_into_the_question_is_heard_from_their_first_word(room: Room
 def test_what_was_said_before_the_question_is_no_answer(room: Room) -> None:
     long_ago = [VOICE] * 8 + [QUIET] * round(BEFORE * SECOND)
     assert what_counts(room, *long_ago, *[QUIET] * 3) == 0
+
+
+def test_a_fault_while_listening_leaves_nobody_waiting(room: Room) -> None:
+    def opened() -> AbstractContextManager[Plugged]:
+        raise ZeroDivisionError
+
+    microphone = OpenMicrophone(room.duplex, opened)  # type: ignore[arg-type]
+    with microphone() as heard, pytest.raises(AudioError, match="Ask again"):
+        next(heard)
+
+
+def test_who_still_listens_when_the_robot_is_switched_off_hears_nothing_more(room: Room) -> None:
+    plugged = Plugged(room)
+
+    @contextmanager
+    def opened() -> Iterator[Plugged]:
+        yield plugged
+
+    microphone = OpenMicrophone(room.duplex, opened)  # type: ignore[arg-type]
+    with microphone() as heard:
+        assert plugged.heard.wait(SOON)
+        microphone.close()
+        assert list(heard) == []
+    plugged.may_end.set()
 
 
 def test_a_new_question_forgets_what_interrupted_the_last_one(room: Room) -> None:
