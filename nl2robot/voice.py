@@ -28,7 +28,7 @@ from nl2robot.speech.listening import (
     SpeechEnded,
     TooLong,
 )
-from nl2robot.speech.recogniser import Heard
+from nl2robot.speech.recogniser import PUNCTUATION, Heard
 
 _log: Final = logging.getLogger(__name__)
 
@@ -183,9 +183,10 @@ class VoiceInput:
     def _without_hot_word(self, text: str) -> str:
         """Without what is left of the hot word at the beginning: all of it, or its last words."""
         words = text.split()
+        plain = tuple(word.strip(PUNCTUATION) for word in words)
         for called in self._called:
             for first in range(len(called)):
-                if tuple(words[: len(called) - first]) == called[first:]:
+                if plain[: len(called) - first] == called[first:]:
                     return " ".join(words[len(called) - first :])
         return text
 
