@@ -10,6 +10,7 @@ Hearing
     vocabulary   words that the speech model can never hear, and what to call them instead
     digits       which digit a short sound is, by the sound alone; digits_training makes it
     hotword      "hey robot" and "stop", always; spotting: any other word; hotword_training
+                 hotword_judge: its second stage; hotword_limits: where that draws its line
 
 Speaking
     voices       text -> sound; sentences: what is spoken at a time; kept: what was spoken before

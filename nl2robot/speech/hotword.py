@@ -6,9 +6,10 @@
             print(detection.word, detection.time)
 
 No input or output here: samples in, detections out. Words with a trained head (those of
-data/hotwords.yaml) are heard by it, in any language and without a speech model; any other word is
-heard by the speech model of its language (`nl2robot.speech.spotting`). Which way hears how well:
-docs/hotword.md.
+data/hotwords.yaml) are heard by it, in any language and without a speech model; where the second
+speech model is installed it judges what the head is not sure of (`nl2robot.speech.hotword_judge`).
+Any other word is heard by the speech model of its language (`nl2robot.speech.spotting`). Which way
+hears how well: docs/hotword.md.
 """
 
 from __future__ import annotations
@@ -23,7 +24,8 @@ import numpy as np
 from nl2robot.errors import UserError
 from nl2robot.speech.audio import Samples
 from nl2robot.speech.embeddings import STEP, STEP_SECONDS, Embeddings, EmbeddingStream
-from nl2robot.speech.hotword_head import Head, load_head
+from nl2robot.speech.hotword_head import Head, load_head, probability
+from nl2robot.speech.hotword_judge import Judge, judge_of
 from nl2robot.speech.hotword_words import WORDS, Words
 
 SMOOTH: Final = 3
@@ -58,9 +60,13 @@ class Detector(Protocol):
 class Heads:
     """Hears each word by its head; the embeddings are made once for all of them."""
 
-    def __init__(self, heads: Sequence[Head], *, smooth: int = 1) -> None:
-        """`smooth` is over how many steps of 80 ms a score is averaged: more are surer, later."""
-        self._heads, self._smooth = heads, smooth
+    def __init__(
+        self, heads: Sequence[Head], judges: Sequence[Judge | None], *, smooth: int = 1
+    ) -> None:
+        """`judges` are the second stages of the heads. `smooth` is over how many steps of 80 ms a
+        score is averaged: more are surer, later."""
+        self._heads, self._judges, self._smooth = heads, judges, smooth
+        self._judged = max((judge.samples for judge in judges if judge), default=0)
         self._reach = max(head.steps for head in heads) + smooth - 1
         self._stream = EmbeddingStream()
         self._heard = [-HELD] * len(heads)
@@ -70,27 +76,42 @@ class Heads:
     def reset(self) -> None:
         self._stream.reset()
         self._last: Embeddings = np.repeat(_silence(), self._reach - 1, axis=0)
+        self._samples = np.zeros(self._judged, np.int16)
+        self._fed = self._steps * STEP  # samples, the last of which are kept
 
     def feed(self, samples: Samples) -> list[Detection]:
-        return self.hear(self._stream.feed(samples))
+        return self.hear(self._stream.feed(samples), samples)
 
-    def hear(self, embeddings: Embeddings) -> list[Detection]:
-        """The same of embeddings, each of the next 80 ms."""
+    def hear(self, embeddings: Embeddings, samples: Samples) -> list[Detection]:
+        """The same of embeddings that were made of these samples and some before, each of the next
+        80 ms."""
         known = np.concatenate([self._last, embeddings])
         self._last = known[len(embeddings) :]
+        sound = np.concatenate([self._samples, samples])
+        self._fed += len(samples)
+        # What has no embedding yet will be looked at with the next samples.
+        self._samples = sound[max(0, len(sound) - self._judged - STEP) :]
         first = self._steps + 1
         self._steps += len(embeddings)
         if not len(embeddings):
             return []
         found = []
-        for i, head in enumerate(self._heads):
+        for i, (head, judge) in enumerate(zip(self._heads, self._judges, strict=True)):
             scores = head.scores(known[self._reach - head.steps - self._smooth + 1 :])
             smoothed = np.convolve(scores, np.ones(self._smooth) / self._smooth, "valid")
-            for step in np.flatnonzero(smoothed > head.threshold):
-                time = float(first + step) * STEP_SECONDS
-                if time - self._heard[i] >= HELD:
-                    self._heard[i] = time
-                    found.append(Detection(head.word, round(time, 3), float(smoothed[step])))
+            for at in np.flatnonzero(smoothed > (judge.floor if judge else head.threshold)):
+                step, score = first + int(at), float(smoothed[at])
+                time = step * STEP_SECONDS
+                if time - self._heard[i] < HELD:
+                    continue
+                if judge:
+                    until = len(sound) - (self._fed - step * STEP)
+                    verdict = judge.verdict(sound[max(0, until - judge.samples) : until], score)
+                    if verdict <= 0:
+                        continue
+                    score = float(probability(np.array(verdict)))
+                self._heard[i] = time
+                found.append(Detection(head.word, round(time, 3), score))
         return sorted(found, key=lambda each: each.time)
 
 
@@ -111,7 +132,9 @@ class HotWord:
         self.word = " ".join((word if word is not None else default_word(language)).split())
         head = load_head(language, self.word)
         self._detector: Detector = (
-            Heads([head], smooth=SMOOTH) if head else _spotter(language, self.word)
+            Heads([head], judges(language, [head]), smooth=SMOOTH)
+            if head
+            else _spotter(language, self.word)
         )
 
     def feed(self, samples: Samples) -> list[Detection]:
@@ -131,7 +154,7 @@ class StopWord:
         words = _words(language).stop
         heads = [head for word in words if (head := load_head(language, word))]
         self.words = tuple(head.word for head in heads)
-        self._detector = Heads(heads)
+        self._detector = Heads(heads, judges(language, heads))
 
     def feed(self, samples: Samples) -> list[Detection]:
         """What was heard in these samples (one channel at 16 kHz, any number) and before."""
@@ -140,6 +163,11 @@ class StopWord:
     def reset(self) -> None:
         """Forgets what was fed, as after a pause of listening; the time goes on."""
         self._detector.reset()
+
+
+def judges(language: str, heads: Sequence[Head]) -> list[Judge | None]:
+    """The second stages of these heads, where there are any."""
+    return [judge_of(language, head.word, head.threshold) for head in heads]
 
 
 def default_word(language: str) -> str:

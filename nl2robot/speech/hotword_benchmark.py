@@ -1,10 +1,11 @@
 """How well hot words and stop words are heard: misses, false alarms an hour, delay, cost.
 
-    nl2robot bench hotword                          # a minute or two: a first impression
-    NL2ROBOT_BENCH_HOURS=3 nl2robot bench hotword   # the tables of docs/hotword.md
+    nl2robot bench hotword                           # a few minutes: a first impression
+    NL2ROBOT_BENCH_HOURS=10 nl2robot bench hotword   # hours of noise: the tables of docs/hotword.md
+    NL2ROBOT_BENCH_LANGUAGE=en                       # with it: of one language only
 
 On synthesised speech in voices that no head was trained with, in babble of such voices and in a
-corridor. The English ones are in part neural, and no head was trained with any neural voice.
+corridor. Where there is a second stage, the heads alone hear the same sounds beside it.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from __future__ import annotations
 import os
 import statistics
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Final, NamedTuple
@@ -24,41 +25,64 @@ from nl2robot.errors import UserError
 from nl2robot.models import find
 from nl2robot.speech import scenes
 from nl2robot.speech.audio import RATE, Samples
-from nl2robot.speech.embeddings import STEP, embed
-from nl2robot.speech.hotword import SMOOTH, Detection, Detector, Heads, HotWord
+from nl2robot.speech.embeddings import STEP, Embeddings, embed
+from nl2robot.speech.hotword import (
+    SMOOTH,
+    Detection,
+    Detector,
+    Heads,
+    HotWord,
+    StopWord,
+    judges,
+)
 from nl2robot.speech.hotword_corpus import Half, Speech, seeded, silence, talk, words_of
 from nl2robot.speech.hotword_head import Head, load_head
+from nl2robot.speech.hotword_judge import Judge
 from nl2robot.speech.hotword_words import WORDS, Words
 from nl2robot.speech.recogniser import load
 from nl2robot.speech.scenes import Signal
 from nl2robot.speech.spotting import Spotter
 
-Hear = Callable[[Samples], list[Detection]]
+
+@dataclass(eq=False)
+class Sound:
+    """Something to be heard, in one way or several."""
+
+    samples: Samples
+
+    @cached_property
+    def embeddings(self) -> Embeddings:
+        return embed(self.samples)
+
+
+Hear = Callable[[Sound], list[Detection]]
 """All that is heard in a sound."""
 
 SNRS: Final = (None, 20, 10, 5, 0)  # dB; None: no noise
-KINDS: Final = ("talk", "babble", "corridor", "corridor with talk")
+KINDS: Final = {"babble": 0.7, "talk": 0.15, "corridor": 0.05, "corridor with talk": 0.1}
+"""Noises, and how much of the time each is listened to."""
+STOP_SHARE: Final = 0.1
+"""Of it also for stop: its false alarms are many, and soon counted."""
 SAYINGS: Final = 200  # of which the babble is mixed
 IN_TIME: Final = (-0.35, 1.2)
 """Seconds from a word's end within which its detection counts."""
 
 
-@dataclass(frozen=True, eq=False)
-class Said:
+@dataclass(eq=False)
+class Said(Sound):
     """A word that was said."""
 
-    samples: Samples
     end: float  # seconds
 
 
 class Stage:
     """The people, words and noises of an evaluation."""
 
-    def __init__(self, words: Words, seed: int = 1) -> None:
+    def __init__(self, words: Words, seed: int = 1, half: Half = Half.EVALUATION) -> None:
         self.words = words
-        self._rng = seeded(seed, words.language, "evaluation")
+        self._rng = seeded(seed, words.language, half.value)
         avoid = frozenset(w for word in (*words.stop, words.hot) for w in words_of(word))
-        self._speech = Speech(words.language, Half.EVALUATION, self._rng, avoid)
+        self._speech = Speech(words.language, half, self._rng, avoid)
 
     @cached_property
     def _sayings(self) -> list[Signal]:
@@ -93,13 +117,18 @@ class Stage:
             return scenes.at_snr(spoken[:length], noise, snr, self._rng)
         return spoken
 
-    def noises(self, kind: str, hours: float) -> Iterator[Samples]:
+    @property
+    def has_neural_voice(self) -> bool:
+        return self._speech.has_neural_voice
+
+    def noises(self, kind: str, hours: float) -> Iterator[Sound]:
         """Minutes of it, loud and soft."""
         left = hours * 3600
         while left > 0:
             sound = self.noise(kind, min(60.0, left))
             left -= len(sound) / RATE
-            yield scenes.audio(sound * np.float32(self._rng.uniform(0.1, 1.0))).samples
+            loudness = np.float32(self._rng.uniform(0.1, 1.0))
+            yield Sound(scenes.audio(sound * loudness).samples)
 
 
 def all_said(
@@ -115,36 +144,40 @@ def missed(hear: Hear, said: Iterable[Said]) -> tuple[float, list[float]]:
     for each in said:
         count += 1
         early, late = IN_TIME
-        times = [d.time - each.end for d in hear(each.samples)]
+        times = [d.time - each.end for d in hear(each)]
         delays += [t for t in times if early < t < late][:1]
     return 1 - len(delays) / max(1, count), delays
 
 
-def alarms(hear: Hear, noises: Iterable[Samples]) -> tuple[int, float]:
-    """How often a word is heard that nobody said, and in how many hours."""
-    count, seconds = 0, 0.0
-    for samples in noises:
-        count += len(hear(samples))
-        seconds += len(samples) / RATE
-    return count, seconds / 3600
-
-
-def at_once(heads: Sequence[Head], smooth: int) -> Hear:
+def at_once(heads: Sequence[Head], judges: Sequence[Judge | None], smooth: int) -> Hear:
     """What `Heads` would hear of a sound block by block, several times as fast."""
 
-    def hear(samples: Samples) -> list[Detection]:
-        return Heads(heads, smooth=smooth).hear(embed(samples))
+    def hear(sound: Sound) -> list[Detection]:
+        return Heads(heads, judges, smooth=smooth).hear(sound.embeddings, sound.samples)
 
     return hear
+
+
+def ways(language: str, words: Sequence[str], smooth: int) -> dict[str, Hear]:
+    """With the second stage, if there is one, and without."""
+    heads = [head for word in words if (head := load_head(language, word))]
+    second = judges(language, heads)
+    found = {"": at_once(heads, [None] * len(heads), smooth)}
+    if any(second):
+        found = {
+            " (two stages)": at_once(heads, second, smooth),
+            " (head alone)": found[""],
+        }
+    return found
 
 
 def block_by_block(make: Callable[[], Detector]) -> Hear:
     """What a new detector hears of a sound as from a microphone."""
 
-    def hear(samples: Samples) -> list[Detection]:
+    def hear(sound: Sound) -> list[Detection]:
         detector, found = make(), []
-        for start in range(0, len(samples), STEP):
-            found += detector.feed(samples[start : start + STEP])
+        for start in range(0, len(sound.samples), STEP):
+            found += detector.feed(sound.samples[start : start + STEP])
         return found
 
     return hear
@@ -157,9 +190,9 @@ class Measured(NamedTuple):
     aim: str = ""
 
 
-def measure(hours: float | None = None) -> Iterator[Measured]:
-    """In English a first impression; with `hours` of every noise, every language and every way of
-    hearing. $NL2ROBOT_BENCH_HOURS says so too. Raises UserError where there are no voices."""
+def measure(hours: float | None = None, language: str | None = None) -> Iterator[Measured]:
+    """In English a first impression; with `hours` of noise, every language (or one) and every way
+    of hearing. The environment may say both. Raises UserError where there are no voices."""
     given = os.environ.get("NL2ROBOT_BENCH_HOURS")
     if hours is None and given:
         try:
@@ -168,51 +201,72 @@ def measure(hours: float | None = None) -> Iterator[Measured]:
             raise UserError(
                 f"NL2ROBOT_BENCH_HOURS is {given!r}, which is no number of hours. Set it to 3, say."
             ) from error
-    count = 200 if hours else 20
-    for code in WORDS if hours else ["en"]:
+    language = language or os.environ.get("NL2ROBOT_BENCH_LANGUAGE")
+    if language not in (None, *WORDS):
+        raise UserError(f"NL2ROBOT_BENCH_LANGUAGE is {language!r}. There are: {', '.join(WORDS)}.")
+    count = 40 if hours else 10
+    for code in [language] if language else WORDS if hours else ["en"]:
         stage = Stage(WORDS[code])
-        yield from _word(stage, WORDS[code].hot, SMOOTH, count, hours or 0.03)
-        yield from _stop(stage, count, hours or 0.03)
+        hot, stop = WORDS[code].hot, WORDS[code].stop
+        hot_ways, stop_ways = ways(code, [hot], SMOOTH), ways(code, stop, 1)
+        yield from _heard(stage, hot, hot_ways, count, hot, aim="3", soon="100")
+        for word in stop:
+            name = f"{word} ({code})"
+            yield from _heard(stage, name, stop_ways, count, word, soon="300")
+        every = hours or 0.12
+        yield from _alarms(stage, hot, hot_ways, every)
+        yield from _alarms(stage, f"stop ({code})", stop_ways, every * STOP_SHARE)
         if hours and find(code):
-            yield from _spotted(stage, count // 4, hours / 12)
+            yield from _spotted(stage, count, hours / 40)
     yield from _cost(Stage(WORDS["en"]))
 
 
-def _word(stage: Stage, word: str, smooth: int, count: int, hours: float) -> Iterator[Measured]:
-    head = load_head(stage.words.language, word)
-    assert head is not None
-    yield from _heard(stage, word, at_once([head], smooth), count, "3", "100")
-    for kind in KINDS:
-        yield _an_hour(f"{word}: false alarms, {kind}", at_once([head], smooth), stage, kind, hours)
-
-
-def _stop(stage: Stage, count: int, hours: float) -> Iterator[Measured]:
-    language = stage.words.language
-    heads = [head for word in stage.words.stop if (head := load_head(language, word))]
-    hear = at_once(heads, 1)
-    for head in heads:
-        yield from _heard(stage, f"{head.word} ({language})", hear, count, "", "300", head.word)
-    for kind in KINDS:
-        yield _an_hour(f"stop ({language}): false alarms, {kind}", hear, stage, kind, hours)
-
-
 def _heard(
-    stage: Stage, name: str, hear: Hear, count: int, aim: str, soon: str, word: str = ""
+    stage: Stage,
+    name: str,
+    ways: Mapping[str, Hear],
+    count: int,
+    word: str,
+    *,
+    aim: str = "",
+    soon: str = "",
 ) -> Iterator[Measured]:
-    delays: list[float] = []
-    for snr in SNRS:
-        share, times = missed(hear, all_said(stage, word or name, snr, count))
-        delays += times
-        where = "no noise" if snr is None else f"{snr} dB"
-        yield Measured(f"{name}: missed, {where}", share * 100, "%", aim if snr == 10 else "")
-    if delays:
-        yield Measured(f"{name}: delay, median", statistics.median(delays) * 1000, "ms", soon)
-        yield Measured(f"{name}: delay, 95th of 100", float(np.quantile(delays, 0.95)) * 1000, "ms")
+    delays: dict[str, list[float]] = {way: [] for way in ways}
+    for neural in (None, True) if stage.has_neural_voice else (None,):
+        for snr in (None, 10) if neural else SNRS:
+            said = all_said(stage, word, snr, count, neural=neural)
+            where = "no noise" if snr is None else f"{snr} dB"
+            where += ", neural voice only" if neural else ""
+            for way, hear in ways.items():
+                share, times = missed(hear, said)
+                delays[way] += times
+                goal = aim if snr == 10 else ""
+                yield Measured(f"{name}{way}: missed, {where}", share * 100, "%", goal)
+    for way, times in delays.items():
+        if times:
+            median, late = statistics.median(times), float(np.quantile(times, 0.95))
+            yield Measured(f"{name}{way}: delay, median", median * 1000, "ms", soon)
+            yield Measured(f"{name}{way}: delay, 95th of 100", late * 1000, "ms")
 
 
-def _an_hour(what: str, hear: Hear, stage: Stage, kind: str, hours: float) -> Measured:
+def _alarms(stage: Stage, name: str, ways: Mapping[str, Hear], hours: float) -> Iterator[Measured]:
     """Alarms an hour; where there was none, below what it is with 95 % certainty."""
-    count, listened = alarms(hear, stage.noises(kind, hours))
+    total = dict.fromkeys(ways, 0)
+    for kind, share in KINDS.items():
+        counts = dict.fromkeys(ways, 0)
+        listened = 0.0
+        for sound in stage.noises(kind, hours * share):
+            listened += len(sound.samples) / RATE / 3600
+            for way, hear in ways.items():
+                counts[way] += len(hear(sound))
+        for way, count in counts.items():
+            total[way] += count
+            yield _an_hour(f"{name}{way}: false alarms, {kind}", count, listened)
+    for way, count in total.items():
+        yield _an_hour(f"{name}{way}: false alarms, all", count, hours)
+
+
+def _an_hour(what: str, count: int, listened: float) -> Measured:
     if count == 0:
         return Measured(f"{what}, none in {listened:.2g} h: below", 3 / listened, "/h", "0.1")
     return Measured(f"{what}, {count} in {listened:.2g} h", count / listened, "/h", "0.1")
@@ -221,26 +275,30 @@ def _an_hour(what: str, hear: Hear, stage: Stage, kind: str, hours: float) -> Me
 def _spotted(stage: Stage, count: int, hours: float) -> Iterator[Measured]:
     """The same word without a head, by the speech model: its first stage alone, and both."""
     language, word = stage.words.language, stage.words.hot
-    for name, second in (("keyword list", False), ("two stages", True)):
-        recogniser = load(language)
-        hear = block_by_block(partial(Spotter, recogniser, word, second_stage=second))
-        yield from _heard(stage, f"{word} by {name}", hear, count, "3", "", word)
-        for kind in KINDS:
-            yield _an_hour(f"{word} by {name}: false alarms, {kind}", hear, stage, kind, hours)
+    recogniser = load(language)
+    ways = {
+        f" by {name}": block_by_block(partial(Spotter, recogniser, word, second_stage=second))
+        for name, second in (("keyword list", False), ("two stages", True))
+    }
+    yield from _heard(stage, word, ways, count, word, aim="3")
+    yield from _alarms(stage, word, ways, hours)
 
 
 def _cost(stage: Stage) -> Iterator[Measured]:
     """What it costs to listen to somebody who talks on and on."""
-    samples = np.concatenate(list(stage.noises("babble", 30 / 3600)))
-    detectors: dict[str, Callable[[], Detector]] = {"hot word": lambda: HotWord("en")}
+    sound = Sound(np.concatenate([n.samples for n in stage.noises("babble", 30 / 3600)]))
+    detectors: dict[str, Callable[[], Detector]] = {
+        "hot word": lambda: HotWord("en"),
+        "stop": lambda: StopWord("en"),
+    }
     if find("en"):
-        detectors["two stages"] = lambda: Spotter(load("en"), "hey robot")
+        detectors["any word, by the speech model"] = lambda: Spotter(load("en"), "hey robot")
     for name, make in detectors.items():
         before = megabytes(os.getpid())
         hear = block_by_block(make)
         wall, used = time.perf_counter(), time.process_time()
-        hear(samples)
-        seconds = len(samples) / RATE
+        hear(sound)
+        seconds = len(sound.samples) / RATE
         yield Measured(f"{name}: real-time factor", (time.perf_counter() - wall) / seconds, "")
         yield Measured(f"{name}: of a core", (time.process_time() - used) / seconds * 100, "%")
         yield Measured(f"{name}: memory more", megabytes(os.getpid()) - before, "MB")

@@ -74,9 +74,16 @@ class Speech:
         sound = soxr.resample(spoken.samples.astype(np.float32) / 32768, spoken.rate * warp, RATE)
         return trimmed(np.asarray(sound, np.float32))
 
+    @property
+    def has_neural_voice(self) -> bool:
+        return bool(self._neural_voices())
+
+    def _neural_voices(self) -> list[Voice]:
+        return [each for each in voices(self.language) if each.name.startswith("piper")]
+
     def _speaker(self, neural: bool | None) -> tuple[Voice, float]:
         """A voice, and by what factor the whole of it is higher: another throat."""
-        found = [each for each in voices(self.language) if each.name.startswith("piper")]
+        found = self._neural_voices()
         if found and (neural or (neural is None and self.rng.random() < NEURAL[self.half])):
             # There is one neural voice: those who train are higher or lower than those who test.
             return found[0], 1.0 if self.half is Half.EVALUATION else self._far_from_one()

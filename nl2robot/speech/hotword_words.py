@@ -11,6 +11,25 @@ import yaml
 _FILE: Final = Path(__file__).parents[1] / "data" / "hotwords.yaml"
 
 
+class Judged(msgspec.Struct, frozen=True):
+    """How the second stage judges a word."""
+
+    written: tuple[str, ...]
+    """The ways in which the second speech model writes it."""
+    rivals: tuple[str, ...]
+    """What it is easily taken for, written as well."""
+    seconds: float
+    """Of sound up to now in which it is looked for."""
+    floor: float
+    """Scores of the head from which on it is."""
+    weight: float
+    """Of the log likelihood, beside the log odds of the head's score."""
+    contrast: float
+    """Of how much likelier (in logs) it is than the likeliest rival."""
+    limit: float
+    """Of their sum: above it the word was said."""
+
+
 class Words(msgspec.Struct, frozen=True):
     """The words of one language."""
 
@@ -22,6 +41,8 @@ class Words(msgspec.Struct, frozen=True):
     """Everyday words that a decoder may hear instead."""
     near: dict[str, list[str]]
     """By word, what sounds much like it and means nothing."""
+    judged: dict[str, Judged] = {}
+    """By word, how a second stage judges it; others are heard by their head alone."""
 
 
 WORDS: Final = {

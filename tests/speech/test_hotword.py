@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 import pytest
@@ -14,10 +15,12 @@ from nl2robot.errors import UserError
 from nl2robot.speech import scenes
 from nl2robot.speech.audio import RATE, Samples, read
 from nl2robot.speech.embeddings import STEP, EmbeddingStream, embed
-from nl2robot.speech.hotword import HotWord, StopWord
+from nl2robot.speech.hotword import Heads, HotWord, StopWord
 from nl2robot.speech.hotword_corpus import seeded, silence, trimmed
 from nl2robot.speech.hotword_head import Head, load_head
+from nl2robot.speech.hotword_judge import Judge, judge_of
 from nl2robot.speech.hotword_words import WORDS
+from nl2robot.speech.moonshine import Moonshine
 from nl2robot.speech.recogniser import Recogniser
 from nl2robot.speech.spotting import Spotter
 from nl2robot.speech.voices import espeak, joined
@@ -122,6 +125,55 @@ def test_a_head_of_ones_own_is_found_first(tmp_path: Path, monkeypatch: pytest.M
     found = load_head("en", "hey pepper")
     assert found is not None
     assert (found.threshold, found.steps) == (0.25, 3)
+
+
+# ── the second stage, where the second speech model is installed ─────────────────────────────
+
+
+@pytest.mark.parametrize(("word", "near"), [("hey robot", "the robot"), ("stop", "step")])
+def test_the_second_stage_hears_the_word_in_what_the_head_is_unsure_of(
+    word: str, near: str, second_model: Path
+) -> None:
+    """The same doubtful score, and one of them was it."""
+    judge = judge_of("en", word, 0.8)
+    assert judge is not None
+    verdicts = []
+    for text in (word, near):
+        samples, end = said(text, speaker="f3")
+        verdicts.append(judge.verdict(samples[: int((end + 0.08) * RATE)], 0.4))
+    assert verdicts[0] > 0 >= verdicts[1]
+
+
+def test_a_step_is_no_stop_once_the_second_stage_has_heard_it(second_model: Path) -> None:
+    samples, _ = said("step", speaker="f3")
+    head = load_head("en", "stop")
+    assert head is not None
+    assert Heads([head], [None]).feed(samples)
+    assert StopWord("en").feed(samples) == []
+
+
+def test_without_the_second_model_the_head_alone_decides(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NL2ROBOT_MODELS", str(tmp_path))
+    assert judge_of("en", "stop", 0.8) is None
+    assert len(StopWord("en").feed(said("stop!")[0])) == 1
+    assert len(HotWord("en").feed(said("hey robot")[0])) == 1
+
+
+def test_a_stop_is_not_lost_when_the_second_stage_fails(caplog: pytest.LogCaptureFixture) -> None:
+    class Broken:
+        def listen(self, samples: Samples) -> None:
+            raise RuntimeError("out of memory")
+
+    head = load_head("en", "stop")
+    assert head is not None
+    judge = Judge(cast("Moonshine", Broken()), WORDS["en"].judged["stop"], head.threshold)
+    samples, _ = said("stop!")
+    (heard,) = Heads([head], [judge]).feed(samples)
+    (alone,) = Heads([head], [None]).feed(samples)
+    assert (heard.word, heard.time) == (alone.word, alone.time)
+    assert "heard without it" in caplog.text
 
 
 # ── a word without a head: by the speech model ───────────────────────────────────────────────

@@ -1,0 +1,99 @@
+"""Where the second stage of a hot word should draw its line:
+
+    python -m nl2robot.speech.hotword_limits
+    --hours 0.4   of each noise
+
+For each limit that `judged` in data/hotwords.yaml may have: how often the word would be missed, and
+how often heard by mistake. On the voices of the training, so that the evaluation of
+`nl2robot bench hotword` stays unseen.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from nl2robot.speech.audio import RATE, Samples
+from nl2robot.speech.hotword import SMOOTH, Heads
+from nl2robot.speech.hotword_benchmark import Sound, Stage, all_said
+from nl2robot.speech.hotword_corpus import Half
+from nl2robot.speech.hotword_head import Head, load_head
+from nl2robot.speech.hotword_judge import Judge, judge_of
+from nl2robot.speech.hotword_words import WORDS
+
+SEED: Final = 11  # that no head was trained with
+SNRS: Final = (None, 10, 5)
+KINDS: Final = ("babble", "talk", "corridor with talk")
+PIECE: Final = 10  # seconds, in which one false alarm at most is counted
+LIMITS: Final = range(-18, 3)
+
+
+class Noting(Judge):
+    """A second stage that accepts nothing, and notes by how much it would have."""
+
+    def __init__(self, judge: Judge) -> None:
+        self._judge = judge
+        self.floor, self.samples, self.limit = judge.floor, judge.samples, judge.limit
+        self.most = -np.inf
+
+    def verdict(self, samples: Samples, score: float) -> float:
+        self.most = max(self.most, self._judge.verdict(samples, score))
+        return -1.0
+
+
+def strongest(head: Head, judge: Judge, smooth: int, sound: Sound) -> float:
+    """The limit from which on nothing is heard in this sound."""
+    noting = Noting(judge)
+    Heads([head], [noting], smooth=smooth).hear(sound.embeddings, sound.samples)
+    return noting.most + judge.limit
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    parser = argparse.ArgumentParser(description="What follows from the limits of second stages.")
+    parser.add_argument("--hours", type=float, default=0.4, help="of each noise (default: 0.4)")
+    parser.add_argument("--sayings", type=int, default=30, help="a figure (default: 30)")
+    options = parser.parse_args(arguments)
+    for code, words in WORDS.items():
+        stage = Stage(words, SEED, Half.TRAINING)
+        sounds = {
+            kind: [
+                Sound(minute.samples[at : at + PIECE * RATE])
+                for minute in stage.noises(kind, options.hours)
+                for at in range(0, len(minute.samples), PIECE * RATE)
+            ]
+            for kind in KINDS
+            if words.judged
+        }
+        for word in words.judged:
+            head = load_head(code, word)
+            judge = judge_of(code, word, head.threshold) if head else None
+            if head is None or judge is None:
+                raise SystemExit(f"“{word}” has no head or no second speech model here.")
+            smooth = SMOOTH if word == words.hot else 1
+            columns: dict[str, list[float]] = {}
+            for neural in (None, True):
+                for snr in SNRS:
+                    said = all_said(stage, word, snr, options.sayings, neural=neural)
+                    name = f"{'neural' if neural else 'any'} {snr}"
+                    columns[name] = [strongest(head, judge, smooth, each) for each in said]
+            heard = {
+                kind: [strongest(head, judge, smooth, piece) for piece in pieces]
+                for kind, pieces in sounds.items()
+            }
+            print(f"{word}: % missed | alarms an hour")
+            print("limit", *columns, "|", *heard, sep="\t")
+            for limit in LIMITS:
+                missed = [100 * np.mean(np.array(most) <= limit) for most in columns.values()]
+                alarms = [
+                    (np.array(most) > limit).sum() * 3600 / PIECE / len(most)
+                    for most in heard.values()
+                ]
+                shares, rates = [f"{m:.0f}" for m in missed], [f"{a:.1f}" for a in alarms]
+                print(limit, *shares, "|", *rates, sep="\t", flush=True)
+
+
+if __name__ == "__main__":
+    main()
