@@ -48,7 +48,7 @@ class Judge:
         """Above 0: the word was said, at the end of these samples. `score` is the head's."""
         try:
             likelihood, ahead = self._likelihood(samples[-self.samples :])
-        except Exception:  # noqa: BLE001 - onnxruntime raises many; none of them may cost a stop
+        except Exception:  # noqa: BLE001 - onnxruntime raises many; the head still hears
             _log.exception("The second speech model failed; the hot word is heard without it.")
             return score - self._threshold
         certain = min(max(score, _SURE), 1 - _SURE)
