@@ -13,13 +13,11 @@ the voices of the training.
 from __future__ import annotations
 
 import logging
-from functools import cache
-from pathlib import Path
 from typing import Final
 
 import numpy as np
 
-from nl2robot.models import ModelError, find
+from nl2robot.speech import moonshine
 from nl2robot.speech.audio import RATE, Samples
 from nl2robot.speech.hotword_words import WORDS, Judged
 from nl2robot.speech.moonshine import Moonshine
@@ -71,20 +69,5 @@ class Judge:
 def judge_of(language: str, word: str, threshold: float) -> Judge | None:
     """The second stage of a word; None where it is heard by its head alone."""
     judged = WORDS[language].judged.get(word)
-    model = moonshine(language) if judged else None
+    model = moonshine.load(language) if judged else None
     return Judge(model, judged, threshold) if judged and model else None
-
-
-def moonshine(language: str) -> Moonshine | None:
-    """The second speech model, loaded once; None where there is none that can be used."""
-    folder = find(f"{language}-moonshine")
-    return _loaded(folder) if folder else None
-
-
-@cache
-def _loaded(folder: Path) -> Moonshine | None:
-    try:
-        return Moonshine(folder)
-    except ModelError as error:  # the head alone hears too
-        _log.warning("%s", error)
-        return None

@@ -13,17 +13,22 @@ pharmacy, then say hello."
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from nl2robot.models import ModelError, find
 from nl2robot.speech.audio import RATE, Samples
 from nl2robot.speech.expectation import Expectation
 from nl2robot.speech.subwords import BEGIN, END, Subwords
+
+_log = logging.getLogger(__name__)
 
 WIDTH: Final = 6  # texts that are followed side by side
 EXPECTED: Final = 0.25  # weight of what is likely to be said next to the sound
@@ -51,8 +56,6 @@ class Moonshine:
     def __init__(self, folder: Path) -> None:
         """`folder` holds encoder, decoder and subwords. Raises ModelError if they are no good."""
         import onnxruntime
-
-        from nl2robot.models import ModelError
 
         how = onnxruntime.SessionOptions()
         # Threads that wait for each other by spinning take several times as long on a busy machine.
@@ -178,6 +181,17 @@ class Sound:
             + float(np.logaddexp.reduce(rows[len(text) - 1, self._model._ends]))
             for rows, text in zip(sounds, written, strict=True)
         ]
+
+
+@cache
+def load(language: str) -> Moonshine | None:
+    """That of a language, loaded once; None where there is none that can be used."""
+    folder = find(f"{language}-moonshine")
+    try:
+        return Moonshine(folder) if folder else None
+    except ModelError as error:  # without it one hears less well, but one hears
+        _log.warning("%s", error)
+        return None
 
 
 @dataclass(frozen=True)

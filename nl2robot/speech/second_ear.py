@@ -24,7 +24,7 @@ from typing import Final
 
 import numpy as np
 
-from nl2robot.models import find
+from nl2robot.speech import moonshine
 from nl2robot.speech.audio import RATE, Samples
 from nl2robot.speech.expectation import Expectation
 from nl2robot.speech.levels import gain_for
@@ -147,8 +147,8 @@ class _Expected:
 @cache
 def second_ear(language: str) -> SecondEar | None:
     """The one of this language, loaded once; None if none is installed."""
-    folder = find(f"{language}-moonshine")
-    return SecondEar(Moonshine(folder), language) if folder else None
+    model = moonshine.load(language)
+    return SecondEar(model, language) if model else None
 
 
 class _Words:
