@@ -183,12 +183,16 @@ class Sound:
         ]
 
 
-@cache
 def load(language: str) -> Moonshine | None:
     """That of a language, loaded once; None where there is none that can be used."""
     folder = find(f"{language}-moonshine")
+    return _loaded(folder) if folder else None
+
+
+@cache
+def _loaded(folder: Path) -> Moonshine | None:
     try:
-        return Moonshine(folder) if folder else None
+        return Moonshine(folder)
     except ModelError as error:  # without it one hears less well, but one hears
         _log.warning("%s", error)
         return None

@@ -144,11 +144,15 @@ class _Expected:
     sentences: Expectation
 
 
-@cache
 def second_ear(language: str) -> SecondEar | None:
     """The one of this language, loaded once; None if none is installed."""
     model = moonshine.load(language)
-    return SecondEar(model, language) if model else None
+    return _ear(model, language) if model else None
+
+
+@cache
+def _ear(model: Moonshine, language: str) -> SecondEar:
+    return SecondEar(model, language)
 
 
 class _Words:
