@@ -154,6 +154,8 @@ def test_belief_grows_with_the_evidence() -> None:
     both = Evidence(unlikely=6.0, subwords=8, unexpected=4.0, agreed=True)
     odd = Evidence(unlikely=6.0, subwords=8, unexpected=8.0, agreed=False)
     assert odd.belief < some.belief < min(more.belief, both.belief)
+    nonsense = Evidence(unlikely=1e5, subwords=200, unexpected=10.0, agreed=False)
+    assert 0 <= nonsense.belief < 1e-9
 
 
 def test_the_recogniser_takes_its_word(recogniser: Recogniser) -> None:
