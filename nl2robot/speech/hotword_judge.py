@@ -36,6 +36,7 @@ class Judge:
     def __init__(self, model: Moonshine, judged: Judged, threshold: float) -> None:
         """`threshold` is that of the head, for the case that the model fails."""
         self._model, self._judged, self._threshold = model, judged, threshold
+        self._failed = False
         self.limit = judged.limit
         self.floor = judged.floor
         """Scores of the head below it are not worth the work."""
@@ -47,7 +48,10 @@ class Judge:
         try:
             likelihood, ahead = self._likelihood(samples[-self.samples :])
         except Exception:  # noqa: BLE001 - onnxruntime raises many; the head still hears
-            _log.exception("The second speech model failed; the hot word is heard without it.")
+            if not self._failed:  # told once, not for every sound that is a little like the word
+                _log.warning("The second speech model failed; the hot word is heard without it.")
+            self._failed = True
+            _log.debug("The second speech model failed", exc_info=True)
             return score - self._threshold
         certain = min(max(score, _SURE), 1 - _SURE)
         odds = float(np.log(certain / (1 - certain)))

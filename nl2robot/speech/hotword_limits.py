@@ -11,7 +11,7 @@ how often heard by mistake. On the voices of the training, so that the evaluatio
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -57,42 +57,51 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--sayings", type=int, default=30, help="a figure (default: 30)")
     options = parser.parse_args(arguments)
     for code, words in WORDS.items():
-        stage = Stage(words, SEED, Half.TRAINING)
-        sounds = {
-            kind: [
-                Sound(minute.samples[at : at + PIECE * RATE])
-                for minute in stage.noises(kind, options.hours)
-                for at in range(0, len(minute.samples), PIECE * RATE)
-            ]
-            for kind in KINDS
-            if words.judged
-        }
-        for word in words.judged:
-            head = load_head(code, word)
-            judge = judge_of(code, word, head.threshold) if head else None
-            if head is None or judge is None:
-                raise SystemExit(f"“{word}” has no head or no second speech model here.")
-            smooth = SMOOTH if word == words.hot else 1
-            columns: dict[str, list[float]] = {}
-            for neural in (None, True):
-                for snr in SNRS:
-                    said = all_said(stage, word, snr, options.sayings, neural=neural)
-                    name = f"{'neural' if neural else 'any'} {snr}"
-                    columns[name] = [strongest(head, judge, smooth, each) for each in said]
-            heard = {
-                kind: [strongest(head, judge, smooth, piece) for piece in pieces]
-                for kind, pieces in sounds.items()
-            }
-            print(f"{word}: % missed | alarms an hour")
-            print("limit", *columns, "|", *heard, sep="\t")
-            for limit in LIMITS:
-                missed = [100 * np.mean(np.array(most) <= limit) for most in columns.values()]
-                alarms = [
-                    (np.array(most) > limit).sum() * 3600 / PIECE / len(most)
-                    for most in heard.values()
-                ]
-                shares, rates = [f"{m:.0f}" for m in missed], [f"{a:.1f}" for a in alarms]
-                print(limit, *shares, "|", *rates, sep="\t", flush=True)
+        if words.judged:
+            stage = Stage(words, SEED, Half.TRAINING)
+            noises = {kind: list(_pieces(stage, kind, options.hours)) for kind in KINDS}
+            for word in words.judged:
+                smooth = SMOOTH if word == words.hot else 1
+                _print_table(code, word, smooth, stage, noises, options.sayings)
+
+
+def _pieces(stage: Stage, kind: str, hours: float) -> Iterator[Sound]:
+    for minute in stage.noises(kind, hours):
+        for at in range(0, len(minute.samples), PIECE * RATE):
+            yield Sound(minute.samples[at : at + PIECE * RATE])
+
+
+def _print_table(
+    code: str,
+    word: str,
+    smooth: int,
+    stage: Stage,
+    noises: Mapping[str, Sequence[Sound]],
+    sayings: int,
+) -> None:
+    head = load_head(code, word)
+    judge = judge_of(code, word, head.threshold) if head else None
+    if head is None or judge is None:
+        raise SystemExit(f"“{word}” has no head or no second speech model here.")
+    said = {
+        f"{'neural' if neural else 'any'} {snr}": [
+            strongest(head, judge, smooth, each)
+            for each in all_said(stage, word, snr, sayings, neural=neural)
+        ]
+        for neural in (None, True)
+        for snr in SNRS
+    }
+    heard = {
+        kind: [strongest(head, judge, smooth, piece) for piece in pieces]
+        for kind, pieces in noises.items()
+    }
+    print(f"{word}: % missed | alarms an hour")
+    print("limit", *said, "|", *heard, sep="\t")
+    for limit in LIMITS:
+        missed = [100 * np.mean(np.array(most) <= limit) for most in said.values()]
+        alarms = [(np.array(most) > limit).mean() * 3600 / PIECE for most in heard.values()]
+        shares, rates = [f"{m:.0f}" for m in missed], [f"{a:.1f}" for a in alarms]
+        print(limit, *shares, "|", *rates, sep="\t", flush=True)
 
 
 if __name__ == "__main__":

@@ -80,7 +80,7 @@ class Reading:
 
     text: str
     # How well it fits the sound: the share of its score by which it is ahead of the best free
-    # reading (0). A much worse fit is hardly ever what was said.
+    # reading (0). A much worse fit is hardly ever what was said. 0 where a second ear tells.
     fit: float
     doubtful: bool
     # Log likelihood of sound and words together; to be compared with readings of one decoder only.
@@ -379,9 +379,9 @@ class Decoding:
         readings = tuple(
             Reading(
                 each.text,
-                each.likelihood - opinion.readings[0].likelihood,
-                each.evidence.belief < LEAST_BELIEF,
-                each.likelihood,
+                fit=0.0,
+                doubtful=each.evidence.belief < LEAST_BELIEF,
+                score=each.likelihood,
                 evidence=each.evidence,
             )
             for each in opinion.readings
