@@ -260,8 +260,26 @@ def verify(
         if (models_folder() / other).is_dir():
             problems += _verify(other, second, progress)
         else:
-            progress.note(f"The {second.name} is not installed. {_without(second)} {_get(other)}.")
+            progress.note(_unusable(other, second, "not installed"))
     return problems
+
+
+def lacking_beside(code: str) -> list[str]:
+    """A sentence for each model beside this one that cannot be used: what to do about it."""
+    registry = load_registry()
+    states = {
+        other: _state(models_folder() / other, model.engine)
+        for other, model in _beside(code, registry)
+    }
+    return [
+        _unusable(other, registry[other], "damaged" if state == "damaged" else "not installed")
+        for other, state in states.items()
+        if state != "installed"
+    ]
+
+
+def _unusable(code: str, model: Model, state: str) -> str:
+    return f"The {model.name} is {state}. {_without(model)} {_get(code)}."
 
 
 def _verify(code: str, model: Model, progress: Progress) -> list[str]:

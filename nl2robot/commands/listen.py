@@ -16,7 +16,7 @@ import msgspec
 from nl2robot.commands.options import add_language, add_planner, add_world, names_of
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
-from nl2robot.models import need
+from nl2robot.models import lacking_beside, need
 from nl2robot.routines import open_routines
 
 if TYPE_CHECKING:
@@ -52,6 +52,8 @@ def run(options: argparse.Namespace) -> int:
     if options.device is not None and not options.mic:
         raise UserError("--device chooses a microphone. Add --mic, or leave --device out.")
     model = need(options.lang)
+    for sentence in lacking_beside(options.lang):
+        print(sentence, file=sys.stderr)
     if not options.mic:
         return recordings(options.wav, _hearing(options, model))
     from nl2robot.speech.microphone import Microphone

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
@@ -11,7 +12,7 @@ from pathlib import Path
 from nl2robot.commands.options import names_of
 from nl2robot.hearing import Ear
 from nl2robot.knowledge import Knowledge
-from nl2robot.models import need
+from nl2robot.models import lacking_beside, need
 from nl2robot.routines import open_routines
 from nl2robot.speech.audio import RATE, Audio, Samples, read
 from nl2robot.speech.full_duplex import FullDuplex
@@ -35,7 +36,8 @@ def voice_terminal(
     """A terminal that listens to the microphone or the recording that the options name. Raises
     `UserError` where there is none, or no speech model."""
     knowledge = Knowledge(names_of(options), routines=open_routines())
-
+    for sentence in lacking_beside(options.lang):
+        print(sentence, file=sys.stderr)
     own_voice = OwnVoice()
     aloud = options.speak is True or options.robot != "sim"
 
