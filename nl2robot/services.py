@@ -102,6 +102,7 @@ def services(runner: Runner) -> dict[str, Service]:
             ),
             "List what can be said here, by topic.",
             {"language": _LANGUAGE},
+            observes=True,
         ),
         "program.check": service(
             lambda p: runner.check(p["program"], p.get("language", "en")),
@@ -133,9 +134,12 @@ def services(runner: Runner) -> dict[str, Service]:
             handler=lambda p, context: msgspec.to_builtins(waited(p, context.stop)),
             params=an_object({"run": _RUN, "timeout": {"type": "number", "minimum": 0}}, "run"),
             doc="Wait until a run is over and tell how it ended.",
+            observes=True,
         ),
         "program.state": service(
-            lambda p: runner.state(), "Tell how the present or last run stands."
+            lambda p: runner.state(),
+            "Tell how the present or last run stands.",
+            observes=True,
         ),
         "program.pause": service(
             lambda p: runner.pause(), "Hold the program before its next robot call."
@@ -143,12 +147,15 @@ def services(runner: Runner) -> dict[str, Service]:
         "program.step": service(lambda p: runner.step(), "Do one robot call, then hold again."),
         "program.resume": service(lambda p: runner.resume(), "Go on after a pause."),
         "program.stop": service(
-            lambda p: runner.stop(), "Stop the program; `robot.stop` stops the robot as well."
+            lambda p: runner.stop(),
+            "Stop the program; `robot.stop` stops the robot as well.",
+            observes=True,
         ),
         "program.list": service(
             listed,
             "List the newest runs of the log.",
             {"last": {"type": "integer", "minimum": 1, "maximum": 1000}},
+            observes=True,
         ),
     }
 

@@ -19,8 +19,10 @@ def service(
     doc: str,
     properties: dict[str, Any] | None = None,
     required: str = "",
+    observes: bool = False,
 ) -> Service:
-    """A method whose params are an object of these properties; a `UserError` is the caller's."""
+    """A method whose params are an object of these properties; a `UserError` is the caller's.
+    One that `observes` only looks."""
 
     def handle(parameters: dict[str, Any], context: CallContext) -> Any:
         try:
@@ -28,7 +30,12 @@ def service(
         except (UserError, UnknownLanguage) as error:
             raise InvalidCall(str(error)) from error
 
-    return Service(handler=handle, params=an_object(properties or {}, required), doc=doc)
+    return Service(
+        handler=handle,
+        params=an_object(properties or {}, required),
+        doc=doc,
+        observes=observes,
+    )
 
 
 def an_object(properties: dict[str, Any], required: str) -> dict[str, Any]:

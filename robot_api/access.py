@@ -4,6 +4,9 @@ A robot moves, so a server answers this machine only, unless it was started for 
 every request must bring the server's token. And no web page may drive a robot behind its reader's
 back: a browser says in `Origin` which page a request comes from, and it must be the server's own.
 A page whose name was made to point to this machine (DNS rebinding) gives itself away by `Host`.
+
+There are two tokens: the operator's, and the observer's, whose link shows everything and moves
+nothing. A browser brings its token in the link once and in a cookie from then on.
 """
 
 from __future__ import annotations
@@ -13,7 +16,12 @@ import ipaddress
 import secrets
 from collections.abc import Mapping
 from dataclasses import dataclass
+from http.cookies import CookieError, SimpleCookie
+from typing import Literal
 from urllib.parse import urlsplit
+
+Role = Literal["operator", "observer"]
+"""What somebody may do: everything, or look on and stop the robot."""
 
 
 @dataclass(frozen=True)
@@ -38,10 +46,20 @@ def is_loopback(host: str) -> bool:
         return host.lower() in ("localhost", "localhost.")
 
 
-def refusal(
-    headers: Mapping[str, str], query: Mapping[str, str], *, local: bool, token: str | None
-) -> Refusal | None:
-    """Why a request is refused, or None if it is welcome.
+@dataclass(frozen=True)
+class Tokens:
+    """What a server's guests show. Without an operator's token, nobody need show one."""
+
+    operator: str | None
+    observer: str
+    cookie: str
+    """The name of the cookie in which a browser keeps its token."""
+
+
+def admitted(
+    headers: Mapping[str, str], query: Mapping[str, str], *, local: bool, tokens: Tokens
+) -> Role | Refusal:
+    """As what a request is welcome, or why it is refused.
 
     `headers` has lower-case names; `local` says that the server listens on a loopback address.
     """
@@ -51,11 +69,14 @@ def refusal(
     origin = headers.get("origin")
     if origin is not None and _address(origin) != _address(f"//{host}"):
         return Refusal(403, "Pages of other web sites may not talk to the robot.")
-    if token is not None and not _same(_token_given(headers, query), token):
+    given = _token_given(headers, query, tokens.cookie)
+    if _same(given, tokens.observer):
+        return "observer"
+    if tokens.operator is not None and not _same(given, tokens.operator):
         return Refusal(
             401, "The robot's token is missing or wrong. Ask whoever started the server."
         )
-    return None
+    return "operator"
 
 
 def _host_name(host: str) -> str:
@@ -72,9 +93,19 @@ def _address(url: str) -> tuple[str, int | None]:
         return url, -1
 
 
-def _token_given(headers: Mapping[str, str], query: Mapping[str, str]) -> str:
+def _token_given(headers: Mapping[str, str], query: Mapping[str, str], cookie: str) -> str:
     scheme, _, given = headers.get("authorization", "").partition(" ")
-    return given.strip() if scheme.lower() == "bearer" else query.get("token", "")
+    if scheme.lower() == "bearer":
+        return given.strip()
+    return query["token"] if "token" in query else _kept(headers.get("cookie", ""), cookie)
+
+
+def _kept(cookies: str, name: str) -> str:
+    try:
+        kept = SimpleCookie(cookies).get(name)
+    except CookieError:
+        return ""
+    return kept.value if kept else ""
 
 
 def _same(given: str, token: str) -> bool:

@@ -17,22 +17,29 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any, Final, Protocol
+from urllib.parse import urlencode
 
 import jsonschema
 import msgspec
 import uvicorn
 from starlette.applications import Starlette
 from starlette.requests import HTTPConnection, Request
-from starlette.responses import HTMLResponse, JSONResponse, PlainTextResponse
-from starlette.routing import Route, WebSocketRoute
+from starlette.responses import (
+    HTMLResponse,
+    JSONResponse,
+    PlainTextResponse,
+    RedirectResponse,
+    Response,
+)
+from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.types import ASGIApp, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
 from robot_api import access, protocol
 from robot_api.dispatch import Dispatcher, Job
 from robot_api.driver import EVENTS, Driver, Event, StopFlag
-from robot_api.errors import InvalidCall, RobotError, Stopped
+from robot_api.errors import AccessDenied, InvalidCall, RobotError, Stopped
 from robot_api.methods import METHODS
 from robot_api.openrpc import openrpc
 from robot_api.schema import read_arguments
@@ -61,6 +68,12 @@ class CannotListen(Exception):
     address of this machine."""
 
 
+class Publish(Protocol):
+    """Sends an event to those who subscribed to its kind, or to one connection of them."""
+
+    def __call__(self, kind: str, data: Event, to: str | None = None) -> None: ...
+
+
 @dataclass(frozen=True)
 class Context:
     """What the handler of a service is told besides its params."""
@@ -69,8 +82,10 @@ class Context:
     """The name of the connection that the call came from."""
     stop: StopFlag
     """Set when the call is cancelled or the robot is stopped."""
-    publish: Callable[[str, Event], None]
+    publish: Publish
     """`Server.publish`."""
+    role: access.Role = "operator"
+    """What the caller may do; an observer gets no further than services that `observes`."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +104,8 @@ class Service:
     """One line."""
     result: Mapping[str, Any] = field(default_factory=dict)
     """The JSON Schema of its result."""
+    observes: bool = False
+    """Whether it only looks, so that observers may call it."""
 
 
 class Server:
@@ -99,7 +116,9 @@ class Server:
 
     `port` 0 is any free port. On another host than this machine a `token` is needed; if none is
     given one is made up. `services` are further methods by their names, `events` the kinds of
-    events that they publish, each with what its data says. `status_page` makes the page at `/`.
+    events that they publish, each with what its data says. `pages` is an application whose pages
+    are served beside the wire; without one, `status_page` makes the page at `/`. `on_left` is told
+    the name of each connection that is gone, in the loop thread.
     The driver stays the caller's: the server stops the robot when it ends, and does not close it.
     """
 
@@ -112,11 +131,15 @@ class Server:
         services: Mapping[str, Service] | None = None,
         events: Mapping[str, str] | None = None,
         token: str | None = None,
+        pages: ASGIApp | None = None,
+        on_left: Callable[[str], None] | None = None,
         status_page: Callable[[Status], str] = status_page,
         ping_seconds: float = PING_SECONDS,
     ) -> None:
         self.token = token if token or access.is_loopback(host) else access.new_token()
         """What a client must bring, or None."""
+        self.observer_token = access.new_token()
+        """With it in place of the other, a client looks on: it moves nothing."""
         self.driver = driver
         self.services = dict(services or {})
         self.events = {**EVENTS, **(events or {})}
@@ -126,6 +149,8 @@ class Server:
         self._host = host
         self._port = port
         self._status_page = status_page
+        self._pages = pages
+        self._on_left = on_left or _ignore
         self._pose: Event | None = None
         self._clients_met = 0
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -204,9 +229,9 @@ class Server:
             finally:
                 self.close()
 
-    def publish(self, kind: str, data: Event) -> None:
-        """Send an event to every client that subscribed to its kind. From any thread; returns at
-        once."""
+    def publish(self, kind: str, data: Event, to: str | None = None) -> None:
+        """Send an event to every client that subscribed to its kind; only to the connection of the
+        name `to`, if there is one. From any thread; returns at once."""
         if kind == "pose":
             self._pose = data
         try:
@@ -214,7 +239,11 @@ class Server:
         except (msgspec.MsgspecError, TypeError, ValueError):
             _log.exception("an event of the kind %s cannot be sent", kind)
             return
-        self.in_loop(self._send_event, kind, frame)
+        self.in_loop(self._send_event, kind, frame, to)
+
+    def wanted(self, kind: str) -> bool:
+        """Whether somebody subscribed to this kind of event. From any thread."""
+        return any(client.wire.wants(kind) for client in tuple(self.clients))
 
     def in_loop(self, task: Callable[..., None], *arguments: Any) -> None:
         """Do it in the loop thread, which alone touches connections; not at all after the end."""
@@ -222,9 +251,9 @@ class Server:
             with contextlib.suppress(RuntimeError):  # the loop has ended
                 self._loop.call_soon_threadsafe(task, *arguments)
 
-    def _send_event(self, kind: str, frame: str) -> None:
+    def _send_event(self, kind: str, frame: str, to: str | None) -> None:
         for client in self.clients:
-            if client.wire.wants(kind):
+            if client.wire.wants(kind) and to in (None, client.name):
                 client.send(frame, kind)
 
     # --- what can be called
@@ -255,6 +284,8 @@ class Server:
             )
             self.in_loop(client.finish, call, reply)
 
+        if not self.may_call(client.role, call.method):
+            return Job(call.method, _for_operators, done, client, robot=False)
         name = call.method.removeprefix("robot.")
         method = METHODS.get(name) if name != call.method else None
         if method is None:
@@ -271,33 +302,52 @@ class Server:
         if call.method == "rpc.discover":
             return lambda stop: openrpc(self.driver.capabilities(), self.services, self.events)
         handler = self.services[call.method].handler
-        return lambda stop: handler(call.arguments, Context(client.name, stop, self.publish))
+        return lambda stop: handler(
+            call.arguments, Context(client.name, stop, self.publish, client.role)
+        )
+
+    def may_call(self, role: access.Role, method: str) -> bool:
+        """Whether the role allows it. Anybody may stop the robot."""
+        if role == "operator" or method in (protocol.STOP, "robot.capabilities", "rpc.discover"):
+            return True
+        service = self.services.get(method)
+        return service is not None and service.observes
 
     # --- web pages and the wire
 
     def _app(self) -> ASGIApp:
-        routes = [
-            Route("/", self._page),
+        routes: list[BaseRoute] = [
             Route("/healthz", self._health),
             WebSocketRoute("/", self._serve_client),
+            Mount("/", self._pages) if self._pages else Route("/", self._page),
         ]
         return self._guarded(Starlette(routes=routes, lifespan=self._lifespan))
 
     @contextlib.asynccontextmanager
     async def _lifespan(self, app: Starlette) -> Any:
         self._loop = asyncio.get_running_loop()
-        self._started.set()
-        yield
+        async with contextlib.AsyncExitStack() as stack:
+            if isinstance(self._pages, Starlette):  # a mounted application is not told by itself
+                await stack.enter_async_context(self._pages.router.lifespan_context(self._pages))
+            self._started.set()
+            yield
 
     def _guarded(self, app: ASGIApp) -> ASGIApp:
-        """The application, reached only by who may (`access`)."""
+        """The application, reached only by who may (`access`); each scope says as what, in
+        `scope["state"]["role"]`."""
 
         async def guarded(scope: Scope, receive: Receive, send: Send) -> None:
-            refusal = self._refusal(HTTPConnection(scope)) if scope["type"] != "lifespan" else None
-            if refusal is None:
+            if scope["type"] == "lifespan":
                 await app(scope, receive, send)
                 return
-            response = PlainTextResponse(refusal.sentence + "\n", refusal.status, HEADERS)
+            request = HTTPConnection(scope)
+            role = self._role(request)
+            if not isinstance(role, access.Refusal):
+                scope.setdefault("state", {})["role"] = role
+                answer = self._without_token(request) if scope["type"] == "http" else None
+                await (answer or app)(scope, receive, send)
+                return
+            response = PlainTextResponse(role.sentence + "\n", role.status, HEADERS)
             if scope["type"] == "websocket":
                 await WebSocket(scope, receive, send).send_denial_response(response)
             else:
@@ -305,11 +355,33 @@ class Server:
 
         return guarded
 
-    def _refusal(self, request: HTTPConnection) -> access.Refusal | None:
-        # Whether the server is alive is no secret.
-        token = None if request.url.path == "/healthz" else self.token
+    def _role(self, request: HTTPConnection) -> access.Role | access.Refusal:
         local = access.is_loopback(self._host)
-        return access.refusal(request.headers, request.query_params, local=local, token=token)
+        role = access.admitted(
+            request.headers, request.query_params, local=local, tokens=self._tokens()
+        )
+        # Whether the server is alive is no secret.
+        open_to_all = request.url.path == "/healthz"
+        if open_to_all and isinstance(role, access.Refusal) and role.status == 401:
+            return "observer"
+        return role
+
+    def _tokens(self) -> access.Tokens:
+        # Cookies know no ports: another robot's server on this machine has its own.
+        return access.Tokens(self.token, self.observer_token, f"robot-{self._port}")
+
+    def _without_token(self, request: HTTPConnection) -> Response | None:
+        """For a page whose link brought a token: keep it in a cookie, and out of the address that
+        others may see. An empty token makes an observer of this machine its operator again."""
+        query = dict(request.query_params)
+        if self._pages is None or request.scope["method"] != "GET" or "token" not in query:
+            return None
+        token = query.pop("token")
+        path = request.url.path + (f"?{urlencode(query)}" if query else "")
+        # No second slash, lest a browser take the path for another host.
+        response = RedirectResponse("/" + path.lstrip("/"), 303, HEADERS)
+        response.set_cookie(self._tokens().cookie, token, httponly=True, samesite="strict")
+        return response
 
     async def _health(self, request: Request) -> JSONResponse:
         return JSONResponse({"status": "ok"})
@@ -327,20 +399,22 @@ class Server:
 
     async def _serve_client(self, socket: WebSocket) -> None:
         self._clients_met += 1
-        client = _Client(self, f"{self._clients_met}")
+        client = _Client(self, f"{self._clients_met}", socket.scope["state"]["role"])
         self.clients.add(client)
         try:
             await client.serve(socket)
         finally:
             self.clients.discard(client)
             self.dispatcher.drop(client)
+            self._on_left(client.name)
 
 
 class _Client:
     """One connection. Only the loop thread touches it."""
 
-    def __init__(self, server: Server, name: str) -> None:
+    def __init__(self, server: Server, name: str, role: access.Role) -> None:
         self.name = name
+        self.role = role
         self.wire = protocol.Connection(server.methods, server.events)
         self._server = server
         # The job of each call in flight, for a cancel.
@@ -515,5 +589,15 @@ def _on_signals(react: Callable[[], None]) -> Iterator[None]:
         restore()
 
 
+def _for_operators(stop: StopFlag) -> Any:
+    raise AccessDenied(
+        "Observers look on: they cannot do this. Ask for the operator's link, if you should."
+    )
+
+
 def _nothing() -> None:
+    pass
+
+
+def _ignore(name: str) -> None:
     pass

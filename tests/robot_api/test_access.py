@@ -4,7 +4,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_api.access import is_loopback, new_token, refusal
+from robot_api.access import Refusal, Role, Tokens, admitted, is_loopback, new_token
+
+
+def answer(
+    headers: dict[str, str],
+    *,
+    local: bool = True,
+    token: str | None = None,
+    given: str | None = None,
+) -> Role | Refusal:
+    query = {"token": given} if given else {}
+    tokens = Tokens(token, "only to look", "robot-9090")
+    return admitted(headers, query, local=local, tokens=tokens)
 
 
 def status(
@@ -14,9 +26,8 @@ def status(
     token: str | None = None,
     given: str | None = None,
 ) -> int:
-    query = {"token": given} if given else {}
-    refused = refusal(headers, query, local=local, token=token)
-    return refused.status if refused else 200
+    answered = answer(headers, local=local, token=token, given=given)
+    return answered.status if isinstance(answered, Refusal) else 200
 
 
 @pytest.mark.parametrize("host", ["localhost:9090", "127.0.0.1:9090", "[::1]:9090", "LOCALHOST"])
@@ -61,6 +72,27 @@ def test_from_another_machine_the_token_is_needed() -> None:
     assert status({**robot, "authorization": "Basic sesame"}, local=False, token="sesame") == 401
 
 
+def test_a_browser_keeps_its_token_in_the_cookie_of_this_server() -> None:
+    robot = {"host": "10.0.0.5:9090"}
+    mine = {**robot, "cookie": "other=1; robot-9090=sesame"}
+    of_another = {**robot, "cookie": "robot-9091=sesame"}
+    assert status(mine, local=False, token="sesame") == 200
+    assert status(of_another, local=False, token="sesame") == 401
+    assert status(mine, local=False, token="sesame", given="wrong") == 401, "the link is newer"
+
+
+@pytest.mark.parametrize("local", [True, False])
+def test_who_has_the_observers_link_looks_on(local: bool) -> None:
+    robot = {"host": "127.0.0.1:9090"}
+    token = None if local else "sesame"
+    assert answer(robot, local=local, token=token, given="only to look") == "observer"
+    kept = {**robot, "cookie": "robot-9090=only to look"}
+    assert answer({**robot, "cookie": 'robot-9090="only to look"'}, local=local, token=token) == (
+        "observer"
+    )
+    assert answer(kept, local=local, token=token, given="sesame") == "operator"
+
+
 def test_tokens_differ_and_loopback_is_told_from_the_rest() -> None:
     assert new_token() != new_token()
     assert all(new_token().isalnum() for _ in range(100)), "it is typed after --token"
@@ -68,11 +100,11 @@ def test_tokens_differ_and_loopback_is_told_from_the_rest() -> None:
     assert not is_loopback("0.0.0.0") and not is_loopback("example.org")
 
 
-@given(host=st.text(), origin=st.none() | st.text(), authorization=st.text())
+@given(host=st.text(), origin=st.none() | st.text(), authorization=st.text(), cookie=st.text())
 def test_odd_headers_never_get_in_and_never_break_it(
-    host: str, origin: str | None, authorization: str
+    host: str, origin: str | None, authorization: str, cookie: str
 ) -> None:
-    headers = {"host": host, "authorization": authorization}
+    headers = {"host": host, "authorization": authorization, "cookie": cookie}
     if origin is not None:
         headers["origin"] = origin
     assert status(headers, local=False, token="a secret that nobody guesses") in (401, 403)

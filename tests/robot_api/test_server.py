@@ -3,6 +3,7 @@
 import http.client
 import json
 import os
+import queue
 import signal
 import socket
 import subprocess
@@ -14,6 +15,10 @@ from typing import Any
 
 import pytest
 import websocket
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import PlainTextResponse
+from starlette.routing import Route
 
 from robot_api import Context, InvalidCall, Robot, Server, Service
 from robot_api.driver import StopFlag
@@ -482,6 +487,83 @@ def test_a_page_of_ones_own_can_take_its_place(driver: EmulatedDriver) -> None:
     with Server(driver, port=0, status_page=lambda status: f"<b>{status.address}</b>") as server:
         assert get(server.address, "/")[1] == f"<b>{server.address}</b>"
         assert get(server.address, "/nothing")[0] == 404
+
+
+@pytest.fixture
+def pages() -> Starlette:
+    """An application of ones own."""
+
+    async def floor(request: Request) -> PlainTextResponse:
+        return PlainTextResponse(f"The floor, for an {request.scope['state']['role']}")
+
+    return Starlette(routes=[Route("/floor", floor)])
+
+
+def test_pages_of_ones_own_share_the_port_with_the_wire(
+    driver: EmulatedDriver, pages: Starlette
+) -> None:
+    with Server(driver, port=0, pages=pages) as server:
+        assert get(server.address, "/floor")[1] == "The floor, for an operator"
+        assert get(server.address, "/floor", Host="evil.example")[0] == 403
+        assert Wire(server.address).ask("robot.battery")["result"] == 100
+
+
+def test_a_token_in_a_link_is_kept_in_a_cookie_and_taken_out_of_the_address(
+    driver: EmulatedDriver, pages: Starlette
+) -> None:
+    with Server(driver, host="0.0.0.0", port=0, pages=pages) as server:
+        here = server.address.replace("0.0.0.0", "127.0.0.1")
+        assert get(here, "/floor")[0] == 401
+        status, _, headers = get(here, f"/floor?token={server.token}&at=2")
+        assert (status, headers["Location"]) == (303, "/floor?at=2")
+        kept = headers["Set-Cookie"]
+        assert "HttpOnly" in kept and "samesite=strict" in kept.lower()
+        assert get(here, "/floor", Cookie=kept.partition(";")[0])[0] == 200
+        looking = get(here, f"//evil.example?token={server.observer_token}")
+        assert looking[2]["Location"] == "/evil.example", "it stays on this server"
+        cookie = looking[2]["Set-Cookie"].partition(";")[0]
+        assert get(here, "/floor", Cookie=cookie)[1] == "The floor, for an observer"
+
+
+def test_an_observer_looks_on_and_may_stop_the_robot(driver: EmulatedDriver) -> None:
+    services = {
+        "ward.look": Service(lambda p, context: context.role, observes=True),
+        "ward.change": Service(lambda p, context: context.role),
+    }
+    with Server(driver, port=0, services=services) as server:
+        looks_on = Wire(f"{server.address}?token={server.observer_token}")
+        assert looks_on.ask("ward.look")["result"] == "observer"
+        assert looks_on.ask("ward.change")["error"]["data"]["error"] == "AccessDenied"
+        assert looks_on.ask("robot.move", {"metres": 1})["error"]["data"]["error"] == "AccessDenied"
+        assert "result" in looks_on.ask("robot.stop")
+        assert Wire(server.address).ask("ward.change")["result"] == "operator"
+
+
+def test_who_left_is_told_and_what_is_wanted_known(driver: EmulatedDriver) -> None:
+    left: queue.SimpleQueue[str] = queue.SimpleQueue()
+    services = {"ward.who": Service(lambda p, context: context.connection)}
+    with Server(driver, port=0, services=services, on_left=left.put) as server:
+        wire = Wire(server.address)
+        name = wire.ask("ward.who")["result"]
+        assert not server.wanted("pose")
+        wire.ask("rpc.subscribe", {"events": ["pose"]})
+        assert server.wanted("pose")
+        wire.socket.close()
+        assert left.get(timeout=SOON) == name
+
+
+def test_an_event_for_one_connection_reaches_no_other(driver: EmulatedDriver) -> None:
+    def whisper(params: dict[str, Any], context: Context) -> None:
+        context.publish("log", {"level": "info", "message": "psst", "time": 0}, context.connection)
+        context.publish("log", {"level": "info", "message": "all", "time": 0})
+
+    with Server(driver, port=0, services={"ward.whisper": Service(whisper)}) as server:
+        one, other = Wire(server.address), Wire(server.address)
+        for wire in (one, other):
+            wire.ask("rpc.subscribe", {"events": ["log"]})
+        one.send("ward.whisper")
+        assert other.receive()["params"]["message"] == "all"
+        assert one.receive()["params"]["message"] == "psst"
 
 
 # --- starting and ending
