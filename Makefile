@@ -4,7 +4,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
 
-.PHONY: run test format lint types tests bench docs clean
+.PHONY: run test format lint types tests browser bench docs clean
 
 run: $(STAMP)
 	@$(BIN)/nl2robot demo
@@ -27,8 +27,18 @@ lint: $(STAMP)
 types: $(STAMP)
 	$(BIN)/mypy
 
-tests: $(STAMP)
+tests: $(STAMP) browser
 	$(BIN)/pytest -n auto
+
+# The console is tested in a real browser: Debian's Chromium.
+browser:
+	@command -v chromium >/dev/null || command -v chromium-browser >/dev/null || { \
+	  if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+	    echo "Installing Chromium, in which the console is tested ..."; \
+	    (apt-get -qq update && apt-get install -qq -y --no-install-recommends chromium) >/dev/null; \
+	  else \
+	    echo "The tests of the console need Chromium: sudo apt-get install chromium"; \
+	  fi; }
 
 format: $(STAMP)
 	$(BIN)/ruff format .

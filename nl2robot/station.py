@@ -15,6 +15,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from nl2robot.console.part import Backstage
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.routines import open_routines
@@ -30,6 +31,7 @@ from sim.simulation import Simulation
 from sim.world import World
 
 if TYPE_CHECKING:
+    from nl2robot.console.app import Console
     from nl2robot.speech.aloud import SoundFor
 
 ANSWERS_WITHIN = 5.0
@@ -129,12 +131,14 @@ def simulated_station(
     token: str | None = None,
     pictures: Path | None = None,
     sound: SoundFor | None = None,
+    console: Callable[[Backstage], Console] | None = None,
 ) -> Iterator[SimulatedStation]:
     """Open a station with a simulated robot.
 
     `speed`: simulated seconds per second; None: as fast as the machine allows, whenever somebody
     waits for the robot. `pictures`: a folder in which a picture of every run is kept. `sound`: how
     it is heard (see `nl2robot.speech.aloud`); without it, it is only written what is said.
+    `console`: makes the web console, `nl2robot.console.app.Console`; once in a process.
     """
     from robot_api.capabilities.sound import SILENT
     from robot_api.drivers import simulated
@@ -162,6 +166,8 @@ def simulated_station(
         host=host,
         port=port,
         token=token,
+        simulation=simulation,
+        console=console,
     ) as server:
         station = SimulatedStation(server, simulation)
         yield station
@@ -237,13 +243,16 @@ def _open(
     host: str = "127.0.0.1",
     port: int = 0,
     token: str | None = None,
+    simulation: Simulation | None = None,
+    console: Callable[[Backstage], Console] | None = None,
 ) -> Iterator[Server]:
     """A server with a runner on it. `on_program` is told of the runs' events before others are."""
 
-    def publish(kind: str, data: Mapping[str, Any]) -> None:
+    def publish(kind: str, data: Mapping[str, Any], to: str | None = None) -> None:
         if kind == "program":
             on_program(data)
-        server.publish(kind, data)
+            backstage.tell(kind, data)
+        server.publish(kind, data, to)
 
     runner = Runner(
         knowledge=Knowledge(world, driver.capabilities(), open_routines()),
@@ -254,12 +263,23 @@ def _open(
         seed=seed,
     )
 
+    backstage = Backstage(driver, runner, simulation, publish, lambda kind: server.wanted(kind))
+    added = console(backstage) if console else None
+
     def on_event(kind: str, data: Event) -> None:
         if kind == "stopped":
             runner.stop(str(data.get("because", "The robot was stopped.")))
+        backstage.tell(kind, data)
 
     server = Server(
-        driver, host=host, port=port, token=token, services=services(runner), events=EVENTS
+        driver,
+        host=host,
+        port=port,
+        token=token,
+        services={**services(runner), **(added.services if added else {})},
+        events={**EVENTS, **(added.events if added else {})},
+        pages=added.pages() if added else None,
+        on_left=added.left if added else None,
     )
     unsubscribe = driver.subscribe(on_event)
     try:
@@ -272,4 +292,6 @@ def _open(
         raise UserError(str(error)) from error
     finally:
         unsubscribe()
+        if added:
+            added.close()
         driver.close()

@@ -39,6 +39,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
+    from nl2robot.console.app import Console
+
     world, log = world_of(options), open_log(options.debug)
     with (
         sound_of(options, world, "en") as sound,
@@ -52,6 +54,7 @@ def run(options: argparse.Namespace) -> int:
             token=options.token,
             pictures=pictures_folder(),
             sound=sound,
+            console=Console,
         ) as station,
     ):
         station.server.serve_forever(_say_where)
@@ -62,7 +65,10 @@ def _say_where(server: Server) -> None:
     host, _, port = server.address.rpartition(":")
     if host in ("0.0.0.0", "[::]"):  # every address of this machine, and none that clients can use
         host = socket.gethostname()
-    print(f"The robot is at ws://{host}:{port} (page: http://{host}:{port}/).")
+    page = f"http://{host}:{port}/"
+    print(f"The robot is at ws://{host}:{port} (page: {page}).")
     if server.token:
         print(f"Clients must show this token: {server.token}")
+        print(f"Operators open {page}?token={server.token}")
+    print(f"Who only looks on opens {page}?token={server.observer_token}")
     print("Ctrl-C stops the robot and ends the server.", flush=True)

@@ -1,0 +1,71 @@
+"""The console as one application: its parts, its files, NiceGUI."""
+
+from __future__ import annotations
+
+import os
+from importlib import import_module
+from pathlib import Path
+from typing import Any, Final
+
+from fastapi import FastAPI
+from starlette.staticfiles import StaticFiles
+from starlette.types import Scope
+
+from nl2robot.console.part import Backstage, Part
+from nl2robot.paths import data_folder
+from robot_api.server import Service
+
+STATIC: Final = Path(__file__).parent / "static"
+PARTS: Final = ("desk",)
+"""The modules of the parts; each has `part(backstage) -> Part`."""
+
+
+class _Files(StaticFiles):
+    """Files that a browser asks after each time, so that a new version is seen at once."""
+
+    def file_response(self, *arguments: Any, **more: Any) -> Any:
+        response = super().file_response(*arguments, **more)
+        response.headers["Cache-Control"] = "no-cache"
+        return response
+
+    async def get_response(self, path: str, scope: Scope) -> Any:
+        response = await super().get_response(path, scope)
+        response.headers["X-Content-Type-Options"] = "nosniff"
+        return response
+
+
+class Console:
+    """All that the console adds to a server."""
+
+    def __init__(self, backstage: Backstage) -> None:
+        self.parts: list[Part] = [
+            import_module(f"nl2robot.console.{name}").part(backstage) for name in PARTS
+        ]
+        self.services: dict[str, Service] = {}
+        self.events: dict[str, str] = {}
+        for part in self.parts:
+            self.services |= part.services
+            self.events |= part.events
+
+    def pages(self) -> FastAPI:
+        """The application with its pages; once in a process, for NiceGUI has but one."""
+        # NiceGUI makes this folder where it is started, unless it is told of another.
+        os.environ.setdefault("NICEGUI_STORAGE_PATH", str(data_folder() / "console"))
+        from nicegui import ui
+
+        app = FastAPI(openapi_url=None)
+        app.mount("/static", _Files(directory=STATIC))
+        for part in self.parts:
+            app.router.routes.extend(part.routes)
+            part.pages()
+        ui.run_with(app, title="nl2robot", show_welcome_message=False, reconnect_timeout=10)
+        return app
+
+    def left(self, name: str) -> None:
+        """A connection is gone."""
+        for part in self.parts:
+            part.left(name)
+
+    def close(self) -> None:
+        for part in self.parts:
+            part.close()

@@ -1,0 +1,155 @@
+"""What stands around every page: navigation, STOP, language, look, the name of who operates.
+
+@ui.page("/runs")
+def runs() -> None:
+    with frame(backstage, "runs") as visit:
+        ui.label(visit.words["title"])
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from html import escape
+from typing import Any, Final
+
+import msgspec
+from nicegui import ui
+
+from nl2robot.console.part import Backstage
+from nl2robot.console.visitor import LANGUAGES, LONGEST_NAME, Visitor, texts, visitor_of
+from robot_api.access import Role
+
+PAGES: Final = {
+    "desk": ("/", "M4 5h16v11H9l-5 4z"),
+    "map": ("/map", "M9 4 3 6.5v13L9 17l6 2.5 6-2.5V4l-6 2.5zM9 4v13M15 6.5v13"),
+    "drive": ("/drive", "M12 3v18M3 12h18M12 3 9 6m3-3 3 3M12 21l-3-3m3 3 3-3M3 12l3-3m-3 3 3 3"),
+    "runs": ("/runs", "M8 6h13M8 12h13M8 18h13M3.5 6h.01M3.5 12h.01M3.5 18h.01"),
+    "face": ("/face", "M4 4h16v16H4zM9 10h.01M15 10h.01M8.5 14.5c2 2 5 2 7 0"),
+}
+"""The pages, each with its address and the line of its icon, in a square of 24."""
+
+
+@dataclass(frozen=True)
+class Visit:
+    """A page as one visitor sees it."""
+
+    visitor: Visitor
+    words: Mapping[str, str]
+    """The texts of this page."""
+
+    @property
+    def language(self) -> str:
+        return self.visitor.language
+
+    @property
+    def role(self) -> Role:
+        return self.visitor.role
+
+    @property
+    def who(self) -> str:
+        """The name that is noted with what they approve."""
+        return self.visitor.name or texts("frame", self.language)["somebody"]
+
+    def hand_over(self, data: Mapping[str, Any]) -> None:
+        """Give data to the page's scripts, as `pageData` of `/static/page.js`; once a page."""
+        about = {"language": self.language, "role": self.role, "who": self.who}
+        ui.add_head_html(_data("page-data", {**about, **data}))
+
+
+@contextmanager
+def frame(backstage: Backstage, page: str) -> Iterator[Visit]:
+    """Build a page inside; to be called in the function of a `ui.page`."""
+    request = ui.context.client.request
+    assert request is not None
+    visitor = visitor_of(request)
+    visit = Visit(visitor, texts(page, visitor.language))
+    words = texts("frame", visitor.language)
+    capabilities = backstage.runner.knowledge.capabilities
+    name = capabilities.name if capabilities else "nl2robot"
+    ui.page_title(f"{words[page]} · {name}")
+    ui.dark_mode({"auto": None, "light": False, "dark": True}[visitor.look])
+    ui.add_head_html(_head(visitor, words))
+    ui.add_body_html(_header(page, name, visitor, words))
+    with ui.element("main").props('id="main" tabindex="-1"').classes(f"page page-{page}"):
+        yield visit
+
+
+def _head(visitor: Visitor, words: Mapping[str, str]) -> str:
+    about = {"look": visitor.look, "language": visitor.language, "words": words}
+    return (
+        f"{_data('frame-data', about)}"
+        '<script src="/static/look.js"></script>'
+        '<link rel="stylesheet" href="/static/console.css">'
+        '<script type="module" src="/static/console.js"></script>'
+    )
+
+
+def _data(name: str, data: Mapping[str, Any]) -> str:
+    # A text in it that says "</script>" must not end it.
+    written = msgspec.json.encode(data).decode().replace("<", "\\u003c")
+    return f'<script type="application/json" id="{name}">{written}</script>'
+
+
+def _header(page: str, name: str, visitor: Visitor, words: Mapping[str, str]) -> str:
+    def said(key: str) -> str:
+        return escape(words[key], quote=True)
+
+    links = "".join(
+        f'<a href="{address}"{" aria-current=page" if key == page else ""}>{_icon(line)}'
+        f"<span>{said(key)}</span></a>"
+        for key, (address, line) in PAGES.items()
+    )
+    languages = "".join(
+        f'<option value="{code}"{" selected" if code == visitor.language else ""}>{own}</option>'
+        for code, own in LANGUAGES.items()
+    )
+    looks = "".join(
+        f'<option value="{look}"{" selected" if look == visitor.look else ""}>{said(look)}</option>'
+        for look in ("auto", "light", "dark")
+    )
+    hint = f'title="{said("observer_hint")}"'
+    observer = "" if visitor.operates else f'<span class="chip" {hint}>{said("observer")}</span>'
+    return f"""
+<a class="skip" href="#main">{said("skip")}</a>
+<header class="frame">
+  <a class="brand" href="/"><img src="/static/icon.svg" alt="" width="28" height="28">
+    <span>{escape(name)}</span></a>
+  <nav aria-label="{said("pages")}">{links}</nav>
+  <span class="frame-tools">
+    {observer}
+    <span id="connection" role="status" data-state="waiting"><span class="sr">…</span></span>
+    <button type="button" id="settings-button" class="icon-button" aria-haspopup="dialog"
+      aria-label="{said("settings")}" title="{said("settings")}">{_icon(_GEAR)}</button>
+  </span>
+  <button type="button" id="stop" class="stop" title="{said("stop_hint")}"
+    aria-keyshortcuts="Escape Space">{said("stop")}</button>
+</header>
+<p id="notice" class="notice" role="alert" hidden></p>
+<dialog id="settings" aria-label="{said("settings")}">
+  <form method="dialog">
+    <h2>{said("settings")}</h2>
+    <label>{said("language")}<select id="language" class="field">{languages}</select></label>
+    <label>{said("look")}<select id="look" class="field">{looks}</select></label>
+    <label>{said("who")}<input id="who" class="field" maxlength="{LONGEST_NAME}"
+      autocomplete="name" value="{escape(visitor.name, quote=True)}">
+      <small class="muted">{said("who_hint")}</small></label>
+    <button class="button primary">{said("close")}</button>
+  </form>
+</dialog>
+"""
+
+
+_GEAR: Final = (
+    "M4 7h9M17 7h3M4 17h3M11 17h9M15 7m-2 0a2 2 0 1 0 4 0a2 2 0 1 0-4 0"
+    "M9 17m-2 0a2 2 0 1 0 4 0a2 2 0 1 0-4 0"
+)
+
+
+def _icon(line: str) -> str:
+    return (
+        '<svg viewBox="0 0 24 24" width="22" height="22" fill="none" stroke="currentColor"'
+        ' stroke-width="1.8" stroke-linecap="round" stroke-linejoin="round" aria-hidden="true">'
+        f'<path d="{line}"/></svg>'
+    )

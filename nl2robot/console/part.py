@@ -1,0 +1,67 @@
+"""What the console is put together from: parts, each with its services, events and pages."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from starlette.routing import BaseRoute
+
+from robot_api.driver import Driver, Event
+from robot_api.server import Publish, Service
+
+if TYPE_CHECKING:
+    from nl2robot.runner import Runner
+    from sim.simulation import Simulation
+
+Listener = Callable[[str, Event], None]
+
+
+@dataclass(frozen=True)
+class Backstage:
+    """What a part may use of the station that it belongs to."""
+
+    driver: Driver
+    runner: Runner
+    simulation: Simulation | None
+    """None where the robot is a real one."""
+    publish: Publish
+    """`robot_api.server.Server.publish`."""
+    wanted: Callable[[str], bool]
+    """Whether somebody subscribed to this kind of event."""
+    _listeners: list[Listener] = field(default_factory=list)
+
+    def subscribe(self, listener: Listener) -> Callable[[], None]:
+        """Be told of the robot's events and the runner's, from any thread; returns what ends it."""
+        self._listeners.append(listener)
+        return lambda: self._listeners.remove(listener)
+
+    def tell(self, kind: str, data: Event) -> None:
+        """Tell those who subscribed here."""
+        for listener in tuple(self._listeners):
+            listener(kind, data)
+
+
+def _nothing() -> None:
+    pass
+
+
+def _nobody(name: str) -> None:
+    pass
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of the console."""
+
+    services: Mapping[str, Service] = field(default_factory=dict)
+    events: Mapping[str, str] = field(default_factory=dict)
+    """The kinds of events that it publishes, each with what its data says."""
+    routes: Sequence[BaseRoute] = ()
+    """Plain pages and files of its own."""
+    pages: Callable[[], None] = _nothing
+    """Registers its NiceGUI pages."""
+    left: Callable[[str], None] = _nobody
+    """Told the name of each connection that is gone; in the server's loop, so it may not wait."""
+    close: Callable[[], None] = _nothing

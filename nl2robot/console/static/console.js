@@ -1,0 +1,85 @@
+/** What every page of the console does: STOP, the sign of the connection, the settings. */
+
+import {keep} from '/static/page.js';
+import {wire} from '/static/wire.js';
+
+const {words} = JSON.parse(document.getElementById('frame-data').textContent);
+const NOTICE_FOR = 6000;
+
+let fading = 0;
+
+/** Say something at the top of the page; what is an alarm stays. */
+export function notice(sentence, {alarm = false} = {}) {
+  const told = document.getElementById('notice');
+  told.textContent = sentence;
+  told.classList.toggle('alarm', alarm);
+  told.hidden = false;
+  clearTimeout(fading);
+  if (!alarm) fading = setTimeout(() => (told.hidden = true), NOTICE_FOR);
+}
+
+/** Stop the robot and whatever program runs. */
+export async function stop() {
+  const button = document.getElementById('stop');
+  button?.classList.add('pressed');
+  setTimeout(() => button?.classList.remove('pressed'), 400);
+  try {
+    await wire.request('robot.stop');
+    document.dispatchEvent(new CustomEvent('robot-stopped'));
+    notice(words.stopped);
+  } catch {
+    notice(words.not_stopped, {alarm: true});
+  }
+}
+
+/** Whether the space key means something where the focus is. */
+function spaceIsTaken(target) {
+  return target.closest?.(
+    'input, textarea, select, button, a, summary, dialog[open], [contenteditable], [role=button],' +
+      ' [role=slider], [role=tab], [role=option], [role=switch], [role=checkbox], [data-space]',
+  );
+}
+
+function onKey(event) {
+  const escape = event.key === 'Escape';
+  const space = event.key === ' ' && !spaceIsTaken(event.target);
+  if (!(escape || space) || event.repeat) return;
+  // An Escape that closes a window stops the robot as well: better once too often.
+  if (space) event.preventDefault();
+  stop();
+}
+
+function showConnection(connected) {
+  const sign = document.getElementById('connection');
+  if (!connected && sign.dataset.state === 'waiting') return;
+  if (!connected) notice(words.lost, {alarm: true});
+  else if (sign.dataset.state === 'lost') document.getElementById('notice').hidden = true;
+  sign.dataset.state = connected ? 'connected' : 'lost';
+  sign.title = sign.firstElementChild.textContent = connected ? words.connected : words.lost;
+}
+
+function openSettings() {
+  const dialog = document.getElementById('settings');
+  const before = ['language', 'look', 'who'].map((id) => document.getElementById(id).value);
+  dialog.showModal();
+  dialog.addEventListener(
+    'close',
+    () => {
+      const after = ['language', 'look', 'who'].map((id) => document.getElementById(id).value);
+      if (after.every((value, index) => value === before[index])) return;
+      keep('language', after[0]);
+      keep('look', after[1]);
+      keep('who', after[2].trim());
+      location.reload();
+    },
+    {once: true},
+  );
+}
+
+document.getElementById('stop').addEventListener('click', stop);
+document.getElementById('settings-button').addEventListener('click', openSettings);
+document.getElementById('settings').addEventListener('click', (event) => {
+  if (event.target === event.currentTarget) event.target.close();
+});
+document.addEventListener('keydown', onKey, {capture: true});
+wire.onChange(showConnection);

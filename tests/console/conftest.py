@@ -1,0 +1,176 @@
+"""A console that is really served, and real browsers that look at it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from robot_api.client import Robot
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+SOON = 20_000
+"""Milliseconds; what is waited for comes within some hundred, on a machine that is not busy."""
+FLAGS = (
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--use-fake-ui-for-media-stream",
+    "--use-fake-device-for-media-stream",
+    "--autoplay-policy=no-user-gesture-required",
+)
+
+
+@dataclass
+class Served:
+    """A console in a process of its own, as `nl2robot serve` starts it."""
+
+    address: str
+    """host:port"""
+    process: subprocess.Popen[str]
+    home: Path
+    """Its `$NL2ROBOT_HOME`."""
+    said: list[str]
+    """What it printed when it started."""
+
+    @property
+    def url(self) -> str:
+        return f"http://{self.address}"
+
+    @property
+    def observer_url(self) -> str:
+        return next(
+            word
+            for line in self.said
+            for word in line.split()
+            if "looks on" in line and word.startswith("http")
+        )
+
+    def robot(self) -> Robot:
+        """A new client of the robot."""
+        return Robot(self.address)
+
+
+@contextmanager
+def serving(home: Path, *options: str, models: bool = False) -> Iterator[Served]:
+    """Serve with these options of `nl2robot serve`; `models`: with the speech models there are."""
+    environment = {**os.environ, "NL2ROBOT_HOME": str(home)}
+    if models:
+        from nl2robot.paths import data_folder
+
+        there = data_folder() / "models"
+        if there.is_dir() and not (home / "models").exists():
+            home.mkdir(parents=True, exist_ok=True)
+            (home / "models").symlink_to(there)
+    given = options if "--port" in options else ("--port", "0", *options)
+    process = subprocess.Popen(
+        [sys.executable, "-m", "nl2robot.cli", "serve", *given],
+        stdout=subprocess.PIPE,
+        text=True,
+        env=environment,
+    )
+    said: list[str] = []
+    assert process.stdout is not None
+    try:
+        for line in process.stdout:
+            said.append(line)
+            if line.startswith("Ctrl-C"):
+                break
+        assert said and process.poll() is None, said
+        address = said[0].split("ws://")[1].split()[0]
+        yield Served(address, process, home, said)
+    finally:
+        process.terminate()
+        try:
+            process.wait(10)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """One console for the stories of a file."""
+    with serving(tmp_path_factory.mktemp("home"), "--speed", "1") as served:
+        yield served
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Iterator[Browser]:
+    """The browser of this worker."""
+    if CHROMIUM is None:
+        hint = "There is no Chromium. `apt-get install chromium` gets it; `make test` does so."
+        if os.environ.get("CI"):
+            pytest.fail(hint)
+        pytest.skip(hint)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=list(FLAGS))
+        yield browser
+        browser.close()
+
+
+Look = Callable[..., Page]
+
+
+@pytest.fixture
+def look(chromium: Browser, served: Served) -> Iterator[Look]:
+    """Open a page of the console in a browser of its own: look("/map", width=390, dark=True)."""
+    opened = []
+
+    def open_page(
+        path: str = "/",
+        *,
+        width: int = 1440,
+        height: int = 900,
+        dark: bool = False,
+        language: str = "en",
+        url: str | None = None,
+        **more: Any,
+    ) -> Page:
+        context = chromium.new_context(
+            viewport={"width": width, "height": height},
+            color_scheme="dark" if dark else "light",
+            locale=language,
+            permissions=["camera", "microphone"],
+            **more,
+        )
+        context.set_default_timeout(SOON)
+        opened.append(context)
+        page = context.new_page()
+        page.goto((url or served.url) + path)
+        return page
+
+    yield open_page
+    for context in opened:
+        context.close()
+
+
+@pytest.fixture
+def page(look: Look) -> Page:
+    """The desk at a desktop's size, in English."""
+    return look()
+
+
+@pytest.fixture
+def picture() -> Callable[[Page, str], None]:
+    """Keep a picture of a page, where `$NL2ROBOT_PICTURES` says: for people, and the docs."""
+
+    def keep(page: Page, name: str) -> None:
+        folder = os.environ.get("NL2ROBOT_PICTURES")
+        if folder:
+            page.screenshot(path=str(Path(folder) / f"{name}.png"))
+
+    return keep
