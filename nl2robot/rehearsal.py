@@ -20,6 +20,8 @@ REAL_SECONDS = 3.0
 """How long a person waits for a dry run before it is cut short."""
 MANY_CALLS = 1000
 """A program that calls more often is not followed to its end."""
+MANY_POINTS = 200
+"""Of the path, for who draws it on a map."""
 
 
 class DryRun(msgspec.Struct, frozen=True, kw_only=True):
@@ -43,7 +45,7 @@ class DryRun(msgspec.Struct, frozen=True, kw_only=True):
     places: tuple[str, ...]
     """The places it would drive to or through, in order."""
     path: tuple[tuple[float, float], ...]
-    """Where it would drive, in metres, a point every half metre or so."""
+    """Where it would drive, in metres: a point every half metre or so, at most `MANY_POINTS`."""
     calls: int
     course: tuple[Event, ...] = ()
     """All of it in the order in which it would happen."""
@@ -137,7 +139,7 @@ def rehearse(
         holds=tuple(simulation.robot.holding),
         shows=_of("showed", events),
         places=_of("was at", events),
-        path=tuple((round(sample.x, 2), round(sample.y, 2)) for sample in way),
+        path=_path(way),
         calls=calls,
         course=events,
         error=None if cut_short.is_set() else outcome.error,
@@ -155,6 +157,13 @@ def _thinned(samples: Sequence[Sample], apart: float = 0.5) -> list[Sample]:
         if math.dist((sample.x, sample.y), (kept[-1].x, kept[-1].y)) >= apart:
             kept.append(sample)
     return kept
+
+
+def _path(way: Sequence[Sample]) -> tuple[tuple[float, float], ...]:
+    """Where the samples are, with both ends; of a long way not all of them."""
+    step = max(1, math.ceil((len(way) - 1) / (MANY_POINTS - 1)))
+    kept = [*way[:-1:step], *way[-1:]]
+    return tuple((round(sample.x, 2), round(sample.y, 2)) for sample in kept)
 
 
 def _visited(simulation: Simulation, way: Iterable[Sample]) -> list[tuple[float, Event]]:

@@ -14,6 +14,7 @@ from grammar.naming import naming
 from nl2robot.knowledge import Knowledge
 from nl2robot.policy import violations
 from nl2robot.rehearsal import DryRun, rehearse
+from nl2robot.risks import Risk
 from sandbox.check import Finding, check
 
 if TYPE_CHECKING:
@@ -40,6 +41,8 @@ class Review(msgspec.Struct, frozen=True, kw_only=True):
     """The program in plain words, as it stands: an edited one, too."""
     dry_run: DryRun | None
     """None if there was an error, or no simulated world to try it in."""
+    risks: tuple[Risk, ...] = ()
+    """What to think about before approving it, in order of lines; stands in nobody's way."""
 
     @property
     def acceptable(self) -> bool:
