@@ -7,7 +7,7 @@ behaviours that have the wheel already.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 
 from sim.errors import Blocked, NotPossible
 from sim.hospital import PERSON_RADIUS, Hospital
@@ -22,6 +22,8 @@ from sim.wheel import braking, check_battery, come_to_rest, face, turn_by, wheel
 _KEEP_AROUND = 0.15
 """Metres to leave to somebody when planning a way around them."""
 _DOOR_REMEMBERED = 120.0
+_FREE_ENOUGH = 1.5
+"""Metres ahead in which something may be in the way of a straight drive."""
 _PATIENCE = 12.0
 """Seconds that the robot waits where there is no way around."""
 
@@ -91,7 +93,11 @@ def drive(hospital: Hospital, linear: float, angular: float, seconds: float) -> 
 
 
 def _free_ahead(hospital: Hospital, heading: float) -> float:
-    return hospital.physics.free_ahead(hospital.robot.body, heading, 1.5)
+    body, physics = hospital.robot.body, hospital.physics
+    return min(
+        physics.free_ahead(body, heading, _FREE_ENOUGH),
+        physics.free_of_borders(body, heading, _FREE_ENOUGH),
+    )
 
 
 def _in_the_way(hospital: Hospital, heading: float, gone: float | None) -> str:
@@ -100,8 +106,18 @@ def _in_the_way(hospital: Hospital, heading: float, gone: float | None) -> str:
     beyond = (x + 0.5 * math.cos(heading), y + 0.5 * math.sin(heading))
     near = [human for human in hospital.people if human.distance(beyond) < 0.45]
     what = near[0].name if near else "A wall or furniture"
+    body, physics = hospital.robot.body, hospital.physics
+    border = physics.free_of_borders(body, heading, _FREE_ENOUGH)
+    if border < physics.free_ahead(body, heading, _FREE_ENOUGH):
+        what = _zone_beside(hospital, beyond) or what
     after = f" after {max(0.0, gone):.1f} metres" if gone is not None else ""
     return f"{what} is in the way{after}. Turn first, or drive to a place instead."
+
+
+def _zone_beside(hospital: Hospital, spot: Spot) -> str | None:
+    """The zone nearest to a spot, to be spoken of."""
+    near = [(hospital.chart.to_zone(name, *spot), zone.name) for name, zone in hospital.zones]
+    return f'The keep-out zone "{min(near)[1]}"' if near else None
 
 
 # --- to a goal -----------------------------------------------------------------------------------
@@ -115,10 +131,10 @@ def travel(
 ) -> Behaviour[None]:
     """Drive to a spot and turn to `theta`. `limit` says each step how fast it may drive at most.
     Raises `NotPossible` if it cannot stand there, `Blocked` if there is no way."""
-    check_goal(hospital, goal)
     progress = Progress(hospital)
     around: Human | None = None
     while True:
+        check_goal(hospital, goal)
         route = _plan(hospital, goal, around)
         trouble = yield from track(hospital, route, around, progress, limit)
         if trouble is None:
@@ -141,10 +157,12 @@ def check_goal(hospital: Hospital, goal: Spot) -> None:
             f"The robot cannot stand at {goal[0]:.1f}, {goal[1]:.1f} ({name}): there is a wall or "
             "furniture, or no floor. Choose a spot on free floor."
         )
-    if any(hospital.chart.in_gate(zone, *goal) for zone in _zones(hospital)):
-        raise NotPossible(
-            f"{name} lies in an area that the robot must keep out of. Choose another place."
-        )
+    for gate, zone in hospital.zones:
+        if hospital.chart.to_zone(gate, *goal) < hospital.chart.radius:
+            raise NotPossible(
+                f'{name} lies in the keep-out zone "{zone.name}". Choose another place, or have '
+                "the zone removed."
+            )
 
 
 def way_to(hospital: Hospital, goal: Spot) -> Route | None:
@@ -158,15 +176,10 @@ def lengths_to(hospital: Hospital, goals: Sequence[Spot]) -> list[float]:
 
 
 def _closed(hospital: Hospital) -> set[str]:
-    """The gates that the robot does not plan to pass: doors it knows are closed, zones to keep out
-    of unless it is in one."""
-    now, here = hospital.time, hospital.robot.position
+    """The gates that the robot does not plan to pass: doors it knows are closed, keep-out zones."""
+    now = hospital.time
     doors = {gate for gate, seen in hospital.known_closed.items() if now - seen < _DOOR_REMEMBERED}
-    return doors | {zone for zone in _zones(hospital) if not hospital.chart.in_gate(zone, *here)}
-
-
-def _zones(hospital: Hospital) -> Iterator[str]:
-    return (f"zone {i}" for i in range(len(hospital.world.keep_out)))
+    return doors | {gate for gate, _ in hospital.zones}
 
 
 def _plan(hospital: Hospital, goal: Spot, around: Human | None) -> Route:
@@ -232,7 +245,7 @@ def _wait_for_person(
 def _no_way(hospital: Hospital, goal: Spot) -> str:
     name = hospital.name_of_spot(*goal)
     here = hospital.robot.position
-    zones = set(_zones(hospital))
+    zones = {gate for gate, _ in hospital.zones}
     for gates in (zones, ()):
         route = hospital.chart.route(here, goal, gates)
         shut = sorted(route.gates & hospital.known_closed.keys()) if route else []
@@ -241,6 +254,11 @@ def _no_way(hospital: Hospital, goal: Spot) -> str:
             return (
                 f"The way to {name} is blocked: {door} is closed. "
                 "Have it opened, or choose another place."
+            )
+        if route is not None and (crossed := sorted(route.gates & zones)):
+            return (
+                f"The way to {name} leads through {hospital.gate_name(crossed[0])}, and there is "
+                "no other. Choose another place, or have the zone removed."
             )
     return (
         f"There is no way for the robot from {hospital.name_of_spot(*here)} to {name}. "

@@ -14,14 +14,16 @@ from collections.abc import Callable, Generator
 from datetime import datetime
 from typing import Any
 
+import msgspec
+
 from sim.errors import NotPossible, UnknownPlace
 from sim.navigation import Chart, Spot
 from sim.people import Home, Human
-from sim.physics import STEP, Physics
+from sim.physics import BORDER_WIDTH, STEP, Physics
 from sim.placing import Item, free_spot, people_at_start, things_at_start
 from sim.record import Happening, Record, Sample
 from sim.robot import Robot, RobotState
-from sim.world import Person, Place, World, contains
+from sim.world import Person, Place, World, Zone, contains
 
 Listener = Callable[[str, dict[str, Any]], None]
 
@@ -34,6 +36,9 @@ PERSON_RADIUS = 0.25
 MAX_SEGMENTS = 50_000
 """Of walls and a map's outlines; with more, finding ways between them would take minutes."""
 
+_LEAST_FEELER = 1e-3
+_TO_BORDER = BORDER_WIDTH / 2 + 1e-3
+"""Metres between the robot and a zone whose border it just does not touch."""
 _SCAN_EVERY = 6  # steps: ten times a second
 _SAMPLE_EVERY = 12
 _MOST_SAMPLES = 60_000  # more than three hours of driving; then the oldest go
@@ -59,7 +64,8 @@ class Hospital:
         self.start = start or OPENING
         self.random = random.Random(seed)
         self.steps = 0
-        self.chart = chart_of(world)
+        self.chart: Chart = chart_of(world)
+        """Another one when the zones are drawn anew."""
         self.open_doors = [door.open for door in world.doors]
         self.physics = self._new_physics()
         self.robot = Robot(
@@ -67,6 +73,7 @@ class Hospital:
             pose.theta,
             world.robot.battery,
         )
+        self._keep_out()
         self.items: list[Item] = things_at_start(world, self.chart)
         self.people: list[Human] = []
         for person, placing in people_at_start(world, self.chart):
@@ -120,9 +127,10 @@ class Hospital:
         twin.random.setstate(self.random.getstate())
         twin.open_doors = list(self.open_doors)
         twin.physics = twin._new_physics()
-        body = twin.physics.add_robot(*self.robot.position, self.robot.body.radius)
-        body.resume(self.robot.body)
-        twin.robot = self.robot.copy(body)
+        robot_body = twin.physics.add_robot(*self.robot.position, self.robot.body.radius)
+        robot_body.resume(self.robot.body)
+        twin.robot = self.robot.copy(robot_body)
+        twin._keep_out()
         twin.items = [item.copy() for item in self.items]
         twin.people = []
         for human in self.people:
@@ -159,6 +167,8 @@ class Hospital:
         for human in self.people:
             human.step(self)
         self.physics.step()
+        if self._in_zones:
+            self._keep_out()
         if steps % _SCAN_EVERY == 0:
             self._scan()
             self._tell_pose()
@@ -348,8 +358,36 @@ class Hospital:
         self.robot.body.place(x, y)
         self.robot.rest()
         self.robot.theta = theta
+        self.physics.lift_borders()
+        self._keep_out()
         self._scan()
         self._told_moving = True
+
+    def set_zones(self, zones: tuple[Zone, ...], chart: Chart) -> None:
+        """Keep the robot out of these zones and no others; `chart` is that of a world with them."""
+        self.world, self.chart = msgspec.structs.replace(self.world, zones=zones), chart
+        self.physics.lift_borders()
+        self._keep_out()
+
+    def _keep_out(self) -> None:
+        """Raise the borders of all zones that the robot is not in. Of one that it is in it may
+        leave: in part, and it comes no deeper; with its middle, and it drives as it likes."""
+        body, raised = self.robot.body, self.physics.borders()
+        room = {zone.polygon: self.chart.to_zone(gate, *body.position) for gate, zone in self.zones}
+        outside = {zone for zone, metres in room.items() if metres > 0}
+        for zone in raised - outside:
+            self.physics.lift_border(zone)
+        for zone in outside - raised:
+            self.physics.raise_border(zone)
+        fits = min((room[zone] for zone in outside), default=math.inf) - _TO_BORDER
+        grows = body.feeler if outside <= raised else _LEAST_FEELER
+        body.feeler = min(body.radius, max(fits, grows))
+        self._in_zones = any(metres < body.radius + _TO_BORDER for metres in room.values())
+
+    @property
+    def zones(self) -> list[tuple[str, Zone]]:
+        """The keep-out zones, each with its name as a gate of the chart."""
+        return [(f"zone {i}", zone) for i, zone in enumerate(self.world.zones)]
 
     def set_door(self, number: int, is_open: bool) -> None:
         ends = self.world.doors[number].ends
@@ -367,7 +405,7 @@ class Hospital:
         """How to speak of a gate of the chart."""
         kind, _, number = gate.partition(" ")
         if kind != "door":
-            return "an area that it must keep out of"
+            return f'the keep-out zone "{self.world.zones[int(number)].name}"'
         door = self.world.doors[int(number)]
         if door.name:
             return door.name
@@ -391,14 +429,21 @@ def _again(sample: Sample, time: float) -> Sample:
 
 def chart_of(world: World) -> Chart:
     """The free floor of a world; made once."""
-    return _build_chart(
-        world.walls,
-        world.wall_thickness,
-        tuple(piece.outline for piece in world.furniture if piece.outline),
-        tuple(door.ends for door in world.doors),
-        world.keep_out,
-        max(world.robot.radius, PERSON_RADIUS),
+    return _with_zones(
+        _build_chart(
+            world.walls,
+            world.wall_thickness,
+            tuple(piece.outline for piece in world.furniture if piece.outline),
+            tuple(door.ends for door in world.doors),
+            max(world.robot.radius, PERSON_RADIUS),
+        ),
+        tuple(zone.polygon for zone in world.zones),
     )
+
+
+@functools.lru_cache(maxsize=8)
+def _with_zones(chart: Chart, zones: tuple[tuple[Spot, ...], ...]) -> Chart:
+    return chart.with_zones({f"zone {i}": corners for i, corners in enumerate(zones)})
 
 
 @functools.lru_cache(maxsize=8)
@@ -407,14 +452,12 @@ def _build_chart(
     thickness: float,
     furniture: tuple[tuple[Spot, ...], ...],
     doors: tuple[tuple[float, float, float, float], ...],
-    keep_out: tuple[tuple[Spot, ...], ...],
     radius: float,
 ) -> Chart:
     return Chart(
         walls,
         furniture,
         {f"door {i}": ends for i, ends in enumerate(doors)},
-        {f"zone {i}": corners for i, corners in enumerate(keep_out)},
         thickness=thickness,
         radius=radius,
     )

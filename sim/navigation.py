@@ -3,15 +3,18 @@
 A `Chart` is the free floor of one map for a round body, as a visibility graph: its nodes are the
 corners of the obstacles, grown by the clearance; its edges join the corners that see each other
 and around which a shortest way can bend. Doors and zones that may be closed are `gates`: the edges
-that cross one are left out of a query that names it. People who stand in the way are given with
-the query, as discs, and get corners of their own.
+that cross one are left out of a query that names it. Zones are laid over the floor of a chart that
+is there already (`with_zones`), so that they can be drawn at any time. People who stand in the way
+are given with the query, as discs, and get corners of their own.
 
 Everything is in metres.
 """
 
 from __future__ import annotations
 
+import copy
 import functools
+import itertools
 import math
 import threading
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -29,6 +32,8 @@ Spot = tuple[float, float]
 Floats = NDArray[np.float64]
 
 _GRAZE = 1e-3  # edges run along the grown obstacles; this much inside does not count as crossing
+_LEAVE = 1000.0
+"""How many metres of way a metre in a zone counts, for a body that is to leave it."""
 _DISC_CORNERS = 8
 _PAIRS_AT_ONCE = 1_000_000
 _SPOTS_ON_A_WAY = [odd / parts for parts in (2, 4, 8, 16, 32) for odd in range(1, parts, 2)]
@@ -48,6 +53,14 @@ class Route(NamedTuple):
     length: float
     gates: frozenset[str]
     """The gates it passes."""
+
+
+class _Zone(NamedTuple):
+    """An area that a query may close."""
+
+    area: BaseGeometry
+    wide: BaseGeometry
+    """With what routes keep away from it."""
 
 
 P = ParamSpec("P")
@@ -96,41 +109,62 @@ class Chart:
         pieces += [Polygon(corners) for corners in solids]
         self._obstacles = shapely.union_all(pieces) if pieces else Polygon()
         self._obstacle_tree = shapely.STRtree(pieces)
-        self._gates: dict[str, BaseGeometry] = {
+        self._doors: dict[str, BaseGeometry] = {
             name: LineString([(a, b), (c, d)]) for name, (a, b, c, d) in (gates or {}).items()
         }
-        grown_zones = {
-            name: _grow(Polygon(corners), radius) for name, corners in (zones or {}).items()
-        }
-        self._gates |= {name: zone.buffer(-_GRAZE) for name, zone in grown_zones.items()}
 
         grown = shapely.union_all([_grow(piece, self.clearance) for piece in pieces])
-        self._frame = _frame([*pieces, *grown_zones.values()])
+        self._frame = _frame(pieces)
         self._free = self._frame.difference(grown)
         self._passable = self._free.buffer(_GRAZE, join_style="mitre")
         shapely.prepare(self._free)
         shapely.prepare(self._passable)
-        self._build_graph(grown, list(grown_zones.values()))
+        nothing = np.empty(0, dtype=np.intp)
+        self._nodes = self._before = self._after = np.empty((0, 2))
+        self._first, self._second = nothing, nothing
+        self._add_nodes([grown])
+        self._lay_zones(zones or {})
 
-    def _build_graph(self, grown: BaseGeometry, zones: list[BaseGeometry]) -> None:
-        corners = [_corners(grown), *(_corners(zone) for zone in zones)]
-        nodes = np.concatenate([place for place, _, _ in corners])
-        before = np.concatenate([before for _, before, _ in corners])
-        after = np.concatenate([after for _, _, after in corners])
-        reachable = shapely.intersects_xy(self._passable, nodes[:, 0], nodes[:, 1])
-        self._nodes, self._before, self._after = (
-            nodes[reachable],
-            before[reachable],
-            after[reachable],
-        )
+    def with_zones(self, zones: Mapping[str, Sequence[Spot]]) -> Chart:
+        """The same floor, which stays as it is, with these zones and no others."""
+        assert not self._zones, "zones are laid over a bare floor"
+        twin = copy.copy(self)
+        twin._lay_zones(zones)
+        return twin
 
-        found = [self._edges_from(rows) for rows in _shares(len(self._nodes))]
-        self._first, self._second = (np.concatenate(part) for part in zip(*found, strict=True))
+    @_one_at_a_time
+    def _lay_zones(self, zones: Mapping[str, Sequence[Spot]]) -> None:
+        self._zones: dict[str, _Zone] = {}
+        for name, corners in zones.items():
+            area = Polygon(corners)
+            self._zones[name] = _Zone(area, _grow(area, self.clearance))
+        self._add_nodes([zone.wide for zone in self._zones.values()])
         self._edges = _lines(self._nodes[self._first], self._nodes[self._second])
         self._lengths = shapely.length(self._edges)
+        self._gates = self._doors | {
+            name: zone.wide.buffer(-_GRAZE) for name, zone in self._zones.items()
+        }
         self._crossing = {
             name: shapely.intersects(gate, self._edges) for name, gate in self._gates.items()
         }
+
+    def _add_nodes(self, grown: Iterable[BaseGeometry]) -> None:
+        """Put the corners of grown obstacles before the nodes that there are, with their edges to
+        one another and to those."""
+        corners = [_corners(each) for each in grown]
+        if not corners:
+            return
+        here, before, after = (np.concatenate(part) for part in zip(*corners, strict=True))
+        reachable = shapely.intersects_xy(self._passable, here[:, 0], here[:, 1])
+        count = int(reachable.sum())
+        self._nodes = np.concatenate([here[reachable], self._nodes])
+        self._before = np.concatenate([before[reachable], self._before])
+        self._after = np.concatenate([after[reachable], self._after])
+        found = [self._edges_from(rows) for rows in _shares(count, len(self._nodes))]
+        known = (self._first + count, self._second + count)
+        self._first, self._second = (
+            np.concatenate(part) for part in zip(*found, known, strict=True)
+        )
 
     def _edges_from(self, rows: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
         """The ends of clear ways from these nodes to later ones that a shortest way can take."""
@@ -173,9 +207,9 @@ class Chart:
         return self.distance(x, y) >= self.radius and bool(self._frame.covers(Point(x, y)))
 
     @_one_at_a_time
-    def in_gate(self, name: str, x: float, y: float) -> bool:
-        """Whether a spot lies in a zone."""
-        return bool(self._gates[name].covers(Point(x, y)))
+    def to_zone(self, name: str, x: float, y: float) -> float:
+        """How far a zone is; 0 in it."""
+        return float(self._zones[name].area.distance(Point(x, y)))
 
     @_one_at_a_time
     def clear(self, start: Spot, goal: Spot) -> bool:
@@ -224,12 +258,13 @@ class Chart:
         people: Sequence[Disc] = (),
     ) -> Route | None:
         """The shortest way that crosses none of the `closed` gates and keeps off the `people`;
-        None if there is none."""
+        None if there is none. From within a closed zone it leads out by the shortest way."""
         depart, arrive = self.nearest_free(*start), self.nearest_free(*goal)
         if depart is None or arrive is None:
             return None
         discs = [disc for disc in (_beside(disc, depart, arrive) for disc in people) if disc]
-        extra = np.array([depart, arrive, *self._around(discs)])
+        ways_out = self._ways_out(depart, closed)
+        extra = np.array([depart, arrive, *ways_out, *self._around(discs)])
         count = len(self._nodes)
         distances, before = self._search(extra, closed, discs)
         if not math.isfinite(distances[count + 1]):
@@ -247,13 +282,15 @@ class Chart:
     def lengths(
         self, start: Spot, goals: Sequence[Spot], closed: Collection[str] = ()
     ) -> list[float]:
-        """How long the shortest way to each of the goals is; infinite where there is none."""
+        """How long the shortest way to each of the goals is; infinite where there is none. A way
+        out of a closed zone counts as very long."""
         depart = self.nearest_free(*start)
         arrivals = [self.nearest_free(*goal) for goal in goals]
         reachable = [spot for spot in arrivals if spot is not None]
         if depart is None or not reachable:
             return [math.inf] * len(goals)
-        distances, _ = self._search(np.array([depart, *reachable]), closed, ())
+        extra = np.array([depart, *reachable, *self._ways_out(depart, closed)])
+        distances, _ = self._search(extra, closed, ())
         found = iter(distances[len(self._nodes) + 1 :])
         return [math.inf if spot is None else float(next(found)) for spot in arrivals]
 
@@ -266,15 +303,26 @@ class Chart:
         ends, starts, lines = self._join(extra)
         open_old = np.ones(len(self._edges), dtype=np.bool_)
         open_new = np.ones(len(lines), dtype=np.bool_)
+        old_lengths, new_lengths = self._lengths, shapely.length(lines)
         for name in closed:
+            zone = self._zones.get(name)
+            crossing = shapely.intersects(self._gates[name], lines)
+            if zone is not None:
+                room = _to(zone.area, extra)
+                if room[0] < self.radius:  # it has to leave
+                    new_lengths = new_lengths + _LEAVE * _within(zone.wide, lines)
+                if room[0] == 0.0:
+                    old_lengths = old_lengths + _LEAVE * _within(zone.wide, self._edges)
+                    continue
+                crossing &= self._too_close(zone, lines, room, starts, ends)
             open_old &= ~self._crossing[name]
-            open_new &= ~shapely.intersects(self._gates[name], lines)
+            open_new &= ~crossing
         for disc in discs:
             open_old &= ~_near(disc, self._nodes[self._first], self._nodes[self._second])
             open_new &= ~_near(disc, extra[starts - count], _spots(self._nodes, extra, ends))
         rows = np.concatenate([self._first[open_old], starts[open_new]])
         columns = np.concatenate([self._second[open_old], ends[open_new]])
-        lengths = np.concatenate([self._lengths[open_old], shapely.length(lines[open_new])])
+        lengths = np.concatenate([old_lengths[open_old], new_lengths[open_new]])
         size = count + len(extra)
         # A tiny constant keeps edges of length nought in the graph.
         graph = csr_array((lengths + 1e-9, (rows, columns)), shape=(size, size))
@@ -282,6 +330,27 @@ class Chart:
             graph, directed=False, indices=[count], return_predecessors=True
         )
         return distances[0], before[0]
+
+    def _too_close(
+        self,
+        zone: _Zone,
+        lines: NDArray[Any],
+        room: Floats,
+        starts: NDArray[Any],
+        ends: NDArray[Any],
+    ) -> NDArray[np.bool_]:
+        """Which lines come too close to a zone, from which the `extra` spots have so much room:
+        one that begins or ends beside it may be as close as that, if the body is not in it. The
+        first spot is where the body is, even if it is partly in it."""
+        enough = (room >= self.radius) | (np.arange(len(room)) == 0)
+        keep = np.concatenate(
+            [np.full(len(self._nodes), self.clearance), np.minimum(room, self.clearance)]
+        )
+        stands = np.concatenate([np.ones(len(self._nodes), dtype=np.bool_), enough])
+        nearest = np.minimum(keep[starts], keep[ends]) - _GRAZE
+        return np.asarray(
+            (shapely.distance(zone.area, lines) < nearest) | ~(stands[starts] & stands[ends])
+        )
 
     def _join(self, extra: Floats) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
         """Edges from each of the `extra` spots to all nodes and to each other that are clear."""
@@ -295,6 +364,22 @@ class Chart:
         lines = _lines(extra[starts], _spots(self._nodes, extra, ends))
         clear = shapely.covers(self._passable, lines)
         return ends[clear], starts[clear] + count, lines[clear]
+
+    def _ways_out(self, spot: Spot, closed: Collection[str]) -> list[Spot]:
+        """Just outside of the closed zones that the spot is in or close to: straight across each
+        of their sides."""
+        here = Point(spot)
+        found: list[Spot] = []
+        for name in closed:
+            zone = self._zones.get(name)
+            if zone is None or not zone.wide.covers(here):
+                continue
+            ring = zone.wide.buffer(_GRAZE, join_style="mitre").exterior.coords
+            for side in itertools.pairwise(ring):
+                x, y = shapely.shortest_line(LineString(side), here).coords[0]
+                if self._passable.covers(Point(x, y)):
+                    found.append((float(x), float(y)))
+        return found
 
     def _around(self, discs: Sequence[Disc]) -> list[Spot]:
         reach = 1.02 / math.cos(math.pi / _DISC_CORNERS)
@@ -343,9 +428,9 @@ def _corners(grown: BaseGeometry) -> tuple[Floats, Floats, Floats]:
     return here, before, after
 
 
-def _shares(count: int) -> list[NDArray[Any]]:
+def _shares(rows: int, columns: int) -> list[NDArray[Any]]:
     """So many rows in shares that make up to a million pairs each."""
-    return np.array_split(np.arange(count), max(1, count**2 // _PAIRS_AT_ONCE))
+    return np.array_split(np.arange(rows), max(1, rows * columns // _PAIRS_AT_ONCE))
 
 
 def _cross(a: Floats, b: Floats) -> Floats:
@@ -358,6 +443,16 @@ def _lines(starts: Floats, ends: Floats) -> NDArray[Any]:
 
 def _spots(nodes: Floats, extra: Floats, which: NDArray[Any]) -> Floats:
     return np.asarray(np.concatenate([nodes, extra])[which])
+
+
+def _within(area: BaseGeometry, lines: NDArray[Any]) -> Floats:
+    """How much of each line lies in the area, in metres."""
+    return np.asarray(shapely.length(shapely.intersection(area, lines)))
+
+
+def _to(area: BaseGeometry, spots: Floats) -> Floats:
+    """How far each spot is from the area."""
+    return np.asarray(shapely.distance(area, shapely.points(spots)))
 
 
 def _near(disc: Disc, starts: Floats, ends: Floats) -> NDArray[np.bool_]:

@@ -7,10 +7,13 @@ push it through walls). Metres, seconds, radians.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable, Sequence
 
 import pymunk
+
+Outline = tuple[tuple[float, float], ...]
 
 STEP = 1 / 60
 """Seconds of one step."""
@@ -18,7 +21,10 @@ STEP = 1 / 60
 _PULL = 8.0
 """The servo's greatest acceleration in m/s²."""
 
-_WALL, _FURNITURE, _ROBOT, _PERSON = 1, 2, 4, 8
+BORDER_WIDTH = 0.04
+"""Metres; contacts give a little, and the robot is not to be in a zone by even that."""
+
+_WALL, _FURNITURE, _ROBOT, _PERSON, _BORDER, _FEELER = 1, 2, 4, 8, 16, 32
 
 # What each kind of body bumps into. People sit on chairs and lie in beds, so furniture does not
 # stop them (their routes go around it); and they make room for one another.
@@ -26,6 +32,9 @@ _FILTERS = {
     _ROBOT: pymunk.ShapeFilter(categories=_ROBOT, mask=_WALL | _FURNITURE | _PERSON),
     _PERSON: pymunk.ShapeFilter(categories=_PERSON, mask=_WALL | _ROBOT),
 }
+# The border of a keep-out zone stops nothing but the robot, and is not to be seen.
+_BORDERS = pymunk.ShapeFilter(categories=_BORDER, mask=_FEELER)
+_FEELERS = pymunk.ShapeFilter(categories=_FEELER, mask=_BORDER)
 _LIDAR = pymunk.ShapeFilter(categories=_ROBOT, mask=_WALL | _FURNITURE | _PERSON)
 _SIGHT = pymunk.ShapeFilter(categories=_ROBOT | _PERSON, mask=_WALL)
 
@@ -86,6 +95,25 @@ class Body:
         space.remove(*self._parts)
 
 
+class RobotBody(Body):
+    """The robot's: what else stops it are the borders of keep-out zones, for which it counts as
+    wide as its `feeler`."""
+
+    def __init__(self, space: pymunk.Space, x: float, y: float, radius: float) -> None:
+        super().__init__(space, x, y, radius, 30.0, _ROBOT)
+        self._feeler = pymunk.Circle(self._body, radius)
+        self._feeler.filter = _FEELERS
+        space.add(self._feeler)
+
+    @property
+    def feeler(self) -> float:
+        return self._feeler.radius
+
+    @feeler.setter
+    def feeler(self, radius: float) -> None:
+        self._feeler.unsafe_set_radius(radius)
+
+
 class Physics:
     """A floor with walls (x1, y1, x2, y2) of some thickness, furniture and closed doors."""
 
@@ -105,6 +133,7 @@ class Physics:
             shape.filter = pymunk.ShapeFilter(categories=_FURNITURE)
             shapes.append(shape)
         self.space.add(*shapes)
+        self._borders: dict[Outline, list[pymunk.Segment]] = {}
         self._doors: dict[tuple[float, float, float, float], pymunk.Segment] = {}
         for door in doors:
             self.close_door(door)
@@ -124,8 +153,30 @@ class Physics:
         if door in self._doors:
             self.space.remove(self._doors.pop(door))
 
-    def add_robot(self, x: float, y: float, radius: float) -> Body:
-        return Body(self.space, x, y, radius, 30.0, _ROBOT)
+    def raise_border(self, zone: Outline) -> None:
+        """From now on the robot does not cross the outline of the zone."""
+        if zone in self._borders:
+            return
+        ground = self.space.static_body
+        sides = itertools.pairwise((*zone, zone[0]))
+        self._borders[zone] = [pymunk.Segment(ground, *side, BORDER_WIDTH / 2) for side in sides]
+        for side in self._borders[zone]:
+            side.filter = _BORDERS
+        self.space.add(*self._borders[zone])
+
+    def lift_border(self, zone: Outline) -> None:
+        self.space.remove(*self._borders.pop(zone, ()))
+
+    def lift_borders(self) -> None:
+        for zone in self.borders():
+            self.lift_border(zone)
+
+    def borders(self) -> set[Outline]:
+        """The zones whose border is raised."""
+        return set(self._borders)
+
+    def add_robot(self, x: float, y: float, radius: float) -> RobotBody:
+        return RobotBody(self.space, x, y, radius)
 
     def add_person(self, x: float, y: float, radius: float) -> Body:
         return Body(self.space, x, y, radius, 70.0, _PERSON)
@@ -164,6 +215,18 @@ class Physics:
             (x + reach * math.cos(heading), y + reach * math.sin(heading)),
             body.radius,
             _LIDAR,
+        )
+        return reach if hit is None else hit.alpha * reach
+
+    def free_of_borders(self, body: RobotBody, heading: float, reach: float) -> float:
+        """How many metres the robot could go straight that way before it comes to a keep-out zone,
+        at most `reach`."""
+        x, y = body.position
+        hit = self.space.segment_query_first(
+            (x, y),
+            (x + reach * math.cos(heading), y + reach * math.sin(heading)),
+            body.feeler,
+            _FEELERS,
         )
         return reach if hit is None else hit.alpha * reach
 

@@ -23,6 +23,7 @@ from sim.pictures_scene import (
     box_about,
     box_at,
     dashes,
+    hatching,
     mixed,
 )
 from sim.world import Door, Furniture, Place, Polygon, Pose, World, polygon_area, rectangle
@@ -230,9 +231,10 @@ def _draw_rooms(world: World, frame: Frame, scene: Scene) -> None:
             rim = mixed(fill, INK, 0.22)
             outline = frame.spots((*place.area, place.area[0]))
             rooms += [Line(dash, rim, 0.9) for dash in dashes(outline, 4, 4)]
-    for zone in world.keep_out:
-        outline = frame.spots((*zone, zone[0]))
-        rooms += [Line(dash, NO_ENTRY, 2) for dash in dashes(outline, 6, 5)]
+    for zone in world.zones:
+        outline = frame.spots(zone.polygon)
+        rooms += [Line(line, NO_ENTRY, 1.2) for line in hatching(outline, 9)]
+        rooms.append(Area(outline, None, NO_ENTRY, 2, zone.name))
 
 
 def _anticlockwise(polygon: Polygon) -> bool:

@@ -182,6 +182,24 @@ def dashes(points: Sequence[Spot], on: float, off: float) -> list[tuple[Spot, Sp
     return pieces
 
 
+def hatching(polygon: Sequence[Spot], apart: float) -> list[tuple[Spot, Spot]]:
+    """Slanting lines through a polygon, so many pixels apart."""
+    sides = list(itertools.pairwise((*polygon, polygon[0])))
+    depths = [x + y for x, y in polygon]  # the same all along a line that slants upwards
+    lines: list[tuple[Spot, Spot]] = []
+    step = apart * math.sqrt(2)
+    for number in range(math.ceil(min(depths) / step), math.floor(max(depths) / step) + 1):
+        depth = number * step
+        crossings = sorted(
+            (x1 + (x2 - x1) * share, y1 + (y2 - y1) * share)
+            for (x1, y1), (x2, y2) in sides
+            if (x1 + y1 > depth) != (x2 + y2 > depth)
+            for share in [(depth - x1 - y1) / (x2 + y2 - x1 - y1)]
+        )
+        lines += zip(crossings[::2], crossings[1::2], strict=True)
+    return lines
+
+
 def arc(x: float, y: float, radius: float, start: float, end: float) -> tuple[Spot, ...]:
     """Points on a circle from one angle to another, in degrees, anticlockwise as seen."""
     steps = max(2, round(abs(end - start) / 10))

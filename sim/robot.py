@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from sim.physics import STEP, Body
+from sim.physics import STEP, RobotBody
 
 TOP_SPEED = 0.9
 """m/s."""
@@ -48,7 +48,7 @@ class RobotState:
 class Robot:
     """The body and its state; `aim` is what behaviours steer with."""
 
-    body: Body
+    body: RobotBody
     theta: float
     """Degrees, 0 along x, left is +, in (-180, 180]."""
     battery: float = 100.0
@@ -70,7 +70,7 @@ class Robot:
     waits_for: str | None = None
     """The person who is in its way and for whom it waits."""
 
-    def copy(self, body: Body) -> Robot:
+    def copy(self, body: RobotBody) -> Robot:
         """The same state with a body of another simulation; nobody has its wheel."""
         return replace(
             self,

@@ -11,20 +11,22 @@ others return at once. Metres, seconds, degrees (left is +) everywhere.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from datetime import datetime, timedelta
 from types import TracebackType
 from typing import Any, TypeVar
 
+import msgspec
+
 from sim import company, driving, handling, perception, searching, talking
-from sim.hospital import Hospital, Listener
+from sim.hospital import Hospital, Listener, chart_of
 from sim.perception import Seen
 from sim.physics import STEP
 from sim.record import Record
 from sim.robot import RobotState
 from sim.runner import Behaviour, Runner, Stop
 from sim.talking import Reply
-from sim.world import World
+from sim.world import World, Zone
 
 __all__ = ["Behaviour", "Reply", "RobotState", "Seen", "Simulation", "Stop"]
 
@@ -204,6 +206,16 @@ class Simulation:
         """Open or close the world's door of that number. The robot finds out when it gets there."""
         with self._runner.turn:
             self._hospital.set_door(number, open_)
+
+    def set_zones(self, zones: Iterable[Zone]) -> None:
+        """Keep the robot out of these zones and no others; `world.zones` is these from now on.
+        Their outlines must be sound (`sim.zones.trouble_with`). A robot that is in one may leave
+        it; one on its way somewhere looks for another way."""
+        drawn = tuple(zones)
+        # Time passes while the floor is charted.
+        chart = chart_of(msgspec.structs.replace(self.world, zones=drawn))
+        with self._runner.turn:
+            self._hospital.set_zones(drawn, chart)
 
     # --- behaviours: driving ---------------------------------------------------------------------
 

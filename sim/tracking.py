@@ -71,7 +71,12 @@ class Stuck:
     pass
 
 
-Trouble = Human | ClosedDoor | Stuck
+@dataclass(frozen=True)
+class OtherZones:
+    """The keep-out zones were drawn anew."""
+
+
+Trouble = Human | ClosedDoor | Stuck | OtherZones
 
 
 def track(
@@ -83,7 +88,7 @@ def track(
 ) -> Behaviour[Trouble | None]:
     """Drive along a route, which was planned around somebody; returns None at its end, or what is
     in the way."""
-    robot, points = hospital.robot, route.points
+    robot, points, chart = hospital.robot, route.points, hospital.chart
     rest = _lengths_from_end(points)
     leg = 1
     allowed = TOP_SPEED
@@ -92,6 +97,8 @@ def track(
     held_since = hospital.time
     while leg < len(points):
         check_battery(hospital)
+        if hospital.chart is not chart:
+            return OtherZones()
         here = robot.position
         while leg < len(points) - 1 and _off(here, points[leg], points[leg + 1]) <= _off(
             here, points[leg - 1], points[leg]

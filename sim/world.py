@@ -170,6 +170,13 @@ class Question(msgspec.Struct, frozen=True, kw_only=True):
     """By language."""
 
 
+class Zone(msgspec.Struct, frozen=True):
+    """Where the robot must not drive though it is free: a keep-out zone."""
+
+    name: str
+    polygon: Polygon
+
+
 class GridMap(msgspec.Struct, frozen=True, kw_only=True):
     """A map as ROS's map_server writes it; `sim.maps` reads the image."""
 
@@ -215,8 +222,8 @@ class World(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     drawn_walls: tuple[Segment, ...] = ()
     """The walls written in the file, the doors cut out; `walls` has those of the map as well."""
     wall_thickness: float = 0.1
-    keep_out: tuple[Polygon, ...] = ()
-    """Where the robot must not drive though it is free."""
+    zones: tuple[Zone, ...] = ()
+    """Where the robot must not drive. `sim.simulation.Simulation.set_zones` draws others."""
     map: GridMap | None = None
     file: str = ""
 
@@ -317,6 +324,10 @@ class World(msgspec.Struct, frozen=True, kw_only=True, dict=True):
                 if distance <= WITHIN_REACH and math.pi * distance**2 < best_size:
                     best, best_size = place, math.pi * distance**2
         return best
+
+    def zone_at(self, x: float, y: float) -> Zone | None:
+        """The zone that the point is in; None if it is in none."""
+        return next((zone for zone in self.zones if contains(zone.polygon, x, y)), None)
 
     def furniture_at(self, place: str | None) -> tuple[Furniture, ...]:
         """The furniture that stands in the place."""

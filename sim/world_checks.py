@@ -21,6 +21,7 @@ from sim.world import (
     Segment,
     Thing,
     World,
+    Zone,
     key,
 )
 from sim.world_yaml import NodeReader, did_you_mean
@@ -98,6 +99,19 @@ def check_names(reader: NodeReader, what: str, entries: Lined[_Named]) -> None:
                         f'"{alias}" of the {what} "{entry.name}" is also a name of '
                         f'the {what} "{owner}". Leave it to one of them.',
                     )
+
+
+def check_zones(reader: NodeReader, zones: Lined[Zone]) -> None:
+    """No two of the same name."""
+    lines: dict[str, int] = {}
+    for line, zone in zones:
+        first = lines.setdefault(key(zone.name), line)
+        if first != line:
+            reader.problem(
+                line,
+                f'The zone "{zone.name}" is on line {first} already. '
+                "Give one of them another name.",
+            )
 
 
 def check_poses(reader: NodeReader, world: World) -> None:

@@ -16,7 +16,7 @@ from typing import Any, ClassVar, TypeVar
 
 from sim import world as w
 from sim.world import Place, Point, Segment, World, WorldError
-from sim.world_checks import Entries, cut_doors, kind_of, settle
+from sim.world_checks import Entries, check_zones, cut_doors, kind_of, settle
 from sim.world_yaml import (
     MAX_TEXT,
     Hopeless,
@@ -27,6 +27,7 @@ from sim.world_yaml import (
     compose,
     short,
 )
+from sim.zones import trouble_with
 
 MAX_WALLS = 20_000
 MAX_PIXELS = 8192
@@ -67,7 +68,7 @@ class _Reader(NodeReader):
     FIELDS: ClassVar = {
         "a world": (
             "name units scale map walls wall_thickness robot places people objects furniture doors "
-            "contacts questions keep_out"
+            "contacts questions zones keep_out"
         ),
         "a map": "image resolution origin negate occupied_thresh free_thresh mode",
         "the robot": "name start radius battery",
@@ -78,6 +79,7 @@ class _Reader(NodeReader):
         "a door": "name at from to open",
         "a contact": "name kind aliases",
         "a question": "ask answer",
+        "a zone": "name polygon",
     }
 
     # --- entries
@@ -205,6 +207,28 @@ class _Reader(NodeReader):
         answers = self.languages(fields["answer"], "An answer", MAX_TEXT)
         return w.Question(ask=ask, answer={code: texts[0] for code, texts in answers.items()})
 
+    def zone(self, node: Node) -> w.Zone | None:
+        fields = self.mapping(node, "a zone")
+        name = self.name(fields, node, "a zone")
+        if "polygon" not in fields:
+            if isinstance(node, MappingNode):
+                self.problem(
+                    node.line,
+                    f'The zone "{name}" has no "polygon". Give its corners: '
+                    "polygon: [[x, y], [x, y], [x, y], ...].",
+                )
+            return None
+        polygon = self.zone_polygon(fields["polygon"], f'The polygon of the zone "{name}"')
+        return None if name is None or not polygon else w.Zone(name, polygon)
+
+    def zone_polygon(self, node: Node, what: str) -> w.Polygon:
+        polygon = self.polygon(node, what)
+        trouble = trouble_with(polygon) if polygon else None
+        if trouble is None:
+            return polygon
+        self.problem(node.line, f"{what} {trouble}", floor=True)
+        return ()
+
     def walls(self, node: Node) -> list[Segment]:
         """Each wall is a line through two or more points: [x1, y1, x2, y2, x3, y3, ...]."""
         segments: list[Segment] = []
@@ -329,9 +353,14 @@ class _Reader(NodeReader):
         doors = self.entries(fields, "doors", self.door)
         contacts = self.entries(fields, "contacts", self.contact)
         questions = self.entries(fields, "questions", self.question)
+        zones = self.entries(fields, "zones", self.zone)
         keep_out = self.entries(
-            fields, "keep_out", lambda node: self.polygon(node, '"keep_out"') or None
+            fields, "keep_out", lambda node: self.zone_polygon(node, '"keep_out"') or None
         )
+        zones += [
+            (line, w.Zone(f"area {number}", polygon))
+            for number, (line, polygon) in enumerate(keep_out, 1)
+        ]
         walls = self.walls(fields["walls"]) if "walls" in fields else []
         thickness = (
             self.length(fields["wall_thickness"], '"wall_thickness"', 0.01, 2)
@@ -349,10 +378,11 @@ class _Reader(NodeReader):
             wall_thickness=thickness or 0.1,
             contacts=tuple(contact for _, contact in contacts),
             questions=tuple(question for _, question in questions),
-            keep_out=tuple(polygon for _, polygon in keep_out),
+            zones=tuple(zone for _, zone in zones),
             map=grid,
             file=str(path),
         )
         start_line = fields["robot"].line if "robot" in fields else 1
         entries = Entries(places, people, objects, furniture, doors, contacts, (start_line, robot))
+        check_zones(self, zones)
         return settle(self, bare, walls, entries)

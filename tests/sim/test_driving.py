@@ -181,7 +181,7 @@ def test_it_keeps_out_of_where_it_must_not_go_and_leaves_when_inside(world_of, l
     ward = living(world)
     ward.goes_to("east")
     assert not any(4 < s.x < 8 and s.y < 6 for s in ward.simulation.record.samples)
-    with pytest.raises(NotPossible, match="keep out"):
+    with pytest.raises(NotPossible, match="keep-out zone"):
         ward.does(ward.simulation.drive_to(6, 3))
     ward.simulation.localize(6, 3, 0)
     ward.goes_to("west")

@@ -71,7 +71,8 @@ def test_a_zone_is_driven_around_only_when_the_query_closes_it() -> None:
     assert through is not None and around is not None
     assert through.length == pytest.approx(8.0)
     assert around.length > 8.5
-    assert chart.in_gate("wet floor", 5, 3) and not chart.in_gate("wet floor", 1, 3)
+    assert chart.to_zone("wet floor", 5, 3) == 0
+    assert chart.to_zone("wet floor", 1, 3) == pytest.approx(3)
 
 
 def test_a_start_close_to_the_wall_is_left_straight_away_from_it() -> None:
