@@ -73,12 +73,13 @@ def review(
         program=program,
         sha256=digest(program),
         findings=tuple(findings),
-        reading=tuple(_read(program, knowledge, language)) if acceptable else (),
+        reading=tuple(reading(program, knowledge, language)) if acceptable else (),
         dry_run=dry_run,
     )
 
 
-def _read(program: str, knowledge: Knowledge, language: str) -> Iterator[Reading]:
+def reading(program: str, knowledge: Knowledge, language: str) -> Iterator[Reading]:
+    """A program that was checked, line by line in plain words."""
     called = naming(knowledge.lexicon(language), load_language(language)).called
     for told in explain_program(program, language, called):
         yield Reading(told.line, told.depth, told.text)

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import math
 import time
-from collections import OrderedDict
 from collections.abc import Mapping
 from typing import Any
 
@@ -13,7 +12,8 @@ import msgspec
 
 from grammar.samples import samples
 from nl2robot.runner import Runner
-from nl2robot.translation import Talk, translate
+from nl2robot.talks import Talks
+from nl2robot.translation import translate
 from nl2robot.voice_services import Microphones, voice_services
 from nl2robot.wire import an_object, service
 from robot_api.driver import StopFlag
@@ -23,8 +23,6 @@ from robot_api.server import Service
 LONGEST_PROGRAM = 65_536
 SECONDS_TO_END = 2.0
 """How long a stopped run may take to be over."""
-TALKS_KEPT = 100
-"""Conversations whose context is kept; the one unused longest is forgotten first."""
 
 _STRING = {"type": "string", "maxLength": MAX_TEXT}
 _MAYBE = {"type": ["string", "null"], "maxLength": 4 * LONGEST_PROGRAM}
@@ -40,18 +38,8 @@ EVENTS: Mapping[str, str] = {
 """The events that the runner publishes."""
 
 
-def services(runner: Runner) -> dict[str, Service]:
+def services(runner: Runner, talks: Talks) -> dict[str, Service]:
     """The methods to register with a `robot_api.server.Server`."""
-    talks: OrderedDict[str, Talk] = OrderedDict()
-
-    def talk_of(name: str | None) -> Talk:
-        if name is None:
-            return Talk()
-        talk = talks.setdefault(name, Talk())
-        talks.move_to_end(name)
-        while len(talks) > TALKS_KEPT:
-            talks.popitem(last=False)
-        return talk
 
     def translated(p: Mapping[str, Any]) -> Any:
         return translate(
@@ -59,7 +47,7 @@ def services(runner: Runner) -> dict[str, Service]:
             runner.knowledge,
             p.get("language", "en"),
             p.get("planner", "auto"),
-            talk_of(p.get("talk")),
+            talks.of(p.get("talk")),
             runner,
         )
 
@@ -81,7 +69,7 @@ def services(runner: Runner) -> dict[str, Service]:
     def listed(p: Mapping[str, Any]) -> Any:
         return runner.log.runs(p.get("last", 20))
 
-    microphones = Microphones(lambda: runner.knowledge, talk_of)
+    microphones = Microphones(lambda: runner.knowledge, talks.of)
     return {
         **voice_services(microphones),
         "program.translate": service(

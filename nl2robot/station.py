@@ -22,6 +22,7 @@ from nl2robot.routines import open_routines
 from nl2robot.runlog import LogError, RunLog
 from nl2robot.runner import Runner
 from nl2robot.services import EVENTS, services
+from nl2robot.talks import Talks
 from robot_api.client import Robot
 from robot_api.driver import Driver, Event
 from robot_api.errors import AccessDenied, RobotError
@@ -263,7 +264,16 @@ def _open(
         seed=seed,
     )
 
-    backstage = Backstage(driver, runner, simulation, publish, lambda kind: server.wanted(kind))
+    talks = Talks()
+    backstage = Backstage(
+        driver=driver,
+        runner=runner,
+        talks=talks,
+        simulation=simulation,
+        publish=publish,
+        wanted=lambda kind: server.wanted(kind),
+        stop=lambda because: server.stop(because),
+    )
     added = console(backstage) if console else None
 
     def on_event(kind: str, data: Event) -> None:
@@ -276,7 +286,7 @@ def _open(
         host=host,
         port=port,
         token=token,
-        services={**services(runner), **(added.services if added else {})},
+        services={**services(runner, talks), **(added.services if added else {})},
         events={**EVENTS, **(added.events if added else {})},
         pages=added.pages() if added else None,
         on_left=added.left if added else None,

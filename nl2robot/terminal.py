@@ -63,7 +63,7 @@ class Terminal:
     def speak(self, language: str) -> None:
         """Go on in a language."""
         self.language = language
-        self.words = _words(language)
+        self.words = words_in(language)
 
     def accompany(self, operator: Operator) -> None:
         """Somebody operates a robot from here; what it does may matter to how lines are read."""
@@ -125,7 +125,7 @@ class Terminal:
             "limit": "would_be_ended",
             "unfinished": "would_go_on",
         }[dry_run.status]
-        time, metres = _duration(dry_run.seconds), f"{dry_run.metres:g}"
+        time, metres = duration(dry_run.seconds), f"{dry_run.metres:g}"
         text = self.words[ends].format(time=time, metres=metres, line=dry_run.line)
         heading = self.words["dry_run"]
         self.console.print(f"[bold]{heading}[/] {text} {_plain(dry_run.message or '')}".rstrip())
@@ -249,12 +249,12 @@ class Terminal:
 
 def answers(language: str) -> frozenset[str]:
     """What may be answered when a program is to be approved, in words."""
-    ways = _words(language)["answers"].values()
+    ways = words_in(language)["answers"].values()
     return frozenset(way for those in ways for way in those if len(way) > 1)
 
 
 @functools.cache
-def _words(language: str) -> Mapping[str, Any]:
+def words_in(language: str) -> Mapping[str, Any]:
     """What the terminal says in a language; in English where it does not speak that."""
     import yaml
 
@@ -285,6 +285,7 @@ def _short(value: Any, longest: int = 70) -> str:
     return text if len(text) <= longest else text[: longest - 1] + "…"
 
 
-def _duration(seconds: float) -> str:
+def duration(seconds: float) -> str:
+    """A duration for people."""
     minutes, rest = divmod(round(seconds), 60)
     return f"{minutes} min {rest} s" if minutes else f"{rest} s"

@@ -245,6 +245,10 @@ class Server:
         """Whether somebody subscribed to this kind of event. From any thread."""
         return any(client.wire.wants(kind) for client in tuple(self.clients))
 
+    def stop(self, because: str) -> None:
+        """Stop the robot and every call in flight. From any thread; returns at once."""
+        self.dispatcher.stop(because, _nothing_more)
+
     def in_loop(self, task: Callable[..., None], *arguments: Any) -> None:
         """Do it in the loop thread, which alone touches connections; not at all after the end."""
         if self._loop is not None:
@@ -597,6 +601,10 @@ def _for_operators(stop: StopFlag) -> Any:
 
 def _nothing() -> None:
     pass
+
+
+def _nothing_more(result: Any, error: RobotError | Stopped | None) -> None:
+    """The dispatcher has logged what went wrong."""
 
 
 def _ignore(name: str) -> None:

@@ -72,7 +72,7 @@ def frame(backstage: Backstage, page: str) -> Iterator[Visit]:
     ui.dark_mode({"auto": None, "light": False, "dark": True}[visitor.look])
     ui.add_head_html(_head(visitor, words))
     ui.add_body_html(_header(page, name, visitor, words))
-    with ui.element("main").props('id="main" tabindex="-1"').classes(f"page page-{page}"):
+    with ui.element("div").props('id="main" tabindex="-1"').classes(f"page page-{page}"):
         yield visit
 
 

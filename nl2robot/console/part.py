@@ -13,6 +13,7 @@ from robot_api.server import Publish, Service
 
 if TYPE_CHECKING:
     from nl2robot.runner import Runner
+    from nl2robot.talks import Talks
     from sim.simulation import Simulation
 
 Listener = Callable[[str, Event], None]
@@ -24,12 +25,16 @@ class Backstage:
 
     driver: Driver
     runner: Runner
+    talks: Talks
+    """The conversations, typed and spoken."""
     simulation: Simulation | None
     """None where the robot is a real one."""
     publish: Publish
     """`robot_api.server.Server.publish`."""
     wanted: Callable[[str], bool]
     """Whether somebody subscribed to this kind of event."""
+    stop: Callable[[str], None]
+    """Stop the robot and its program, saying why; returns at once."""
     _listeners: list[Listener] = field(default_factory=list)
 
     def subscribe(self, listener: Listener) -> Callable[[], None]:

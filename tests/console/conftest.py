@@ -123,6 +123,7 @@ def chromium() -> Iterator[Browser]:
 
 
 Look = Callable[..., Page]
+Picture = Callable[[Page, str], None]
 
 
 @pytest.fixture
@@ -165,7 +166,7 @@ def page(look: Look) -> Page:
 
 
 @pytest.fixture
-def picture() -> Callable[[Page, str], None]:
+def picture() -> Picture:
     """Keep a picture of a page, where `$NL2ROBOT_PICTURES` says: for people, and the docs."""
 
     def keep(page: Page, name: str) -> None:

@@ -1,0 +1,80 @@
+"""What a review says, as the page shows it: what would happen, and marks on the lines."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from nl2robot.review import Review
+from nl2robot.terminal import duration, words_in
+
+
+@dataclass(frozen=True)
+class Mark:
+    """Something to think about on a line."""
+
+    line: int
+    weight: Literal["error", "risk", "note"]
+    text: str
+
+
+@dataclass(frozen=True)
+class Outlook:
+    """What would happen, and what to think about."""
+
+    sentence: str
+    """How long it would take, how far it would drive, how it would end; empty without a dry run."""
+    good: bool
+    """Whether it would be done."""
+    facts: tuple[tuple[str, tuple[str, ...]], ...]
+    """What it would pass, say, ask and show: a heading with its items."""
+    marks: tuple[Mark, ...]
+    path: tuple[tuple[float, float], ...]
+
+    @property
+    def decorations(self) -> list[dict[str, Any]]:
+        """The marks for the editor."""
+        return [
+            {"kind": "line", "line": mark.line, "class": f"line-{mark.weight}"}
+            for mark in self.marks
+        ]
+
+
+def outlook(review: Review, words: Mapping[str, str], language: str) -> Outlook:
+    """What this review says, in a language."""
+    marks = [
+        *(
+            Mark(found.line, "error" if found.severity == "error" else "note", found.message)
+            for found in review.findings
+        ),
+        *(Mark(risk.line, "risk", risk.text) for risk in review.risks),
+    ]
+    marks.sort(key=lambda mark: mark.line)
+    dry_run = review.dry_run
+    if dry_run is None:
+        return Outlook("", review.acceptable, (), tuple(marks), ())
+    said = words_in(language)
+    template = {
+        "done": "would_be_done",
+        "failed": "would_fail",
+        "stopped": "would_be_stopped",
+        "limit": "would_be_ended",
+        "unfinished": "would_go_on",
+    }[dry_run.status]
+    sentence = said[template].format(
+        time=duration(dry_run.seconds), metres=f"{dry_run.metres:g}", line=dry_run.line
+    )
+    facts = [
+        (words["way"], (" → ".join(dry_run.places),) if len(dry_run.places) > 1 else ()),
+        (words["says"], tuple(dict.fromkeys(dry_run.says))),
+        (words["asks"], tuple(dict.fromkeys(dry_run.asks))),
+        (words["shows"], tuple(dict.fromkeys(dry_run.shows))),
+    ]
+    return Outlook(
+        sentence=" ".join(filter(None, (sentence, dry_run.message))),
+        good=dry_run.status in ("done", "unfinished"),
+        facts=tuple((heading, items) for heading, items in facts if items),
+        marks=tuple(marks),
+        path=dry_run.path,
+    )

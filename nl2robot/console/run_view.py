@@ -1,0 +1,44 @@
+"""The run that goes on, or the last one, as every page shows it: `desk.run`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+
+from nl2robot.console.highlight import highlighted
+from nl2robot.console.part import Backstage
+from nl2robot.review import reading
+
+
+def run_view(backstage: Backstage, language: str) -> dict[str, Any] | None:
+    """The present or last run: how it stands, its lines with what they say in plain words, its
+    calls; None if there was none since the server started."""
+    runner = backstage.runner
+    status = runner.state()
+    if status is None:
+        return None
+    logged = runner.log.run(status.run)
+    told = {each.line: each for each in reading(status.program, runner.knowledge, language)}
+    return {
+        **msgspec.to_builtins(status),
+        "utterance": logged.utterance if logged else None,
+        "by": logged.approved_by if logged else None,
+        "started": logged.started if logged else None,
+        "lines": [
+            {"code": str(code), "reading": told[number].text if number in told else ""}
+            for number, code in enumerate(highlighted(status.program), 1)
+        ],
+        "calls": [
+            {
+                "number": call.number,
+                "line": call.line,
+                "method": call.method,
+                "arguments": msgspec.json.decode(call.arguments),
+                "result": msgspec.json.decode(call.result) if call.result else None,
+                "error": call.error,
+                "seconds": call.seconds,
+            }
+            for call in runner.log.calls(status.run)[-100:]
+        ],
+    }

@@ -1,0 +1,137 @@
+/** The operator's page in the browser: what is typed, spoken and clicked, the run, the map. */
+
+import {appears, pageData} from '/static/page.js';
+import {wire} from '/static/wire.js';
+import {RunPanel} from '/static/desk/run_panel.js';
+
+const {words, role, language} = pageData;
+const OPTIONS = {harmless: 'option-harmless', at_once: 'option-at-once'};
+
+/** Tell the server's side of this page. */
+const tell = (name, data = {}) => window.emitEvent(name, data);
+
+function options() {
+  return Object.fromEntries(
+    Object.entries(OPTIONS).map(([name, id]) => [name, document.getElementById(id)?.checked ?? false]),
+  );
+}
+
+/** The line to type in, with what was typed before on the arrow keys. */
+function openComposer(form) {
+  const line = form.querySelector('#words');
+  const history = [...pageData.history];
+  let at = history.length;
+  let unsent = sessionStorage.getItem('unsent') ?? '';
+  line.value = unsent;
+
+  const say = (text) => {
+    const said = text.trim();
+    if (!said) return;
+    if (history.at(-1) !== said) history.push(said);
+    at = history.length;
+    tell('desk-say', {text: said, harmless: options().harmless});
+  };
+  form.addEventListener('submit', (event) => {
+    event.preventDefault();
+    say(line.value);
+    line.value = unsent = '';
+    sessionStorage.removeItem('unsent');
+  });
+  line.addEventListener('input', () => {
+    unsent = line.value;
+    sessionStorage.setItem('unsent', unsent);
+  });
+  line.addEventListener('keydown', (event) => {
+    const by = {ArrowUp: -1, ArrowDown: 1}[event.key];
+    if (!by || at + by < 0 || at + by > history.length) return;
+    event.preventDefault();
+    at += by;
+    line.value = at === history.length ? unsent : history[at];
+    line.setSelectionRange(line.value.length, line.value.length);
+  });
+  document.addEventListener('click', (event) => {
+    const button = event.target.closest('[data-say]');
+    if (button) say(button.dataset.say);
+  });
+  for (const [name, id] of Object.entries(OPTIONS)) {
+    const box = document.getElementById(id);
+    box.checked = localStorage.getItem(name) === 'yes';
+    box.addEventListener('change', () => localStorage.setItem(name, box.checked ? 'yes' : 'no'));
+  }
+  if (matchMedia('(pointer: fine)').matches) line.focus({preventScroll: true});
+  openMicrophone(form);
+}
+
+async function openMicrophone(form) {
+  const {mountMicrophone} = await import('/static/microphone.js');
+  const partial = form.querySelector('#partial');
+  mountMicrophone(form.querySelector('#microphone'), {
+    wire,
+    words: pageData.microphone,
+    language: () => language,
+    talk: pageData.desk,
+    onPartial: (text) => (partial.textContent = text),
+    onHeard: ({text, translation}) => {
+      partial.textContent = '';
+      tell('desk-hear', {text, translation, harmless: options().harmless});
+    },
+    onTrouble: (sentence) => (partial.textContent = sentence),
+  });
+}
+
+function openDecisions() {
+  document.addEventListener('click', (event) => {
+    if (event.target.closest('#approve')) tell('desk-approve');
+    if (event.target.closest('#reject')) tell('desk-reject');
+  });
+  if (new URLSearchParams(location.search).has('program')) history.replaceState(null, '', '/');
+}
+
+/** The newest words are in view; whoever reads further up is left there. */
+function keepNewestInView(conversation) {
+  let atEnd = true;
+  conversation.addEventListener('scroll', () => {
+    const {scrollTop, scrollHeight, clientHeight} = conversation;
+    atEnd = scrollHeight - scrollTop - clientHeight < 60;
+  });
+  const follow = () => atEnd && conversation.scrollTo({top: conversation.scrollHeight});
+  new MutationObserver(follow).observe(conversation, {childList: true, subtree: true});
+  follow();
+}
+
+async function openMap(element) {
+  const {mountFloorMap} = await import('/static/floor/floor_map.js');
+  const operator = role === 'operator';
+  const map = await mountFloorMap(element, {wire, language, operator});
+  document.addEventListener('dry-run', (event) => map.showPath(event.detail));
+  if (waitingPath) map.showPath(waitingPath);
+  element.addEventListener('go', ({detail: {x, y, place}}) => {
+    const where = place ? JSON.stringify(place) : `${x.toFixed(2)}, ${y.toFixed(2)}`;
+    tell('desk-propose', {program: `robot.goto(${where})\n`, at_once: options().at_once});
+  });
+  element.addEventListener('localise', ({detail}) =>
+    wire.request('robot.localize', detail).catch((error) => alertOf(error)),
+  );
+}
+
+const alertOf = async (error) => (await import('/static/console.js')).notice(error.message, {alarm: true});
+
+// The server may say before the map is there what path it is to show.
+let waitingPath = null;
+document.addEventListener('dry-run', (event) => (waitingPath = event.detail));
+
+document.cookie = `desk=${pageData.desk}; path=/; max-age=2592000; SameSite=Lax`;
+appears('#conversation').then(keepNewestInView);
+appears('#run-panel').then(
+  (element) => new RunPanel(element, {wire, words, language, operator: role === 'operator'}),
+);
+appears('#desk-map').then(openMap);
+if (role === 'operator') {
+  appears('#composer').then(openComposer);
+  openDecisions();
+  const tellShade = () => tell('desk-shade', {dark: document.documentElement.dataset.look === 'dark'});
+  appears('.desk-editor').then(() => {
+    tellShade();
+    new MutationObserver(tellShade).observe(document.documentElement, {attributeFilter: ['data-look']});
+  });
+}

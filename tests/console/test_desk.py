@@ -1,0 +1,209 @@
+"""A nurse at the desk: she says what to do, sees what it means, decides, watches, stops."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.console.conftest import Look, Picture, Served
+
+
+def say(page: Page, words: str) -> None:
+    page.get_by_label("Tell the robot what to do").fill(words)
+    page.keyboard.press("Enter")
+
+
+def approve(page: Page) -> None:
+    button = page.get_by_role("button", name="Approve and run")
+    expect(button).to_be_enabled()
+    button.click()
+
+
+@pytest.fixture(autouse=True)
+def _at_rest(served: Served) -> None:
+    """Each story begins with a robot that stands by its charger."""
+    with served.robot() as robot:
+        robot.stop()
+        robot.localize("charger")
+
+
+def test_say_hello_from_end_to_end(page: Page, served: Served, picture: Picture) -> None:
+    expect(page.get_by_role("heading", name="What should the robot do?")).to_be_visible()
+    picture(page, "console-empty")
+    with served.robot() as robot:
+        spoken: list[str] = []
+        robot.subscribe(["speech"], lambda kind, data: spoken.append(data["text"]))
+        say(page, "say hello")
+        expect(page.locator(".said.by-robot").last).to_have_text(re.compile("I will say “Hello!”"))
+        expect(page.locator(".cm-content")).to_have_text('robot.say("Hello!")')
+        assert not spoken, "nothing was approved"
+        approve(page)
+        expect(page.locator("#run-panel [role=status]")).to_have_text("Done")
+        assert spoken == ["Hello!"]
+    expect(page.locator(".said.by-robot").last).to_have_text(re.compile(r"Done\. See run \d+"))
+
+
+def test_a_program_is_reviewed_refused_and_nothing_was_done(page: Page, served: Served) -> None:
+    say(page, "go to the pharmacy and ask Alice if she wants tea")
+    review = page.get_by_role("region", name="Review")
+    expect(review).to_contain_text(re.compile(r"It would take \d+ s and drive [\d.]+ m"))
+    expect(review).to_contain_text("main corridor → pharmacy")
+    page.get_by_role("button", name="Reject").click()
+    expect(page.locator(".said").last).to_contain_text("Nothing was done.")
+    with served.robot() as robot:
+        assert robot.location().place == "charger"
+
+
+def test_an_edit_is_checked_at_once_and_voids_the_review(page: Page) -> None:
+    say(page, "go to the pharmacy")
+    button = page.get_by_role("button", name="Approve and run")
+    expect(button).to_be_enabled()
+    page.locator(".cm-content").click()
+    page.keyboard.press("Control+End")
+    page.keyboard.type("robot.fly(3)")
+    expect(page.locator(".mark.error")).to_contain_text("line 2")
+    expect(button).to_be_disabled()
+    expect(page.locator(".cm-line.line-error")).to_have_text("robot.fly(3)")
+    for _ in "fly(3)":
+        page.keyboard.press("Backspace")
+    page.keyboard.type('say("I am here")')
+    expect(page.locator(".reading")).to_contain_text("say “I am here”")
+    expect(page.locator(".review-head")).to_contain_text("changed by hand")
+    expect(button).to_be_enabled()
+
+
+def test_a_run_is_watched_paused_stepped_and_stopped_half_way(
+    page: Page, look: Look, served: Served, picture: Picture
+) -> None:
+    say(page, "say one, go to the pharmacy and then go to radiology")
+    expect(page.locator(".outlook")).to_be_visible()
+    picture(page, "console")
+    approve(page)
+    current = page.locator("#run-panel li.current")
+    expect(current).to_contain_text("pharmacy")
+    picture(page, "console-running")
+    colleague = look("/")
+    expect(colleague.locator("#run-panel li.current")).to_contain_text("pharmacy")
+    page.get_by_role("button", name="Pause").click()
+    expect(page.locator("#run-panel [role=status]")).to_have_text("Paused")
+    expect(colleague.locator("#run-panel [role=status]")).to_have_text("Paused")
+    page.get_by_role("button", name="Go on").click()
+    page.reload()
+    expect(current).to_contain_text("pharmacy")
+    page.locator("body").press("Escape")
+    expect(page.locator("#run-panel [role=status]")).to_have_text("Stopped")
+    expect(colleague.locator("#run-panel [role=status]")).to_have_text("Stopped")
+    expect(page.locator(".said.by-robot").last).to_contain_text("I stopped.")
+    with served.robot() as robot:
+        here = robot.location()
+        assert here.place != "radiology"
+        assert robot.location() == here
+
+
+def test_the_space_key_stops_too_but_not_where_one_types(page: Page, served: Served) -> None:
+    with served.robot() as robot:
+        stops: list[str] = []
+        robot.subscribe(["stopped"], lambda kind, data: stops.append(kind))
+        line = page.get_by_label("Tell the robot what to do")
+        line.press("Space")
+        expect(line).to_have_value(" ")
+        assert not stops
+        page.locator("#main").press("Space")
+        expect(page.get_by_role("alert")).to_have_text("The robot was stopped.")
+        assert stops
+
+
+def test_a_typed_stop_needs_no_approval(page: Page) -> None:
+    say(page, "stop")
+    expect(page.locator(".said.by-robot").last).to_have_text(re.compile("The robot stands still."))
+    expect(page.get_by_role("button", name="Approve and run")).to_have_count(0)
+
+
+def test_what_is_not_understood_is_asked_back_and_help_is_by_topic(page: Page) -> None:
+    say(page, "bring")
+    expect(page.locator(".said.by-robot").last).to_contain_text("stops after “bring”")
+    page.locator(".composer").get_by_role("button", name="What can I say?").click()
+    topics = page.locator(".topics summary")
+    expect(topics.first).to_be_visible()
+    assert topics.count() > 3
+    page.locator(".topics .suggestion").first.click()
+    expect(page.get_by_role("button", name="Approve and run")).to_be_visible()
+
+
+def test_what_was_said_comes_back_with_the_arrow_keys(page: Page) -> None:
+    say(page, "say one")
+    say(page, "say two")
+    line = page.get_by_label("Tell the robot what to do")
+    line.fill("half a sen")
+    line.press("ArrowUp")
+    line.press("ArrowUp")
+    expect(line).to_have_value("say one")
+    line.press("ArrowDown")
+    line.press("ArrowDown")
+    expect(line).to_have_value("half a sen")
+
+
+def test_a_correction_makes_another_program_in_its_place(page: Page) -> None:
+    say(page, "go to the pharmacy")
+    expect(page.locator(".cm-content")).to_have_text('robot.goto("pharmacy")')
+    say(page, "no, to radiology")
+    expect(page.locator(".cm-content")).to_have_text('robot.goto("radiology")')
+
+
+def test_harmless_commands_may_go_through_where_somebody_chose_so(page: Page) -> None:
+    page.get_by_text("Options", exact=True).click()
+    page.get_by_label(re.compile("Do harmless things at once")).check()
+    say(page, "say good morning")
+    expect(page.locator("#run-panel [role=status]")).to_have_text("Done")
+    say(page, "go to the pharmacy")
+    expect(page.get_by_role("button", name="Approve and run")).to_be_enabled()
+
+
+def test_a_program_from_elsewhere_is_only_laid_before_the_operator(
+    look: Look, served: Served
+) -> None:
+    page = look("/?program=robot.goto(%22pharmacy%22)%0A")
+    expect(page.get_by_role("button", name="Approve and run")).to_be_enabled()
+    expect(page).to_have_url(served.url + "/")
+
+
+def test_an_observer_sees_the_run_and_has_no_controls_but_stop(
+    page: Page, look: Look, served: Served
+) -> None:
+    observer = look(url=served.observer_url, path="")
+    expect(observer).to_have_url(served.url + "/")
+    expect(observer.get_by_text("You look on", exact=True)).to_be_visible()
+    expect(observer.locator("#composer")).to_have_count(0)
+    say(page, "go to the pharmacy")
+    approve(page)
+    expect(observer.locator("#run-panel li.current")).to_contain_text("pharmacy")
+    expect(observer.get_by_role("button", name="Pause")).to_have_count(0)
+    observer.get_by_role("button", name="STOP").click()
+    expect(page.locator("#run-panel [role=status]")).to_have_text("Stopped")
+
+
+@pytest.mark.parametrize(
+    ("language", "words", "button"),
+    [
+        ("de", "fahr zur Apotheke", "Freigeben und starten"),
+        ("fr", "va à la pharmacie", "Approuver et lancer"),
+    ],
+)
+def test_it_speaks_german_and_french(look: Look, language: str, words: str, button: str) -> None:
+    page = look(language=language)
+    page.locator("#words").fill(words)
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("button", name=button)).to_be_enabled()
+
+
+def test_on_a_phone_in_the_dark_everything_is_there(look: Look, picture: Picture) -> None:
+    page = look(width=390, height=844, dark=True)
+    say(page, "go to the pharmacy and say hello")
+    button = page.get_by_role("button", name="Approve and run")
+    button.scroll_into_view_if_needed()
+    expect(button).to_be_enabled()
+    expect(page.get_by_role("button", name="STOP")).to_be_in_viewport()
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    picture(page, "console-phone-dark")
