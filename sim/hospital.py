@@ -437,7 +437,7 @@ def chart_of(world: World) -> Chart:
             tuple(door.ends for door in world.doors),
             max(world.robot.radius, PERSON_RADIUS),
         ),
-        tuple(zone.polygon for zone in world.zones),
+        world.keep_out,
     )
 
 

@@ -237,6 +237,11 @@ class World(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         return self.drawn_walls + trace_walls(self.map)
 
     @property
+    def keep_out(self) -> tuple[Polygon, ...]:
+        """The outlines of the zones."""
+        return tuple(zone.polygon for zone in self.zones)
+
+    @property
     def has_geometry(self) -> bool:
         """Whether a robot can be simulated in it: some place has a pose, or there is a map."""
         return self.map is not None or any(place.pose for place in self.places)
