@@ -28,7 +28,7 @@ def violations(program: str, knowledge: Knowledge) -> list[Finding]:
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return []
     found: list[Finding] = []
-    for call, method, arguments in _robot_calls(tree):
+    for call, method, arguments in robot_calls(tree):
         for code, message in _complaints(method, arguments, knowledge):
             found.append(
                 Finding(
@@ -42,7 +42,7 @@ def violations(program: str, knowledge: Knowledge) -> list[Finding]:
     return sorted(found, key=lambda finding: (finding.line, finding.column))
 
 
-def _robot_calls(tree: ast.AST) -> Iterator[tuple[ast.Call, Method, dict[str, Any]]]:
+def robot_calls(tree: ast.AST) -> Iterator[tuple[ast.Call, Method, dict[str, Any]]]:
     """Each call of a known robot method, with those of its arguments that are fixed values."""
     for node in ast.walk(tree):
         if (

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 import msgspec
@@ -13,7 +14,7 @@ from robot_api.driver import StopFlag
 from robot_api.errors import Stopped
 
 if TYPE_CHECKING:
-    from sim.record import Sample
+    from sim.record import Record, Sample
     from sim.simulation import Simulation
 
 REAL_SECONDS = 3.0
@@ -60,6 +61,25 @@ class Event(msgspec.Struct, frozen=True):
     what: str
 
 
+@dataclass(frozen=True)
+class Call:
+    """A robot call of the dry run. Times are those of the simulation."""
+
+    line: int
+    method: str
+    arguments: dict[str, Any]
+    began: float
+    ended: float
+
+
+@dataclass(frozen=True)
+class Course:
+    """All that a dry run did, for who looks for what is risky about it."""
+
+    calls: tuple[Call, ...]
+    record: Record
+
+
 EventKind = Literal["was at", "said", "asked", "showed", "took", "put", "gave"]
 _KIND_OF_HAPPENING: Final[dict[str, EventKind]] = {
     "speech": "said",
@@ -78,6 +98,16 @@ def rehearse(
 ) -> DryRun:
     """Run the program in a simulation of its own, whose time is free to run; its `random` begins
     with `seed`."""
+    return watched(program, simulation, real_seconds, seed)[0]
+
+
+def watched(
+    program: str,
+    simulation: Simulation,
+    real_seconds: float = REAL_SECONDS,
+    seed: int | None = None,
+) -> tuple[DryRun, Course]:
+    """As `rehearse`, with the course of it."""
     from robot_api.drivers import simulated
     from sandbox.execution import Execution
 
@@ -86,12 +116,17 @@ def rehearse(
     stop = StopFlag()
     asks: list[tuple[float, Event]] = []
     cut_short = threading.Event()
-    calls = 0
+    calls: list[Call] = []
 
     def call(method: str, arguments: dict[str, Any], line: int) -> Any:
-        nonlocal calls
-        calls += 1
-        if calls > MANY_CALLS:
+        at = simulation.time
+        try:
+            return do(method, arguments)
+        finally:
+            calls.append(Call(line, method, arguments, at, simulation.time))
+
+    def do(method: str, arguments: dict[str, Any]) -> Any:
+        if len(calls) >= MANY_CALLS:
             cut()
         stop.check()
         if method == "ask":
@@ -128,7 +163,7 @@ def rehearse(
             what = str(next(iter(happening.data.values()), ""))
             course.append((happening.time, Event(kind, what)))
     events = tuple(event for _, event in sorted(course, key=lambda timed: timed[0]))
-    return DryRun(
+    dry_run = DryRun(
         status="unfinished" if cut_short.is_set() else outcome.status,
         message=None if cut_short.is_set() or outcome.status == "done" else outcome.message,
         line=outcome.line,
@@ -140,10 +175,11 @@ def rehearse(
         shows=_of("showed", events),
         places=_of("was at", events),
         path=_path(way),
-        calls=calls,
+        calls=len(calls),
         course=events,
         error=None if cut_short.is_set() else outcome.error,
     )
+    return dry_run, Course(tuple(calls), record)
 
 
 def _of(kind: EventKind, events: Iterable[Event]) -> tuple[str, ...]:

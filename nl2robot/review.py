@@ -1,4 +1,4 @@
-"""The review of a program before it may run: check, policy and dry run, in one report."""
+"""The review of a program before it may run: check, policy, dry run and risks, in one report."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from grammar.language import load_language
 from grammar.naming import naming
 from nl2robot.knowledge import Knowledge
 from nl2robot.policy import violations
-from nl2robot.rehearsal import DryRun, rehearse
-from nl2robot.risks import Risk
+from nl2robot.rehearsal import DryRun, watched
+from nl2robot.risks import Risk, Situation, Tried, risks
 from sandbox.check import Finding, check
 
 if TYPE_CHECKING:
@@ -68,14 +68,20 @@ def review(
     findings = [*check(program, stub()), *violations(program, knowledge)]
     findings.sort(key=lambda finding: (finding.line, finding.column))
     acceptable = not any(finding.severity == "error" for finding in findings)
-    dry_run = rehearse(program, stage(), seed=seed) if acceptable and stage is not None else None
+    tried = _tried(program, stage(), seed) if acceptable and stage is not None else None
     return Review(
         program=program,
         sha256=digest(program),
         findings=tuple(findings),
         reading=tuple(reading(program, knowledge, language)) if acceptable else (),
-        dry_run=dry_run,
+        dry_run=tried.dry_run if tried else None,
+        risks=risks(program, knowledge, language, tried),
     )
+
+
+def _tried(program: str, simulation: Simulation, seed: int | None) -> Tried:
+    situation = Situation.of(simulation)
+    return Tried(situation, *watched(program, simulation, seed=seed))
 
 
 def reading(program: str, knowledge: Knowledge, language: str) -> Iterator[Reading]:

@@ -114,6 +114,9 @@ class Terminal:
             style, word = ("red", "error") if finding.severity == "error" else ("yellow", "note")
             where = f"{self.words[word]}, {self.words['line']} {finding.line}"
             self.console.print(f"[{style}]{where}:[/] {_plain(finding.message)}")
+        for risk in review.risks:
+            where = f"{self.words['risk']}, {self.words['line']} {risk.line}"
+            self.console.print(f"[yellow]{where}:[/] {_plain(risk.text)}")
         if review.dry_run is not None:
             self._show_dry_run(review.dry_run)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 
-from sim.world import Point, Polygon, polygon_area
+from sim.world import Point, Polygon, contains, polygon_area
 
 MOST_CORNERS = 100
 FARTHEST = 1000.0
@@ -77,3 +77,22 @@ def _between(start: Point, end: Point, point: Point) -> bool:
     return min(start[0], end[0]) <= point[0] <= max(start[0], end[0]) and min(
         start[1], end[1]
     ) <= point[1] <= max(start[1], end[1])
+
+
+def distance_to(polygon: Polygon, x: float, y: float) -> float:
+    """How far a point is from an outline, in metres; 0 in it."""
+    if contains(polygon, x, y):
+        return 0.0
+    return min(
+        _to_side(start, end, (x, y)) for start, end in itertools.pairwise((*polygon, polygon[0]))
+    )
+
+
+def _to_side(start: Point, end: Point, point: Point) -> float:
+    along = (end[0] - start[0], end[1] - start[1])
+    squared = along[0] ** 2 + along[1] ** 2
+    share = 0.0
+    if squared:
+        off = (point[0] - start[0]) * along[0] + (point[1] - start[1]) * along[1]
+        share = min(1.0, max(0.0, off / squared))
+    return math.dist(point, (start[0] + share * along[0], start[1] + share * along[1]))
