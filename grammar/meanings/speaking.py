@@ -169,8 +169,9 @@ def phrase(d: Discourse, node: Node) -> Steps:
 
 
 def ready_made(d: Discourse, phrase: str, **values: Value | str) -> Call:
-    """What a language has ready to say, in the one that the robot was told to speak before."""
-    text = language_spoken(d).phrases[phrase]
+    """What a language has ready to say, in the one that the robot was told to speak before; in that
+    of the command where the other lacks it."""
+    text = language_spoken(d).phrases.get(phrase) or d.language.phrases[phrase]
     return Call("say", {"text": d.filled(text, **values)})
 
 

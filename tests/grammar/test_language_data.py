@@ -5,13 +5,14 @@ from __future__ import annotations
 import re
 from collections import Counter
 from pathlib import Path
+from string import Formatter
 
 import pytest
 
 from grammar import language as language_module
 from grammar.discourse import SETTING
 from grammar.language import languages, load_language
-from grammar.meanings import MEANINGS
+from grammar.meanings import MEANINGS, speaking
 from grammar.network import RuleError
 
 FOLDER = Path(language_module.__file__).parent / "languages"
@@ -53,6 +54,42 @@ def test_a_rule_that_is_said_to_be_extended_is(language: str) -> None:
     assert extended
     files_with = Counter(rule for source in sources(language).values() for rule in rules_of(source))
     assert [rule for rule in re.findall(r"\w+", extended[1]) if files_with[rule] < 2] == []
+
+
+@pytest.mark.parametrize("language", languages())
+def test_a_phrase_that_any_language_has_the_robot_say_can_be_said_in_every_other(
+    language: str,
+) -> None:
+    """ "Sprich Englisch und sag Alice, wenn du fertig bist"."""
+    productions = [each for code in languages() for each in load_language(code).network.productions]
+    said = {str(each.fixed["phrase"]) for each in productions if each.means == "phrase"}
+    meanings = Path(speaking.__file__).parent.glob("*.py")
+    for source in meanings:
+        said |= set(re.findall(r'ready_made\(d, "(\w+)"', source.read_text(encoding="utf-8")))
+    assert {"finished", "greetings", "hello_name"} <= said
+    assert said - load_language(language).phrases.keys() == set()
+
+
+@pytest.mark.parametrize("language", languages())
+def test_every_phrase_that_a_language_or_the_code_names_is_there(language: str) -> None:
+    pack = load_language(language)
+    named = {str(each.fixed.get("phrase", "hello")) for each in pack.network.productions}
+    for folder in ("grammar", "nl2robot"):
+        for source in (FOLDER.parents[1] / folder).rglob("*.py"):
+            text = source.read_text(encoding="utf-8")
+            named |= set(re.findall(r'\.(?:phrase\(|sentence\(|phrases\[)\s*"(\w+)"', text))
+    assert named - pack.phrases.keys() == set()
+
+
+@pytest.mark.parametrize("language", languages())
+def test_a_phrase_has_the_same_gaps_in_every_language(language: str) -> None:
+    ours, english = load_language(language).phrases, load_language("en").phrases
+    shared = ours.keys() & english.keys()
+    assert [name for name in shared if gaps(ours[name]) != gaps(english[name])] == []
+
+
+def gaps(phrase: str) -> set[str]:
+    return {name for _, name, _, _ in Formatter().parse(phrase) if name}
 
 
 @pytest.mark.parametrize(

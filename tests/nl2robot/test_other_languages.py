@@ -47,3 +47,19 @@ def test_every_language_is_known_by_its_name() -> None:
     named = {"en": "speak English", "de": "sprich Deutsch", "fr": "parle français"}
     for code in languages():
         assert code in known_by_word(named[code])
+
+
+@pytest.mark.parametrize(
+    ("language", "said", "told"),
+    [
+        ("de", "sprich Englisch und sag Alice, wenn du fertig bist", "I have finished."),
+        ("de", "sprich Französisch und sag mir, wenn du fertig bist", "J'ai terminé."),
+        ("de", "sprich Englisch und richte Alice einen schönen Gruß aus", "kind regards"),
+        ("en", "speak German and give Alice my regards", "einen schönen Gruß"),
+        ("fr", "parle anglais et remercie Alice", "Thank you."),
+    ],
+)
+def test_what_it_has_ready_is_said_in_the_language_it_is_to_speak(language, said, told) -> None:
+    program = translate(said, KNOWLEDGE, language).program
+    assert program is not None
+    assert told in program
