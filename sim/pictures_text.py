@@ -8,8 +8,8 @@ scripts appear as they should in SVG only.
 from __future__ import annotations
 
 import functools
-import math
 import unicodedata
+from bisect import bisect_right
 
 from PIL import ImageDraw, ImageFont
 
@@ -92,7 +92,9 @@ def _broken(word: str, size: float, width: float) -> list[str]:
     """A word in pieces that fit, mostly one."""
     pieces = []
     while text_width(word, size) > width and len(word) > 1:
-        fits = max(1, math.floor(len(word) * width / text_width(word, size)) - 1)
+        # Letters differ in width: as many as fit, not as many as would on average.
+        wider = bisect_right(range(len(word)), width, key=lambda n: text_width(word[:n], size))
+        fits = max(1, wider - 1)
         pieces.append(word[:fits])
         word = word[fits:]
     return [*pieces, word]

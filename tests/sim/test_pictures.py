@@ -8,7 +8,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from PIL import Image, ImageDraw
 
@@ -248,6 +248,7 @@ def test_accents_are_drawn_on_their_letters(letter: str) -> None:
 
 
 @given(text=st.text(max_size=120), width=st.floats(20, 300))
+@example(text="0ŒI´‘", width=20.0)
 @settings(max_examples=80, deadline=None)
 def test_wrapped_text_fits_and_is_complete(text: str, width: float) -> None:
     lines = wrapped(text, 12, width, 10_000)
