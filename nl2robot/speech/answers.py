@@ -191,7 +191,10 @@ def _judged(heard: Heard, audio: Audio, expected: Expected, second: SecondEar) -
             scores[answer] += BY_SOUND_BESIDE * log(max(by_sound.get(answer, 1.0), 1e-9))
     shares = _normalised(scores)
     answer, share = shares[0]
-    both = not heard.doubtful and max(by_words, key=by_words.__getitem__, default="") == answer
+    # Of several readings the plain one may be no likelier than another that means something else:
+    # either of them is what the recogniser hears.
+    first = max(by_words, key=by_words.__getitem__, default=None)
+    both = not heard.doubtful and answer in (first, expected.read(heard.text))
     limit = ONE_HEARD if not both else BOTH_HEARD_FIGURES if expected.figures else BOTH_HEARD
     likelihood = texts[answer].likelihood
     behind = no_answer.likelihood - likelihood if no_answer else 0.0
