@@ -289,7 +289,8 @@ def come_back(d: Discourse, node: Node) -> Steps:
 @meaning("and_back")
 def and_back(d: Discourse, node: Node) -> Steps:
     """ "take Henry to the pharmacy and back": whoever was guided there is guided back, too."""
-    last = d.done[-1] if d.done else None
+    before = d.done or (d.around[-1] if d.around else [])  # "... and back three times"
+    last = before[-1] if before else None
     if not isinstance(last, Call) or last.method in ("call", "ask", "say"):
         raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
     if last.method == "guide":

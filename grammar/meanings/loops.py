@@ -13,6 +13,7 @@ from grammar.doubts import NotUnderstood
 from grammar.meanings.asking_until import until_answered
 from grammar.meanings.claims import meet_there
 from grammar.meanings.conditions import FULL_HOUR, condition_of, negated
+from grammar.meanings.control import guard_finds
 from grammar.meanings.deliveries import first_clause
 from grammar.meanings.finding import go, look_for, not_found, noun_of
 from grammar.meanings.going_on import about_places, brought_behind, in_round, told_last
@@ -20,6 +21,7 @@ from grammar.meanings.gone_round import of_those, same_round
 from grammar.meanings.news import BACK
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
+from grammar.meanings.surveys import moved
 from grammar.meanings.waiting import (
     at_least,
     awaited,
@@ -136,13 +138,33 @@ def repeat(d: Discourse, node: Node) -> Steps:
     return so_often(d, node.parts["times"], lambda: one_round(d.build(node.parts["steps"])))
 
 
+def from_there(d: Discourse, body: Steps) -> Steps:
+    """A round that only leads somewhere, with what was done since the robot was there before: "go
+    to the pharmacy and come back three times" is there and back each time, for who is there already
+    need not go. What is taken along is taken out of the sequence."""
+    if len(body) != 1 or not isinstance(body[0], Call) or body[0].method not in ("goto", "dock"):
+        return body
+    there = max((at + 1 for at, step in enumerate(d.done) if step == body[0]), default=0)
+    ends = [*d.begins[1:], len(d.done)]
+    left = (
+        begin
+        for begin, end in zip(d.begins, ends, strict=True)
+        if begin >= there and moved(d.done[begin:end])
+    )
+    first = next(left, len(d.done))
+    way = d.done[first:]
+    del d.done[first:]
+    d.begins[:] = [begin for begin in d.begins if begin <= first]
+    return one_round(guard_finds(d, [*way, *body]))
+
+
 def so_often(d: Discourse, times: Leaf | Node, make: Callable[[], Steps]) -> Steps:
     """Steps a number of times; told by the people they are for, each time with the next of them:
     "until you have greeted five people"."""
     number = as_value(d.build(times))
     people = isinstance(times, Node) and times.production.fixed.get("people", False)
     if not people:
-        return [Repeat(number, tuple(make()))]
+        return [Repeat(number, tuple(from_there(d, make())))]
     assert isinstance(times, Node)
     body = each_who_comes(d, make)
     if stays(body):  # "stay in the lobby until five visitors have come"
@@ -270,9 +292,12 @@ def one_round(body: Steps) -> Steps:
 def _paced(d: Discourse, often: Node, body: Steps) -> Steps:
     """A round, with the pause behind it; at the full hour, with the wait for it before it."""
     if "hourly" in often.parts:
+        body = from_there(d, body)
         return [*wait_until(FULL_HOUR), *body, Call("wait", {"seconds": Number(A_MINUTE)})]
     pause = d.get(often, "pause")
-    return body if pause is None else [*body, Call("wait", {"seconds": as_value(pause)})]
+    if pause is None:
+        return body
+    return [*from_there(d, body), Call("wait", {"seconds": as_value(pause)})]
 
 
 def _lasting(d: Discourse, often: Node, make: Callable[[], Steps]) -> Steps:
