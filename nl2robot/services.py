@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import msgspec
@@ -16,6 +16,7 @@ from nl2robot.talks import Talks
 from nl2robot.translation import translate
 from nl2robot.voice_services import Microphones, voice_services
 from nl2robot.wire import an_object, service
+from robot_api.capabilities.sound import SILENT
 from robot_api.driver import StopFlag
 from robot_api.methods import MAX_TEXT
 from robot_api.server import Service
@@ -38,8 +39,11 @@ EVENTS: Mapping[str, str] = {
 """The events that the runner publishes."""
 
 
-def services(runner: Runner, talks: Talks) -> dict[str, Service]:
-    """The methods to register with a `robot_api.server.Server`."""
+def services(
+    runner: Runner, talks: Talks, give_way: Callable[[], None] = SILENT.give_way
+) -> dict[str, Service]:
+    """The methods to register with a `robot_api.server.Server`. `give_way` is called when a client
+    whose microphone does not hear the robot speaks to it."""
 
     def translated(p: Mapping[str, Any]) -> Any:
         return translate(
@@ -69,7 +73,7 @@ def services(runner: Runner, talks: Talks) -> dict[str, Service]:
     def listed(p: Mapping[str, Any]) -> Any:
         return runner.log.runs(p.get("last", 20))
 
-    microphones = Microphones(lambda: runner.knowledge, talks.of)
+    microphones = Microphones(lambda: runner.knowledge, talks.of, give_way)
     return {
         **voice_services(microphones),
         "program.translate": service(

@@ -23,6 +23,7 @@ from nl2robot.runlog import LogError, RunLog
 from nl2robot.runner import Runner
 from nl2robot.services import EVENTS, services
 from nl2robot.talks import Talks
+from robot_api.capabilities.sound import SILENT
 from robot_api.client import Robot
 from robot_api.driver import Driver, Event
 from robot_api.errors import AccessDenied, RobotError
@@ -141,11 +142,11 @@ def simulated_station(
     it is heard (see `nl2robot.speech.aloud`); without it, it is only written what is said.
     `console`: makes the web console, `nl2robot.console.app.Console`; once in a process.
     """
-    from robot_api.capabilities.sound import SILENT
     from robot_api.drivers import simulated
 
     simulation = Simulation(world, seed=seed, speed=speed)
-    driver = simulated(simulation, sound(lambda: simulation.time) if sound else SILENT)
+    heard = sound(lambda: simulation.time) if sound else SILENT
+    driver = simulated(simulation, heard)
 
     def on_program(data: Mapping[str, Any]) -> None:
         if data["what"] != "state":
@@ -163,6 +164,7 @@ def simulated_station(
         log,
         simulation.copy,
         on_program,
+        give_way=heard.give_way,
         seed=seed,
         host=host,
         port=port,
@@ -240,6 +242,7 @@ def _open(
     stage: Callable[[], Simulation],
     on_program: Callable[[Mapping[str, Any]], None],
     *,
+    give_way: Callable[[], None] = SILENT.give_way,
     seed: int | None = None,
     host: str = "127.0.0.1",
     port: int = 0,
@@ -247,7 +250,8 @@ def _open(
     simulation: Simulation | None = None,
     console: Callable[[Backstage], Console] | None = None,
 ) -> Iterator[Server]:
-    """A server with a runner on it. `on_program` is told of the runs' events before others are."""
+    """A server with a runner on it. `on_program` is told of the runs' events before others are,
+    `give_way` ends what the robot says when a client speaks to it."""
 
     def publish(kind: str, data: Mapping[str, Any], to: str | None = None) -> None:
         if kind == "program":
@@ -286,7 +290,7 @@ def _open(
         host=host,
         port=port,
         token=token,
-        services={**services(runner, talks), **(added.services if added else {})},
+        services={**services(runner, talks, give_way), **(added.services if added else {})},
         events={**EVENTS, **(added.events if added else {})},
         pages=added.pages() if added else None,
         on_left=added.left if added else None,

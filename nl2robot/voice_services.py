@@ -24,6 +24,7 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.models import need
 from nl2robot.translation import Talk
 from nl2robot.wire import service
+from robot_api.capabilities.sound import SILENT
 from robot_api.errors import InvalidCall
 from robot_api.server import Service
 
@@ -51,6 +52,8 @@ class _Open:
     listener: Listener
     converter: Converter
     talk: str | None
+    interrupts: bool
+    """Whether the robot is to be silent when somebody begins to speak here."""
     lock: threading.Lock = field(default_factory=threading.Lock)
     """Blocks of one microphone come one after the other."""
     used: float = field(default_factory=time.monotonic)
@@ -59,7 +62,14 @@ class _Open:
 class Microphones:
     """Those of the clients of one server. Any thread may use it."""
 
-    def __init__(self, knowledge: Callable[[], Knowledge], talk_of: TalkOf) -> None:
+    def __init__(
+        self,
+        knowledge: Callable[[], Knowledge],
+        talk_of: TalkOf,
+        give_way: Callable[[], None] = SILENT.give_way,
+    ) -> None:
+        """`give_way` ends what the robot is saying."""
+        self._give_way = give_way
         self._knowledge = knowledge
         self._talk_of = talk_of
         self._numbers = itertools.count(1)
@@ -67,13 +77,22 @@ class Microphones:
         self._ears: dict[str, Ear] = {}
         self._lock = threading.Lock()
 
-    def open(self, rate: int, channels: int, language: str, talk: str | None) -> int:
-        """Listen to a microphone; returns its number. Raises `UserError` without a speech model,
-        or for a rate that no voice has."""
+    def open(
+        self,
+        rate: int,
+        channels: int,
+        language: str,
+        talk: str | None,
+        *,
+        interrupts: bool = False,
+    ) -> int:
+        """Listen to a microphone; returns its number. `interrupts`: whoever speaks there makes the
+        robot silent, as the microphone does not hear the robot itself. Raises `UserError` without a
+        speech model, or for a rate that no voice has."""
         from nl2robot.speech.audio import Converter
 
         ear = self._ear(language)
-        opened = _Open(ear, ear.listener(), Converter(rate, channels), talk)
+        opened = _Open(ear, ear.listener(), Converter(rate, channels), talk, interrupts)
         with self._lock:
             number = next(self._numbers)
             self._open[number] = opened
@@ -140,6 +159,8 @@ class Microphones:
 
         match event:
             case SpeechBegan():
+                if opened.interrupts:
+                    self._give_way()
                 return {"what": "began"}
             case PartialText(text):
                 return {"what": "partial", "text": text}
@@ -166,14 +187,20 @@ def voice_services(microphones: Microphones) -> dict[str, Service]:
     return {
         "voice.open": service(
             lambda p: microphones.open(
-                p["rate"], p.get("channels", 1), p.get("language", "en"), p.get("talk")
+                p["rate"],
+                p.get("channels", 1),
+                p.get("language", "en"),
+                p.get("talk"),
+                interrupts=p.get("interrupts", False),
             ),
-            "Listen to a client's microphone; returns its number.",
+            "Listen to a client's microphone; returns its number. With interrupts, whoever speaks"
+            " there makes the robot silent: for one that does not hear the robot itself.",
             {
                 "rate": {"type": "integer"},
                 "channels": {"type": "integer"},
                 "language": {"type": "string", "pattern": "^[a-z]{2}$"},
                 "talk": {"type": ["string", "null"], "maxLength": 100},
+                "interrupts": {"type": "boolean"},
             },
             "rate",
         ),

@@ -95,6 +95,9 @@ EVENTS: Mapping[str, str] = {
     "call": "contact, state: a video call",
     "battery": "percent, charging",
     "log": "level, message, time",
+    "sound": "audio (a WAV file in base64), seconds: the next piece of what the robot says, for"
+    " whoever plays it; played one after the other",
+    "silence": "because: what was to be played is not to be heard any more",
     "stopped": "because",
 }
 

@@ -320,6 +320,7 @@ class EmulatedDriver(ComposedDriver):
         for method in results:
             find_method(method)
         book = LogBook(emulation.now, emulation.hub, log)
+        sound.publish_to(emulation.hub.forward)
         parts = [
             part
             for part in _emulated_parts(emulation, book, skills, without, sound)
@@ -428,6 +429,7 @@ class SimulatedDriver(ComposedDriver):
         hub = Hub()
         book = LogBook(simulation.clock, hub)
         self._unsubscribe = simulation.subscribe(hub.forward)
+        sound.publish_to(hub.forward)
         super().__init__(
             name="The simulated robot",
             kind="simulator",

@@ -104,15 +104,17 @@ def add_robot(parser: argparse.ArgumentParser) -> None:
     add_seed(parser)
 
 
-def add_sound(parser: argparse.ArgumentParser) -> None:
+def add_sound(parser: argparse.ArgumentParser, *, browsers: bool = False) -> None:
+    """`browsers`: the robot may also speak where its pages are open."""
+    where = "on the pages that are open, or into a file" if browsers else "or into this file"
     parser.add_argument(
         "--speak",
         nargs="?",
         const=True,
         default=False,
-        type=_sound_file,
-        metavar="FILE.wav",
-        help="the simulated robot speaks: on the loudspeaker, or into this file",
+        type=_page_or_file if browsers else _sound_file,
+        metavar="browser|FILE.wav" if browsers else "FILE.wav",
+        help=f"the simulated robot speaks: on the loudspeaker, {where}",
     )
     parser.add_argument(
         "--voices",
@@ -132,6 +134,12 @@ def add_sound(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help='the robot\'s voice: "piper", "espeak", or its full name',
     )
+
+
+def _page_or_file(given: str) -> str | Path:
+    from nl2robot.speech.aloud import IN_BROWSERS
+
+    return given if given == IN_BROWSERS else _sound_file(given)
 
 
 def _sound_file(given: str) -> Path:

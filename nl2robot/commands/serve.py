@@ -35,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_world(parser)
     add_seed(parser)
-    add_sound(parser)
+    add_sound(parser, browsers=True)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -15,8 +15,9 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final, Literal
 
+from nl2robot.speech.browser import Browsers
 from nl2robot.speech.full_duplex import FullDuplex, full_duplex
 from nl2robot.speech.kept import KeptSounds, folder
 from nl2robot.speech.loudspeaker import Nowhere, Output, SoundCard, SoundError, WavFile
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
     from robot_api.driver import StopFlag
     from sim.world import World
 
+InBrowsers = Literal["browser"]
+IN_BROWSERS: Final[InBrowsers] = "browser"
 Clock = Callable[[], float]
 """Seconds of simulated time."""
 SoundFor = Callable[[Clock], Sound]
@@ -40,8 +43,8 @@ SoundFor = Callable[[Clock], Sound]
 class Wishes:
     """What is to be heard."""
 
-    speak: bool | Path = False
-    """The robot speaks: on the loudspeaker, or into a file."""
+    speak: bool | Path | InBrowsers = False
+    """The robot speaks: on the loudspeaker, into a file, or on the pages that are open."""
     voices: bool = False
     """The simulated people answer aloud, and the robot has to hear them."""
     voice: str | None = None
@@ -85,7 +88,7 @@ def aloud(
         stack.callback(output.close)
 
         def sound_for(clock: Clock) -> Sound:
-            in_real_time = isinstance(output, SoundCard)
+            in_real_time = isinstance(output, SoundCard | Browsers)
             speaker = Speaker(
                 output,
                 voice_for=robots_voice,
@@ -101,7 +104,14 @@ def aloud(
             people = None
             if replies is not None and wishes.voices:
                 people = _people(wishes, world, replies, speaker, clock)
-            return Sound(loudspeaker, ears=ears, voices=people)
+            played = output.subscribe if isinstance(output, Browsers) else None
+            return Sound(
+                loudspeaker,
+                ears=ears,
+                voices=people,
+                subscribe=played,
+                give_way=speaker.interrupt,
+            )
 
         yield sound_for
 
@@ -174,6 +184,8 @@ def _ears(wishes: Wishes, replies: Replies, duplex: FullDuplex | None) -> Iterat
 def _output(wishes: Wishes, tell: Callable[[str], None], duplex: FullDuplex | None) -> Output:
     if isinstance(wishes.speak, Path):
         return WavFile(wishes.speak)
+    if wishes.speak == IN_BROWSERS:
+        return Browsers()
     if not wishes.speak:
         return Nowhere()
     try:

@@ -7,7 +7,7 @@ people answer. With them it is spoken and heard.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
@@ -16,6 +16,8 @@ from robot_api.driver import StopFlag
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from robot_api.capabilities.base import Listener
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,9 @@ class Voices(Protocol):
         ...
 
 
+def _nothing() -> None: ...
+
+
 @dataclass(frozen=True)
 class Sound:
     """What there is of it."""
@@ -72,6 +77,15 @@ class Sound:
     """Somebody real answers the robot."""
     voices: Voices | None = None
     """The simulated people answer aloud."""
+    subscribe: Callable[[Listener], object] | None = None
+    """Where clients play what is said: subscribes to the events `sound` and `silence`."""
+    give_way: Callable[[], None] = _nothing
+    """Ends what the robot is saying, for somebody speaks to it; its program goes on."""
+
+    def publish_to(self, listener: Listener) -> None:
+        """Let it hear what clients are to play, if there is any."""
+        if self.subscribe is not None:
+            self.subscribe(listener)
 
     @contextmanager
     def speaking(self, stop: StopFlag, text: str, language: str, volume: int) -> Iterator[None]:
