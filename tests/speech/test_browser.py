@@ -1,4 +1,4 @@
-"""The robot is heard where its pages are open: on the real wire, up to the sound that a page plays."""
+"""The robot is heard where its pages are open: on the wire, up to the sound that a page plays."""
 
 from __future__ import annotations
 
