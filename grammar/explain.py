@@ -61,10 +61,10 @@ def explain_program(
 
     def lines(told: Iterable[Told], depth: int, line: int) -> Iterator[LineTold]:
         for each in told:
-            first = each.steps[0].step if each.steps else None
-            # "otherwise" has no line that the plan knows: it is put to the first step under it.
-            spot = first if each.continues and id(each.step) in begun else each.step
-            line = reading.lines.get(id(spot), line)
+            known = reading.lines
+            if each.continues and id(each.step) in begun:
+                known = reading.otherwise
+            line = known.get(id(each.step), line)
             begun.add(id(each.step))
             text = words.joined_up(each.text)
             yield LineTold(line, depth, f"{text}:" if each.is_clause else text)

@@ -8,6 +8,7 @@ reader never misses a robot call, though it may not be in plain words.
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Final
@@ -44,15 +45,19 @@ class Reading:
     plan: p.Plan
     lines: dict[int, int] = field(repr=False)
     """The line of each step, by its `id`."""
+    otherwise: dict[int, int] = field(repr=False)
+    """The line of its `else` or `except`, if it has one, by its `id`."""
 
 
 def read_program(source: str, language: str = "en") -> Reading:
     """The plan of a program. Raises `SyntaxError` if it is no program."""
     reader = _Reader(source)
     steps = tuple(reader.steps(ast.parse(source).body))
-    return Reading(p.Plan(steps, language), reader.lines)
+    return Reading(p.Plan(steps, language), reader.lines, reader.otherwise)
 
 
+_ELSE: Final = re.compile(r"\s*else\s*:")
+_NEW_LINE: Final = re.compile(r"\r\n?|\n")  # what is one for Python
 _OPERATORS: Final[dict[type[ast.cmpop], str]] = {
     ast.Eq: "==",
     ast.NotEq: "!=",
@@ -68,6 +73,7 @@ class _Reader:
     def __init__(self, source: str) -> None:
         self.source = source
         self.lines: dict[int, int] = {}
+        self.otherwise: dict[int, int] = {}
         self.redefined = _redefined(source)
 
     def code(self, node: ast.AST) -> str:
@@ -81,7 +87,21 @@ class _Reader:
             if step is None:
                 continue
             self.lines[id(step)] = statement.lineno
+            if line := self.line_otherwise(statement):
+                self.otherwise[id(step)] = line
             yield step
+
+    def line_otherwise(self, statement: ast.stmt) -> int | None:
+        """The line of a statement's `else` or `except`; Python only knows that of the second."""
+        match statement:
+            case ast.Try(handlers=[handler]):
+                return handler.lineno
+            case ast.If(body=[*_, last], orelse=[first, *_]):
+                written = _NEW_LINE.split(self.source)
+                between = range(first.lineno, (last.end_lineno or last.lineno) - 1, -1)
+                return next((n for n in between if _ELSE.match(written[n - 1])), None)
+            case _:
+                return None
 
     def block(self, body: Iterable[ast.stmt]) -> tuple[p.Step, ...]:
         return tuple(self.steps(body))

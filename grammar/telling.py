@@ -209,7 +209,8 @@ class Teller(ValueTeller):
                     text = fill(self.words.joining["clauses"], values)
                     yield replace(clause, text=text, continues=True, step=step)
                 case others:
-                    yield self.clause("otherwise", others, continues=True)
+                    clause = self.clause("otherwise", others, continues=True)
+                    yield replace(clause, step=step)
                     break
         self.latest = before
         self.forget((whole,))

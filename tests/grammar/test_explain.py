@@ -368,6 +368,31 @@ def test_an_edited_program_is_explained_line_by_line() -> None:
     ]
 
 
+def test_otherwise_is_where_the_program_says_it() -> None:
+    source = (
+        "if robot.sees('person'):\n"
+        "    robot.say('Hello.')\n"
+        "elif robot.sees('cup'):\n"
+        "    robot.say('A cup.\u2028')\n"
+        "\n"
+        "# nothing there\n"
+        "else :\n"
+        "    if robot.battery() < 20:\n"
+        "        robot.dock()\n"
+        "    else: robot.dock()\n"
+        "    robot.stop()\n"
+        "try:\n"
+        "    robot.goto('pharmacy')\n"
+        "except Exception:\n"
+        "    # too bad\n"
+        "    robot.dock()\n"
+    )
+    clauses = [
+        (told.line, told.depth) for told in explain_program(source) if told.text.endswith(":")
+    ]
+    assert clauses == [(1, 0), (3, 0), (7, 0), (8, 1), (10, 1), (12, 0), (14, 0)]
+
+
 def test_who_gives_a_word_of_pythons_another_meaning_is_quoted() -> None:
     [told] = [
         each
