@@ -239,6 +239,21 @@ class TestOverTheWire:
         translation = told[-1]["translation"]
         assert translation["program"].startswith('robot.goto("pharmacy")')
 
+    def test_who_speaks_where_the_robot_is_not_heard_makes_it_silent(
+        self, recogniser, knowledge
+    ) -> None:
+        silent: list[bool] = []
+        microphones = Microphones(
+            lambda: knowledge, lambda name: Talk(), give_way=lambda: silent.append(True)
+        )
+        sound = read(SHOWN / "pharmacy.wav").samples
+        block = base64.b64encode(sound[: 2 * RATE].tobytes()).decode()
+        for interrupts in (False, True):
+            number = microphones.open(RATE, 1, "en", None, interrupts=interrupts)
+            told = [event["what"] for event in microphones.push(number, block)]
+            assert told[0] == "began"
+            assert silent == [True] * interrupts
+
     def test_what_is_no_sound_is_refused(self, microphones) -> None:
         number = microphones.open(48_000, 2, "en", None)
         with pytest.raises(InvalidCall, match="base64"):
