@@ -62,9 +62,9 @@ def said(robot: Robot, words: str) -> tuple[threading.Thread, list[Stopped]]:
 
 def test_what_the_robot_says_is_heard_and_a_stop_cuts_it(page: Page, served: Served) -> None:
     listen(page, served)
-    page.wait_for_function("window.blocked.at(-1) === false")
     with served.robot() as robot:
         robot.say("Good morning.")
+        assert page.evaluate("blocked") == []
         page.wait_for_function("!voice.speaking")
         levels = page.evaluate("levels")
         assert max(levels) > 0.2
@@ -109,13 +109,15 @@ def test_a_browser_that_plays_nothing_before_a_touch_says_so(
     try:
         page = strict.new_page()
         listen(page, served)
-        assert page.evaluate("window.blocked") == [True]
+        assert page.evaluate("blocked") == []
         with served.robot() as robot:
             robot.say("Nobody hears this.")
+            page.wait_for_function("blocked.at(-1) === true")
             page.keyboard.press("Tab")
-            page.wait_for_function("window.blocked.at(-1) === false")
+            page.wait_for_function("blocked.at(-1) === false")
             assert page.evaluate("levels") == []
             robot.say("This is heard.")
             page.wait_for_function("Math.max(...levels) > 0.2")
+            assert page.evaluate("blocked") == [True, False]
     finally:
         strict.close()

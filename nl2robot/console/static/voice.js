@@ -7,8 +7,9 @@
  *   voice.close();
  *
  * The pieces of sound come as events; each is played exactly where the one before it ends. Browsers
- * play nothing before somebody has touched the page or pressed a key: `onBlocked(true)` says that it
- * is so, and `onBlocked(false)` that they have. What was said until then is not made up for.
+ * play nothing before somebody has touched the page or pressed a key: `onBlocked(true)` says that the
+ * robot speaks and is not heard for that, and `onBlocked(false)` that they have. What was said until
+ * then is not made up for. A robot that speaks elsewhere sends no sound, and nobody is told anything.
  */
 
 const SOON = 0.03; // seconds that the first piece is put ahead, so that its beginning is heard
@@ -28,6 +29,7 @@ export function playSpeech(wire, {onLevel = () => {}, onBlocked = () => {}} = {}
   let turn = 0; // what was decoded for an earlier one is not to be heard any more
   let decoded = Promise.resolve(); // one piece after the other
   let watching = false;
+  let unheard = false;
 
   function play(sound) {
     const source = new AudioBufferSourceNode(context, {buffer: sound});
@@ -53,7 +55,8 @@ export function playSpeech(wire, {onLevel = () => {}, onBlocked = () => {}} = {}
   }
 
   function take({audio}) {
-    if (context.state !== 'running') return; // nobody has touched the page yet
+    blocked(context.state !== 'running');
+    if (unheard) return;
     const mine = turn;
     const sound = context.decodeAudioData(bytes(audio));
     decoded = decoded
@@ -69,17 +72,18 @@ export function playSpeech(wire, {onLevel = () => {}, onBlocked = () => {}} = {}
     playing.clear();
   }
 
-  function blocked() {
-    onBlocked(context.state !== 'running');
+  function blocked(now) {
+    if (now === unheard) return;
+    unheard = now;
+    onBlocked(now);
   }
 
   const unlock = () => context.resume();
-  context.addEventListener('statechange', blocked);
+  context.addEventListener('statechange', () => context.state === 'running' && blocked(false));
   for (const touch of ['pointerdown', 'keydown']) addEventListener(touch, unlock);
   const unsubscribe = [wire.subscribe('sound', take), wire.subscribe('silence', hush)];
   // A connection that is lost takes the rest of the sentence along.
   unsubscribe.push(wire.onChange((connected) => connected || hush()));
-  blocked();
 
   return {
     hush,
