@@ -69,6 +69,8 @@ class Robot:
     """The behaviour that has the wheel."""
     waits_for: str | None = None
     """The person who is in its way and for whom it waits."""
+    way: tuple[tuple[float, float], ...] = ()
+    """Where it is about to drive, the next spot first; for those who look on."""
 
     def copy(self, body: RobotBody) -> Robot:
         """The same state with a body of another simulation; nobody has its wheel."""
@@ -82,6 +84,7 @@ class Robot:
             wanted_turning=0.0,
             driver=None,
             waits_for=None,
+            way=(),
         )
 
     @property

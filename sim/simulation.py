@@ -26,9 +26,10 @@ from sim.record import Record
 from sim.robot import RobotState
 from sim.runner import Behaviour, Runner, Stop
 from sim.talking import Reply
+from sim.view import View, view
 from sim.world import World, Zone
 
-__all__ = ["Behaviour", "Reply", "RobotState", "Seen", "Simulation", "Stop"]
+__all__ = ["Behaviour", "Reply", "RobotState", "Seen", "Simulation", "Stop", "View"]
 
 T = TypeVar("T")
 
@@ -107,6 +108,11 @@ class Simulation:
         """The robot at this moment."""
         with self._runner.turn:
             return self._hospital.robot_state()
+
+    def view(self) -> View:
+        """The whole floor at this moment."""
+        with self._runner.turn:
+            return view(self._hospital)
 
     @property
     def record(self) -> Record:

@@ -104,6 +104,7 @@ def track(
             here, points[leg - 1], points[leg]
         ):
             leg += 1
+        robot.way = points[leg:]
         remaining = rest[leg] + max(0.0, _left(here, points[leg - 1], points[leg]))
         if remaining < 0.02 or (leg == len(points) - 1 and math.dist(here, points[-1]) < 0.02):
             break

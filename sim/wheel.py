@@ -35,6 +35,7 @@ def wheel(hospital: Hospital, joystick: bool = False) -> Iterator[object]:
         if robot.driver is mine:
             robot.driver = None
             robot.waits_for = None
+            robot.way = ()
             robot.rest()
 
 
