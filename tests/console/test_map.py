@@ -1,0 +1,186 @@
+"""The floor map in a browser: what it shows and says, and what one does on it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+from urllib.parse import unquote
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.console.conftest import Look, Served
+
+Picture = Callable[[Page, str], None]
+
+
+@pytest.fixture
+def floor(look: Look) -> Callable[..., Page]:
+    """Open the map and wait until it is drawn and told."""
+
+    def open_map(**how: Any) -> Page:
+        page = look(**{"path": "/map", **how})
+        page.wait_for_function("document.querySelector('#map')?.floorMap")
+        expect(page.locator(".floor-told")).not_to_be_empty()
+        return page
+
+    return open_map
+
+
+def pixel(page: Page, x: float, y: float) -> tuple[float, float]:
+    """Where a spot in metres is in the window."""
+    box = page.locator(".floor-stage").bounding_box()
+    assert box is not None
+    u, v = page.evaluate(
+        "([x, y]) => document.querySelector('#map').floorMap.camera.toScreen(x, y)", [x, y]
+    )
+    return box["x"] + u, box["y"] + v
+
+
+def robot_pose(page: Page) -> list[float]:
+    found = page.evaluate("document.querySelector('#map').floorMap.robotPose()")
+    assert isinstance(found, list)
+    return found
+
+
+def choose(page: Page, mode: str) -> None:
+    page.get_by_role("radio", name=mode).check()
+
+
+def test_the_map_shows_and_says_where_the_robot_is(
+    floor: Callable[..., Page], served: Served, picture: Picture
+) -> None:
+    page = floor()
+    told = page.locator(".floor-told")
+    expect(told).to_have_attribute("aria-live", "polite")
+    with served.robot() as robot:
+        robot.localize("pharmacy")
+        expect(told).to_contain_text("Robin is here: pharmacy.")
+        expect(page.get_by_role("img", name="Robin is here: pharmacy.")).to_be_visible()
+        before = robot_pose(page)
+        robot.move(0.5)
+        page.wait_for_function(
+            "([x, y]) => { const pose = document.querySelector('#map').floorMap.robotPose();"
+            " return Math.hypot(pose[0] - x, pose[1] - y) > 0.4; }",
+            arg=before[:2],
+        )
+        picture(page, "map")
+
+
+def test_a_click_on_a_name_sends_there_after_a_review(floor: Callable[..., Page]) -> None:
+    page = floor()
+    choose(page, "Send")
+    page.mouse.click(*pixel(page, *place(page, "ward a")[:2]))
+    page.wait_for_url(lambda url: "program=" in url)
+    assert unquote(page.url).endswith('/?program=robot.goto("ward a")')
+
+
+def test_a_click_on_the_floor_sends_to_that_spot(floor: Callable[..., Page]) -> None:
+    page = floor()
+    choose(page, "Send")
+    page.mouse.click(*pixel(page, 3.0, 7.7))
+    page.wait_for_url(lambda url: "program=" in url)
+    x, y = unquote(page.url).split("robot.goto(")[1].rstrip(")").split(", ")
+    assert abs(float(x) - 3.0) < 0.1 and abs(float(y) - 7.7) < 0.1
+
+
+def test_a_keyboard_moves_the_view_and_sends_the_robot(floor: Callable[..., Page]) -> None:
+    page = floor()
+    scale = "document.querySelector('#map').floorMap.camera.scale"
+    fitted = page.evaluate(scale)
+    page.locator(".floor-stage").focus()
+    page.keyboard.press("+")
+    assert page.evaluate(scale) > fitted
+    left = pixel(page, 20, 10)[0]
+    page.keyboard.press("ArrowRight")
+    assert pixel(page, 20, 10)[0] < left
+    page.keyboard.press("0")
+    assert page.evaluate(scale) == fitted
+    page.get_by_role("radio", name="Look").focus()
+    page.keyboard.press("ArrowRight")
+    expect(page.get_by_text("Click where the robot should go.")).to_be_visible()
+    page.get_by_role("button", name="pharmacy", exact=True).focus()
+    page.keyboard.press("Enter")
+    page.wait_for_url(lambda url: "program=" in url)
+    assert unquote(page.url).endswith('/?program=robot.goto("pharmacy")')
+
+
+def test_the_robot_is_dragged_to_where_it_stands(
+    floor: Callable[..., Page], served: Served
+) -> None:
+    with served.robot() as robot:
+        robot.localize("lobby")
+        page = floor()
+        choose(page, "Locate")
+        drag(page, robot_pose(page)[:2], (10.0, 7.7))
+        expect(page.locator(".floor-told")).to_contain_text("main corridor")
+        where = robot.location()
+        assert abs(where.x - 10.0) < 0.2 and abs(where.y - 7.7) < 0.2
+        drag(page, robot_pose(page)[:2], (0.05, 0.05))
+        expect(page.get_by_role("alert").filter(has_text="There is no room")).to_be_visible()
+        assert abs(robot.location().x - 10.0) < 0.2
+
+
+def test_a_zone_is_drawn_and_kept_and_removed(floor: Callable[..., Page], picture: Picture) -> None:
+    page, other = floor(), floor()
+    choose(page, "Zones")
+    drag(page, (1.0, 10.0), (3.5, 12.0))
+    page.get_by_label("Name of the zone").fill("wet floor")
+    page.get_by_role("button", name="Keep the robot out", exact=True).click()
+    choose(other, "Zones")
+    expect(other.get_by_role("button", name="Remove wet floor")).to_be_visible()
+    picture(page, "map-zones")
+    page.reload()
+    page.wait_for_function("document.querySelector('#map')?.floorMap")
+    choose(page, "Zones")
+    page.get_by_role("button", name="Remove wet floor").click()
+    expect(page.get_by_text("No keep-out zones yet")).to_be_visible()
+    expect(other.get_by_text("No keep-out zones yet")).to_be_visible()
+
+
+def test_who_only_looks_on_sees_the_map_and_can_do_nothing(
+    floor: Callable[..., Page], served: Served
+) -> None:
+    address, token = served.observer_url.split("/?")
+    page = floor(url=address, path=f"/map?{token}")
+    expect(page.get_by_role("radio")).to_have_count(0)
+    expect(page.get_by_role("button", name="Zoom in")).to_be_visible()
+
+
+def test_it_fits_a_phone_in_the_dark_in_german(
+    floor: Callable[..., Page], picture: Picture
+) -> None:
+    page = floor(width=390, height=844, dark=True, language="de")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    expect(page.get_by_role("button", name="Apotheke", exact=True)).to_be_visible()
+    assert page.evaluate(CORNER) != page.evaluate(f"{LIGHT}; {CORNER}")
+    picture(page, "map-phone-dark")
+
+
+LIGHT = "document.documentElement.dataset.look = 'light'"
+CORNER = """new Promise((answer) => requestAnimationFrame(() => requestAnimationFrame(() => {
+  const map = document.querySelector('#map').floorMap;
+  const dense = window.devicePixelRatio;
+  const [u, v] = map.camera.toScreen(1.2, 1.2).map((pixels) => pixels * dense);
+  answer(`${map.planCanvas.getContext('2d').getImageData(u, v, 1, 1).data}`);
+})))"""
+"""The colour of a spot in the pharmacy, once it is drawn."""
+
+
+def place(page: Page, name: str) -> list[float]:
+    """The pose of a place."""
+    found = page.evaluate(
+        "(name) => document.querySelector('#map').floorMap.floor.places"
+        ".find((place) => place.name === name).pose",
+        name,
+    )
+    assert isinstance(found, list)
+    return found
+
+
+def drag(page: Page, start: Any, end: Any) -> None:
+    """With the mouse, from one spot in metres to another."""
+    page.mouse.move(*pixel(page, *start))
+    page.mouse.down()
+    page.mouse.move(*pixel(page, *end), steps=8)
+    page.mouse.up()
