@@ -59,8 +59,12 @@ export class PlanPainter {
   #placed(context, camera) {
     if (context && this.#labelled !== camera.scale) {
       this.#labelled = camera.scale;
-      const {now, things} = this.floor;
-      const spots = [...now.people.map(([, , x, y]) => [x, y]), ...things.map(({x, y}) => [x, y])];
+      const {now, things, places} = this.floor;
+      const spots = [
+        ...now.people.map(([, , x, y]) => [x, y]),
+        ...things.map(({x, y}) => [x, y]),
+        ...places.flatMap(({pose}) => (pose ? [pose] : [])),
+      ];
       this.#labels = placeNames(context, this.floor, spots, camera.scale);
     }
     return this.#labels;
