@@ -89,6 +89,7 @@ EVENTS: Mapping[str, str] = {
     "pose": "x, y (metres), theta (degrees), place, speed (m/s), time (s); 10 a second when moving",
     "speech": "text, language: the robot speaks",
     "heard": "text, person: somebody answered",
+    "language": "code: the robot speaks and hears it from now on",
     "screen": "text | html | url | options: what the screen shows",
     "emotion": "name",
     "gesture": "name",

@@ -61,6 +61,7 @@ from robot_api.capabilities.screen import EmulatedScreen, Screen, SimulatedScree
 from robot_api.capabilities.skills import EmulatedSkills, SimulatedSkills, Skills
 from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.capabilities.speech import EmulatedSpeech, SimulatedSpeech, Speech
+from robot_api.capabilities.tablet import Tablet
 from robot_api.capabilities.telepresence import (
     EmulatedTelepresence,
     SimulatedTelepresence,
@@ -200,6 +201,12 @@ class ComposedDriver:
 
     def subscribe(self, listener: Listener) -> Callable[[], None]:
         return self._hub.subscribe(listener)
+
+    def attach(self, tablet: Tablet) -> None:
+        """Give the robot a real tablet: what it shows is seen there, and who stands there answers
+        in place of simulated people."""
+        for part in self._parts.values():
+            part.tablet = tablet
 
     def close(self) -> None:
         """Stop, and let go of the robot. Later calls raise `LostConnection`."""

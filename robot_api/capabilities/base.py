@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, ClassVar
 
+from robot_api.capabilities.tablet import NO_TABLET, Tablet
 from robot_api.driver import Event, StopFlag
 from robot_api.methods import METHODS
 
@@ -29,6 +30,8 @@ class Capability(ABC):
     """Its name in the table: `Method.capability`."""
     lacking: ClassVar[str]
     """Why a robot without it cannot do its methods, after "this robot": "has no hand"."""
+    tablet: Tablet = NO_TABLET
+    """A real tablet, for the capabilities that people meet on its screen."""
 
     def offers(self) -> tuple[str, ...]:
         """The methods it does; a robot that can do only some of them names these."""

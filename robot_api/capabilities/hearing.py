@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,7 @@ from robot_api.capabilities.matching import match_answer, match_question
 from robot_api.capabilities.simulation import InSimulation
 from robot_api.capabilities.sound import SILENT, Asked, Sound, Unsure
 from robot_api.driver import StopFlag
-from robot_api.errors import NotFound, TimedOut
+from robot_api.errors import NotFound, Stopped, TimedOut
 from robot_api.methods import MAX_TEXT
 
 if TYPE_CHECKING:
@@ -42,10 +43,13 @@ class Prepared:
 
 
 class Hearing(Capability):
-    """Ears, with a voice to ask and, if the robot has one, a touchscreen to fall back on."""
+    """Ears, with a voice to ask and, if the robot has one, a touchscreen to fall back on; on a real
+    tablet people may answer at once, instead of speaking."""
 
     name = "hearing"
     lacking = "cannot hear"
+    hears_people = True
+    """Whether it hears real people, and not simulated ones."""
 
     def __init__(self, speech: Speech | None, screen: Screen | None) -> None:
         super().__init__()
@@ -81,7 +85,7 @@ class Hearing(Capability):
     def listen(self, stop: StopFlag, prompt: str | None, timeout: float) -> str:
         if prompt:
             self._say(stop, prompt)
-        heard = _words(self.hear(stop, timeout, prompt))
+        heard = _words(self._answered(stop, timeout, prompt))
         if heard is None:
             raise TimedOut(
                 f"I listened for {timeout:g} seconds, but nobody spoke. "
@@ -94,11 +98,11 @@ class Hearing(Capability):
     ) -> str:
         if person is not None and not self.is_here(person):
             raise NotFound(f"I do not see {person} here. Let me look for {person} first.")
-        language = language_data(self.language)
         misheard = False
         for attempt in range(_TRIES):
-            self._say(stop, f"{language.again} {question}" if misheard else question)
-            heard = self.hear(stop, ANSWER_TIMEOUT, question, options, person)
+            again = language_data(self.language).again
+            self._say(stop, f"{again} {question}" if misheard else question)
+            heard = self._answered(stop, ANSWER_TIMEOUT, question, options, person)
             if isinstance(heard, Unsure) and options and heard.perhaps in options:
                 if self._confirmed(stop, heard.perhaps, person):
                     return heard.perhaps
@@ -119,14 +123,58 @@ class Hearing(Capability):
                 if options
                 else "Nobody answered my question. Ask again when somebody is there."
             )
-        return self._screen.touch(stop, options, f"{question} {language.choose}")
+        choose = language_data(self.language).choose
+        return self._screen.touch(stop, options, f"{question} {choose}")
 
     def _confirmed(self, stop: StopFlag, perhaps: str, person: str | None) -> bool:
         """Whether somebody says that this is what they answered."""
         question = language_data(self.language).was_that.format(perhaps)
         self._say(stop, question)
-        heard = _words(self.hear(stop, ANSWER_TIMEOUT, question, _YES_NO, person))
+        heard = _words(self._answered(stop, ANSWER_TIMEOUT, question, _YES_NO, person))
         return heard is not None and match_answer(heard, _YES_NO, self.language) == "yes"
+
+    def _answered(
+        self,
+        stop: StopFlag,
+        timeout: float,
+        question: str | None = None,
+        options: Sequence[str] | None = None,
+        person: str | None = None,
+    ) -> str | Unsure | None:
+        """As `hear`; on a real tablet it may be touched or typed, whichever comes first. Simulated
+        people leave it to whoever stands there."""
+        if self._screen is None or not self.tablet.connected:
+            return self.hear(stop, timeout, question, options, person)
+        ear, hand = StopFlag(), StopFlag()
+        for flag in (ear, hand):
+            stop.on_set(flag.set)
+
+        def by_ear() -> str | Unsure | None:
+            try:
+                return self.hear(ear, timeout, question, options, person)
+            except Stopped:
+                return None
+            finally:
+                hand.set()
+
+        with ThreadPoolExecutor(1, thread_name_prefix="ear") as ears:
+            heard = ears.submit(by_ear) if self.hears_people else None
+            try:
+                asked = Asked(self.language, question, options, person)
+                answer = self.tablet.answer(hand, timeout, asked)
+            except Stopped:  # something was heard, or the robot was stopped
+                answer = None
+            if answer is not None:
+                ear.set()
+        stop.check()
+        if answer is not None:
+            self._screen.noticed(answer)
+            return answer
+        if heard is not None:
+            return heard.result()
+        if self.tablet.connected:
+            return None
+        return self.hear(stop, timeout, question, options, person)
 
     def answer(self, stop: StopFlag, question: str | None) -> str:
         asked = self.listen(stop, None, ANSWER_TIMEOUT) if question is None else question
@@ -161,6 +209,7 @@ class EmulatedHearing(Hearing):
         super().__init__(speech, screen)
         self._emulation = emulation
         self._sound = sound
+        self.hears_people = sound.ears is not None
 
     @property
     def language(self) -> str:
@@ -198,6 +247,7 @@ class SimulatedHearing(InSimulation, Hearing):
     ) -> None:
         super().__init__(simulation, speech, screen)
         self._sound = sound
+        self.hears_people = sound.ears is not None
 
     @property
     def language(self) -> str:

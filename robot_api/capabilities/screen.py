@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from abc import abstractmethod
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -10,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 from robot_api.capabilities.base import Capability, Turns
 from robot_api.capabilities.page import Page
 from robot_api.capabilities.simulation import InSimulation
+from robot_api.capabilities.sound import Asked
+from robot_api.capabilities.tablet import Act
 from robot_api.driver import StopFlag
 from robot_api.errors import InvalidCall, NotFound, TimedOut
 
@@ -26,7 +29,8 @@ TOUCH_TIMEOUT = 30.0
 
 
 class Screen(Capability):
-    """A touchscreen whose pages are kept here, without a browser."""
+    """A touchscreen whose pages are kept here, without a browser; a real tablet, if there is one,
+    shows them and tells what people did to them."""
 
     name = "screen"
     lacking = "has no screen"
@@ -48,6 +52,9 @@ class Screen(Capability):
     def touched(self, stop: StopFlag, options: Sequence[str], timeout: float) -> str | None:
         """The button that is touched within `timeout` seconds, or None."""
 
+    def noticed(self, answer: str) -> None:
+        """Tell those who subscribed what was touched or typed on a real tablet."""
+
     def show(self, stop: StopFlag, text: str | None, html: str | None, url: str | None) -> None:
         given = {"text": text, "html": html, "url": url}
         content = {kind: what for kind, what in given.items() if what is not None}
@@ -61,14 +68,10 @@ class Screen(Capability):
             self.display(self._content)
 
     def click(self, stop: StopFlag, selector: str) -> None:
-        with self._lock:
-            self._open_page().click(selector)
-            self._redraw()
+        self._act(stop, "click", selector)
 
     def type_text(self, stop: StopFlag, selector: str, text: str) -> None:
-        with self._lock:
-            self._open_page().type_text(selector, text)
-            self._redraw()
+        self._act(stop, "type", selector, text)
 
     def read_text(self, stop: StopFlag, selector: str) -> str:
         with self._lock:
@@ -84,7 +87,7 @@ class Screen(Capability):
             try:
                 if prompt and self._speech is not None:
                     self._speech.say(stop, prompt)
-                touched = self.touched(stop, options, TOUCH_TIMEOUT)
+                touched = self._pressed(stop, options, prompt)
             finally:
                 with self._lock:
                     self.display(self._content or {"text": ""})
@@ -102,11 +105,37 @@ class Screen(Capability):
                 if "url" in self._content
                 else "There is no page on the screen. Show a page of HTML first."
             )
-        return self._page
+        changed = self.tablet.page()
+        return self._page if changed is None else Page(changed)
 
-    def _redraw(self) -> None:
-        self._content = {"html": self._open_page().html}
-        self.display(self._content)
+    def _act(self, stop: StopFlag, act: Act, selector: str, text: str = "") -> None:
+        """Do it here, where it shows whether it can be done, and on the tablet, where the page's
+        own scripts notice it."""
+        with self._lock:
+            page = self._open_page()
+            if act == "click":
+                page.click(selector)
+            else:
+                page.type_text(selector, text)
+            html = self.tablet.act(stop, act, selector, text) or page.html
+            self._page = Page(html)
+            self._content = {"html": html}
+            self.display(self._content)
+
+    def _pressed(self, stop: StopFlag, options: Sequence[str], prompt: str | None) -> str | None:
+        """Whoever stands at a real tablet presses the button; should it go away, somebody else."""
+        end = time.monotonic() + TOUCH_TIMEOUT
+        if self.tablet.connected:
+            asked = Asked(self._language(), prompt, options)
+            touched = self.tablet.answer(stop, TOUCH_TIMEOUT, asked)
+            if touched is not None:
+                self.noticed(touched)
+            if touched is not None or self.tablet.connected:
+                return touched
+        return self.touched(stop, options, max(0.0, end - time.monotonic()))
+
+    def _language(self) -> str:
+        return self._speech.language if self._speech is not None else "en"
 
 
 class EmulatedScreen(Screen):
@@ -118,6 +147,9 @@ class EmulatedScreen(Screen):
 
     def display(self, content: Content) -> None:
         self._emulation.publish("screen", **content)
+
+    def noticed(self, answer: str) -> None:
+        self._emulation.publish("heard", text=answer, person=None)
 
     def touched(self, stop: StopFlag, options: Sequence[str], timeout: float) -> str | None:
         answer = self._emulation.next_answer(options[0])
@@ -135,6 +167,9 @@ class SimulatedScreen(InSimulation, Screen):
 
     def display(self, content: Content) -> None:
         self.simulation.show(content)
+
+    def noticed(self, answer: str) -> None:
+        self.simulation.emit("heard", {"text": answer, "person": None})
 
     def touched(self, stop: StopFlag, options: Sequence[str], timeout: float) -> str | None:
         return self.run(self.simulation.touch(options, timeout), stop)

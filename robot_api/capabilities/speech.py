@@ -86,6 +86,7 @@ class EmulatedSpeech(Speech):
 
     def choose_language(self, code: str) -> None:
         self._emulation.language = code
+        self._emulation.publish("language", code=code)
 
 
 class SimulatedSpeech(InSimulation, Speech):
@@ -106,3 +107,4 @@ class SimulatedSpeech(InSimulation, Speech):
 
     def choose_language(self, code: str) -> None:
         self.simulation.set_language(code)
+        self.simulation.emit("language", {"code": code})

@@ -20,8 +20,8 @@ _RINGING = 4.0
 
 
 class Telepresence(Capability):
-    """Video calls, one at a time. The event "call" tells their state: "calling", "connected",
-    "ended"."""
+    """Video calls, one at a time; with a real tablet they are real. The event "call" tells their
+    state: "calling", "connected", "ended"."""
 
     name = "telepresence"
     lacking = "cannot make video calls"
@@ -53,7 +53,8 @@ class Telepresence(Capability):
             self._contact = known[name]
         self.tell(known[name], "calling")
         try:
-            self.ring(stop, known[name])
+            if not self.tablet.ring(stop, known[name], self._over):
+                self.ring(stop, known[name])
         except BaseException:
             self.hang_up(stop)
             raise
@@ -61,6 +62,10 @@ class Telepresence(Capability):
 
     def hang_up(self, stop: StopFlag) -> None:
         """Does nothing if there is no call."""
+        self.tablet.hang_up()
+        self._over()
+
+    def _over(self) -> None:
         with self._lock:
             ended, self._contact = self._contact, None
         if ended is not None:
