@@ -1,0 +1,236 @@
+"""The robot's face: the page for the tablet on the robot, at `/face`.
+
+It shows how the robot feels and what its screen shows, and what people touch and type there reaches
+the program (`tablet`); from there people talk to an operator (`video`). It is a plain page, for a
+tablet may be slow: what it is to show is in it when it comes, and the event "face" tells of changes.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping
+from pathlib import Path
+from string import Template
+from typing import Any, Final
+
+import msgspec
+import requests
+from starlette.requests import Request
+from starlette.responses import HTMLResponse
+from starlette.routing import Route
+
+from nl2robot.console import video
+from nl2robot.console.part import Backstage, Part
+from nl2robot.console.tablet import FaceTablet
+from nl2robot.console.visitor import LANGUAGES, texts
+from nl2robot.wire import an_object
+from robot_api.driver import Event
+from robot_api.drivers import ComposedDriver
+from robot_api.methods import MAX_TEXT
+from robot_api.server import Context, Service
+
+PAGE: Final = Path(__file__).parent / "static" / "face" / "face.html"
+LONGEST_PAGE: Final = 100_000
+"""Of HTML, in characters, as for `show`."""
+SITE_ANSWERS_WITHIN: Final = 4.0
+
+SEARCHING: Final = ("find", "wait_for", "sees", "count", "objects", "people", "describe", "scan")
+"""The calls during which the robot looks as if it thought."""
+
+EVENTS: Final = {
+    "face": "version and what has changed of: language, emotion, mood (thinking | null), screen,"
+    " asking, speech, stopped; as `face.state` tells all of it",
+    "face.act": "number, act (click | type), selector, text: what this face is to do to its page",
+}
+
+HEADERS: Final = {
+    # The pages that the robot shows stand in frames, which are bound by this as well.
+    "Content-Security-Policy": (
+        "default-src 'self'; script-src 'self' 'unsafe-inline'; style-src 'self' 'unsafe-inline';"
+        " img-src * data: blob:; media-src * data: blob:; font-src * data:; frame-src *;"
+        " connect-src 'self' ws: wss:; object-src 'none'; base-uri 'none'; form-action 'none';"
+        " frame-ancestors 'self'"
+    ),
+    "Permissions-Policy": "camera=(self), microphone=(self), geolocation=()",
+    "Referrer-Policy": "no-referrer",
+    "X-Content-Type-Options": "nosniff",
+    "Cache-Control": "no-store",
+}
+
+
+class Face:
+    """What all the faces show."""
+
+    def __init__(self, backstage: Backstage) -> None:
+        self._backstage = backstage
+        self._lock = threading.Lock()  # for what follows
+        self._state = _at_the_start(backstage)
+
+    @property
+    def state(self) -> dict[str, Any]:
+        with self._lock:
+            return dict(self._state)
+
+    def change(self, name: str, value: Any) -> None:
+        """Show something else from now on, on all faces."""
+        with self._lock:
+            version = self._state["version"] + 1
+            self._state |= {name: value, "version": version}
+            # Within the lock, so that changes arrive in their order.
+            self._backstage.publish("face", {"version": version, name: value})
+
+    def on_event(self, kind: str, data: Event) -> None:
+        """What the robot does, or a program, and the face shows."""
+        match kind:
+            case "emotion":
+                self.change("emotion", data["name"])
+            case "language":
+                self.change("language", data["code"])
+            case "speech":
+                self.change("speech", {**data, "number": self.state["version"]})
+            case "stopped":
+                self.change("stopped", self.state["version"])
+                self._thinks(False)
+            case "program" if data["what"] == "call":
+                self._thinks(data["method"] in SEARCHING)
+            case "program" if data["what"] in ("result", "state"):
+                self._thinks(False)
+
+    def _thinks(self, thinking: bool) -> None:
+        mood = "thinking" if thinking else None
+        if self.state["mood"] != mood:
+            self.change("mood", mood)
+
+
+def part(backstage: Backstage) -> Part:
+    face = Face(backstage)
+    calls = video.Calls(backstage.publish)
+    tablet = FaceTablet(backstage.publish, face.change, calls)
+    tablet.shown(face.state["screen"])
+    if isinstance(backstage.driver, ComposedDriver):
+        backstage.driver.attach(tablet)
+
+    def on_event(kind: str, data: Event) -> None:
+        if kind == "screen":
+            tablet.shown(data)
+        else:
+            face.on_event(kind, data)
+
+    def left(connection: str) -> None:
+        calls.left(connection)
+        tablet.left(connection)
+
+    unsubscribe = backstage.subscribe(on_event)
+
+    def close() -> None:
+        unsubscribe()
+        calls.close()
+
+    async def page(request: Request) -> HTMLResponse:
+        role = getattr(request.state, "role", "observer")
+        return HTMLResponse(_page(face.state, role), headers=HEADERS)
+
+    return Part(
+        services={**_services(backstage, face, tablet), **calls.services()},
+        events={**EVENTS, **video.EVENTS},
+        routes=[Route("/face", page)],
+        left=left,
+        close=close,
+    )
+
+
+def _services(backstage: Backstage, face: Face, tablet: FaceTablet) -> dict[str, Service]:
+    number = {"type": "integer", "minimum": 1}
+    html = {"type": ["string", "null"], "maxLength": LONGEST_PAGE}
+
+    def here(p: Mapping[str, Any], context: Context) -> dict[str, Any]:
+        tablet.came(context.connection, p["visible"])
+        return {**face.state, "name": context.connection}
+
+    def language(p: Mapping[str, Any], context: Context) -> None:
+        backstage.driver.call("set_language", {"code": p["code"]}, context.stop)
+
+    return {
+        "face.state": Service(
+            lambda p, context: face.state,
+            an_object({}, ""),
+            "Tell what the robot's face shows.",
+            observes=True,
+        ),
+        "face.here": Service(
+            here,
+            an_object({"visible": {"type": "boolean"}}, "visible"),
+            "Be a face of the robot: people may touch it. Tells what to show, and its own name.",
+        ),
+        "face.touch": Service(
+            lambda p, context: tablet.touched(context.connection, p["number"], p["answer"]),
+            an_object(
+                {
+                    "number": number,
+                    "answer": {"type": "string", "minLength": 1, "maxLength": MAX_TEXT},
+                },
+                "number answer",
+            ),
+            "Answer what is asked on the screen; the result says whether nobody was faster.",
+        ),
+        "face.page": Service(
+            lambda p, context: tablet.told(context.connection, p["page"], p["html"]),
+            an_object({"page": number, "html": {**html, "type": "string"}}, "page html"),
+            "Tell what people have made of the page of HTML that is shown.",
+        ),
+        "face.did": Service(
+            lambda p, context: tablet.did(context.connection, p["number"], p["html"]),
+            an_object({"number": number, "html": html}, "number html"),
+            'Tell how the page is after a "face.act"; null if it could not be done.',
+        ),
+        "face.language": Service(
+            language,
+            an_object({"code": {"enum": list(LANGUAGES)}}, "code"),
+            "Let the robot speak and hear this language from now on.",
+        ),
+        "face.site": Service(
+            lambda p, context: _shows_in_frames(face.state["screen"].get("url")),
+            an_object({}, ""),
+            "Tell whether the web page at the address that is shown lets itself be shown here:"
+            " yes, refuses or away.",
+            observes=True,
+        ),
+    }
+
+
+def _at_the_start(backstage: Backstage) -> dict[str, Any]:
+    robot = backstage.simulation.robot if backstage.simulation is not None else None
+    return {
+        "version": 1,
+        "language": robot.language if robot else "en",
+        "emotion": robot.emotion if robot else "neutral",
+        "mood": None,
+        "screen": (robot.screen if robot else None) or {"text": ""},
+        "asking": None,
+        "speech": None,
+        "stopped": None,
+    }
+
+
+def _page(state: Mapping[str, Any], role: str) -> str:
+    words = {code: dict(texts("face", code)) | dict(texts("call", code)) for code in LANGUAGES}
+    data = {"state": state, "role": role, "languages": LANGUAGES, "words": words}
+    # A text in it that says "</script>" must not end it.
+    written = msgspec.json.encode(data).decode().replace("<", "\\u003c")
+    said = words.get(state["language"], words["en"])
+    return Template(PAGE.read_text(encoding="utf-8")).substitute(
+        language=state["language"], title=said["title"], stop=said["stop"], data=written
+    )
+
+
+def _shows_in_frames(url: str | None) -> str:
+    """Whether the web page at this address may stand in a frame of ours."""
+    if url is None:
+        return "yes"
+    try:
+        with requests.get(url, timeout=SITE_ANSWERS_WITHIN, stream=True) as answer:
+            policy = answer.headers.get("Content-Security-Policy", "").lower()
+            refuses = "X-Frame-Options" in answer.headers or "frame-ancestors" in policy
+            return "refuses" if refuses else "yes"
+    except requests.RequestException:
+        return "away"

@@ -1,0 +1,183 @@
+/** The page on the robot's tablet: the face, what the robot shows and asks, STOP, the languages. */
+
+import {mountCall} from '/static/face/call.js';
+import {Content} from '/static/face/content.js';
+import {drawFace} from '/static/face/drawing.js';
+import {element, pageData} from '/static/page.js';
+import {wire} from '/static/wire.js';
+
+const SECONDS_A_LETTER = 0.06;
+const SHORTEST_SPEECH = 0.6;
+const CAPTION_STAYS = 3;
+const LONG_CAPTION = 120;
+const NOTICE_FOR = 6000;
+
+const {languages, role} = pageData;
+const at = Object.fromEntries(
+  ['stop', 'notice', 'languages', 'fullscreen', 'figure', 'content', 'caption', 'call'].map((id) => [
+    id,
+    document.getElementById(id),
+  ]),
+);
+const operates = role === 'operator';
+
+let state = pageData.state;
+let early = [];
+let mine = null; // the name of our connection
+let words = pageData.words[state.language] ?? pageData.words.en;
+let fading = 0;
+let quiet = 0;
+
+const face = drawFace(at.figure);
+const content = new Content(at.content, {
+  async answered(number, answer) {
+    if (!operates) return notice(words.looks_on), false;
+    try {
+      if (!(await wire.request('face.touch', {number, answer}))) notice(words.too_late);
+      return true;
+    } catch (error) {
+      notice(error.message);
+      return false;
+    }
+  },
+  paged: (page, html) => wire.request('face.page', {page, html}).catch(() => {}),
+  site: () => wire.request('face.site'),
+});
+const calls = operates ? mountCall(at.call, {wire, words, role: 'face'}) : null;
+
+/** Draw everything as the state has it. */
+function show() {
+  words = pageData.words[state.language] ?? pageData.words.en;
+  const activity = state.asking ? 'listening' : state.mood;
+  const look = face.look({emotion: state.emotion, activity});
+  at.figure.setAttribute('aria-label', words[`look_${look}`]);
+  const beside = content.show({
+    screen: state.screen,
+    asking: state.asking,
+    words,
+    mine: mine !== null && state.screen.by === mine,
+  });
+  document.body.dataset.view = beside ? 'content' : 'face';
+  showLanguage();
+}
+
+function showLanguage() {
+  document.documentElement.lang = state.language;
+  document.title = words.title;
+  at.stop.textContent = words.stop;
+  at.languages.setAttribute('aria-label', words.languages);
+  at.fullscreen.setAttribute('aria-label', words.fullscreen);
+  for (const button of at.languages.children) {
+    button.setAttribute('aria-pressed', button.dataset.code === state.language);
+  }
+  calls?.speak(words);
+}
+
+/** The robot says something: the mouth moves, and the words can be read. */
+function speak({text}) {
+  const seconds = Math.max(SHORTEST_SPEECH, text.length * SECONDS_A_LETTER);
+  face.speak(seconds);
+  at.caption.textContent = text;
+  at.caption.classList.toggle('long', text.length > LONG_CAPTION);
+  at.caption.classList.remove('quiet');
+  clearTimeout(quiet);
+  quiet = setTimeout(() => at.caption.classList.add('quiet'), (seconds + CAPTION_STAYS) * 1000);
+}
+
+function apply(change) {
+  if (change.version <= state.version) return;
+  state = {...state, ...change};
+  if (change.speech) speak(change.speech);
+  if (change.asking) face.speak(0);
+  if (change.stopped) {
+    face.speak(0);
+    at.caption.classList.add('quiet');
+    notice(words.stopped);
+  }
+  show();
+}
+
+function notice(sentence, stays = false) {
+  at.notice.textContent = sentence;
+  at.notice.hidden = false;
+  clearTimeout(fading);
+  if (!stays) fading = setTimeout(() => (at.notice.hidden = true), NOTICE_FOR);
+}
+
+async function stop() {
+  at.stop.classList.add('pressed');
+  setTimeout(() => at.stop.classList.remove('pressed'), 400);
+  try {
+    await wire.request('robot.stop');
+  } catch {
+    notice(words.not_stopped, true);
+  }
+}
+
+/** Tell that somebody can see this face, and find out what it is to show. */
+async function here() {
+  early ??= [];
+  const visible = document.visibilityState === 'visible';
+  try {
+    const now = operates ? await wire.request('face.here', {visible}) : await wire.request('face.state');
+    mine = now.name ?? null;
+    // The server may have been started anew and count from the beginning.
+    state = now;
+    const changes = early;
+    early = null;
+    for (const change of changes ?? []) apply(change);
+    show();
+  } catch (error) {
+    notice(error.message);
+  }
+}
+
+function onConnection(connected) {
+  document.body.classList.toggle('lost', !connected && mine !== null);
+  if (connected) {
+    at.notice.hidden = true;
+    here();
+    keepAwake();
+  } else if (mine !== null) {
+    early = [];
+    face.speak(0);
+    notice(words.lost, true);
+  }
+}
+
+/** A tablet on a robot must not fall asleep. */
+async function keepAwake() {
+  if (document.visibilityState !== 'visible') return;
+  await navigator.wakeLock?.request('screen').catch(() => {});
+}
+
+for (const [code, name] of Object.entries(languages)) {
+  const button = element('button', {type: 'button', 'data-code': code, lang: code, title: name}, code);
+  button.setAttribute('aria-label', name);
+  button.addEventListener('click', () => {
+    if (!operates) return notice(words.looks_on);
+    wire.request('face.language', {code}).catch((error) => notice(error.message));
+  });
+  at.languages.append(button);
+}
+at.stop.addEventListener('click', stop);
+addEventListener('keydown', (event) => {
+  if (event.key === 'Escape' && !event.repeat) stop();
+});
+at.fullscreen.hidden = !document.fullscreenEnabled;
+at.fullscreen.addEventListener('click', () => {
+  if (document.fullscreenElement) document.exitFullscreen();
+  else document.documentElement.requestFullscreen();
+});
+document.addEventListener('visibilitychange', () => {
+  if (wire.connected) here();
+  keepAwake();
+});
+
+wire.subscribe('face', (change) => (early ? early.push(change) : apply(change)));
+wire.subscribe('face.act', async (order) => {
+  const html = await content.act(order);
+  wire.request('face.did', {number: order.number, html}).catch(() => {});
+});
+show();
+wire.onChange(onConnection);
