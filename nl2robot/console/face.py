@@ -2,7 +2,7 @@
 
 It shows how the robot feels and what its screen shows, and what people touch and type there reaches
 the program (`tablet`); from there people talk to an operator (`video`). It is a plain page, for a
-tablet may be slow: what it is to show is in it when it comes, and the event "face" tells of changes.
+tablet may be slow: what it is to show is in it when it comes; the event "face" tells of changes.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from robot_api.drivers import ComposedDriver
 from robot_api.methods import MAX_TEXT
 from robot_api.server import Context, Service
 
-PAGE: Final = Path(__file__).parent / "static" / "face" / "face.html"
+PAGE: Final = Path(__file__).parent / "templates" / "face.html"
 LONGEST_PAGE: Final = 100_000
 """Of HTML, in characters, as for `show`."""
 SITE_ANSWERS_WITHIN: Final = 4.0
@@ -105,8 +105,7 @@ class Face:
 def part(backstage: Backstage) -> Part:
     face = Face(backstage)
     calls = video.Calls(backstage.publish)
-    tablet = FaceTablet(backstage.publish, face.change, calls)
-    tablet.shown(face.state["screen"])
+    tablet = FaceTablet(backstage.publish, face.change, calls, face.state["screen"])
     if isinstance(backstage.driver, ComposedDriver):
         backstage.driver.attach(tablet)
 
@@ -200,12 +199,13 @@ def _services(backstage: Backstage, face: Face, tablet: FaceTablet) -> dict[str,
 
 def _at_the_start(backstage: Backstage) -> dict[str, Any]:
     robot = backstage.simulation.robot if backstage.simulation is not None else None
+    screen = (robot.screen if robot else None) or {"text": ""}
     return {
         "version": 1,
         "language": robot.language if robot else "en",
         "emotion": robot.emotion if robot else "neutral",
         "mood": None,
-        "screen": (robot.screen if robot else None) or {"text": ""},
+        "screen": {**screen, "number": 0, "page": 0, "by": None},
         "asking": None,
         "speech": None,
         "stopped": None,

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 import threading
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
@@ -23,6 +24,9 @@ from robot_api.server import Publish
 
 ACT_WITHIN: Final = 2.0
 """Seconds that a face has to do something to the page it shows; after that it counts as gone."""
+
+COMES_BACK_WITHIN: Final = 3.0
+"""Seconds in which a page that is loaded anew is there again."""
 
 
 @dataclass(eq=False)
@@ -44,10 +48,17 @@ class _Doing:
 
 
 class FaceTablet:
-    """`changed(name, value)` is told what the faces are to show: "asking" and "screen". `publish`
-    sends the event "face.act" to the face that is to do something."""
+    """`changed(name, value)` is told what the faces are to show: "asking" and "screen", which is
+    `content` at the beginning. `publish` sends the event "face.act" to the face that is to do
+    something."""
 
-    def __init__(self, publish: Publish, changed: Callable[[str, Any], None], calls: Calls) -> None:
+    def __init__(
+        self,
+        publish: Publish,
+        changed: Callable[[str, Any], None],
+        calls: Calls,
+        content: Mapping[str, Any],
+    ) -> None:
         self._publish = publish
         self._changed = changed
         self._calls = calls
@@ -57,9 +68,11 @@ class FaceTablet:
         # Each face, by the name of its connection, and whether it can be seen; the one that was
         # touched last is at the end.
         self._faces: dict[str, bool] = {}
+        # When the last face that could be seen has been gone for long enough.
+        self._missed_from = 0.0
         self._question: _Question | None = None
         self._doing: dict[int, _Doing] = {}
-        self._content: Mapping[str, Any] = {"text": ""}
+        self._content = content
         # The page as one of the faces has told it, and which.
         self._page: str | None = None
         self._teller: str | None = None
@@ -68,16 +81,17 @@ class FaceTablet:
 
     @property
     def connected(self) -> bool:
-        return any(self._faces.values())
+        """Also while a page is loaded anew."""
+        return any(self._faces.values()) or time.monotonic() < self._missed_from
 
-    def answer(self, stop: StopFlag, timeout: float, asked: Asked) -> str | None:
+    def answer(self, stop: StopFlag, asked: Asked) -> str | None:
         """See `Tablet.answer`."""
         with self._asking.mine(stop):
             question = _Question(next(self._numbers), asked)
             stop.on_set(question.over.set)
             self._ask(question)
             try:
-                question.over.wait(timeout)
+                question.over.wait()
             finally:
                 self._ask(None)
         if question.answer is None:
@@ -120,14 +134,16 @@ class FaceTablet:
     def came(self, face: str, visible: bool) -> None:
         """A face is open, or can be seen again, or no longer."""
         with self._lock:
+            seen = self.connected
             self._faces[face] = visible
-            self._let_go_if_alone()
+            if seen:
+                self._miss()
 
     def left(self, face: str) -> None:
         """A face is closed."""
         with self._lock:
-            if self._faces.pop(face, None) is not None:
-                self._let_go_if_alone()
+            if self._faces.pop(face, None):
+                self._miss()
 
     def touched(self, face: str, number: int, answer: str) -> bool:
         """Somebody has touched or typed an answer; whether they were the first."""
@@ -195,14 +211,19 @@ class FaceTablet:
             about = {"number": question.number, "question": asked.question, "options": options}
             self._changed("asking", about)
 
-    def _let_go_if_alone(self) -> None:
-        """Nobody can answer any more, nor do anything."""
-        if self.connected:
+    def _miss(self) -> None:
+        """If that was the last face, nobody can answer any more, unless it soon comes back."""
+        if any(self._faces.values()):
             return
-        if self._question is not None:
-            self._question.over.set()
-        for doing in self._doing.values():
-            doing.done.set()
+        self._missed_from = time.monotonic() + COMES_BACK_WITHIN
+        timer = threading.Timer(COMES_BACK_WITHIN, self._let_go_if_alone)
+        timer.daemon = True
+        timer.start()
+
+    def _let_go_if_alone(self) -> None:
+        with self._lock:
+            if self._question is not None and not self.connected:
+                self._question.over.set()
 
     def _leads(self, face: str) -> None:
         if face in self._faces:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -17,8 +16,9 @@ from robot_api.capabilities.languages import language_data
 from robot_api.capabilities.matching import match_answer, match_question
 from robot_api.capabilities.simulation import InSimulation
 from robot_api.capabilities.sound import SILENT, Asked, Sound, Unsure
+from robot_api.capabilities.tablet import answered, patience
 from robot_api.driver import StopFlag
-from robot_api.errors import NotFound, Stopped, TimedOut
+from robot_api.errors import NotFound, TimedOut
 from robot_api.methods import MAX_TEXT
 
 if TYPE_CHECKING:
@@ -83,9 +83,7 @@ class Hearing(Capability):
         return True
 
     def listen(self, stop: StopFlag, prompt: str | None, timeout: float) -> str:
-        if prompt:
-            self._say(stop, prompt)
-        heard = _words(self._answered(stop, timeout, prompt))
+        heard = _words(self._answered(stop, prompt, timeout, prompt))
         if heard is None:
             raise TimedOut(
                 f"I listened for {timeout:g} seconds, but nobody spoke. "
@@ -101,8 +99,8 @@ class Hearing(Capability):
         misheard = False
         for attempt in range(_TRIES):
             again = language_data(self.language).again
-            self._say(stop, f"{again} {question}" if misheard else question)
-            heard = self._answered(stop, ANSWER_TIMEOUT, question, options, person)
+            said = f"{again} {question}" if misheard else question
+            heard = self._answered(stop, said, ANSWER_TIMEOUT, question, options, person)
             if isinstance(heard, Unsure) and options and heard.perhaps in options:
                 if self._confirmed(stop, heard.perhaps, person):
                     return heard.perhaps
@@ -129,52 +127,41 @@ class Hearing(Capability):
     def _confirmed(self, stop: StopFlag, perhaps: str, person: str | None) -> bool:
         """Whether somebody says that this is what they answered."""
         question = language_data(self.language).was_that.format(perhaps)
-        self._say(stop, question)
-        heard = _words(self._answered(stop, ANSWER_TIMEOUT, question, _YES_NO, person))
+        heard = _words(self._answered(stop, question, ANSWER_TIMEOUT, question, _YES_NO, person))
         return heard is not None and match_answer(heard, _YES_NO, self.language) == "yes"
 
     def _answered(
         self,
         stop: StopFlag,
+        say: str | None,
         timeout: float,
         question: str | None = None,
         options: Sequence[str] | None = None,
         person: str | None = None,
     ) -> str | Unsure | None:
-        """As `hear`; on a real tablet it may be touched or typed, whichever comes first. Simulated
-        people leave it to whoever stands there."""
-        if self._screen is None or not self.tablet.connected:
+        """Say it and hear the answer (`hear`), which on a real tablet may also be touched or typed,
+        whichever comes first. Simulated people leave it to whoever stands there."""
+
+        def heard(stop: StopFlag) -> str | Unsure | None:
             return self.hear(stop, timeout, question, options, person)
-        ear, hand = StopFlag(), StopFlag()
-        for flag in (ear, hand):
-            stop.on_set(flag.set)
 
-        def by_ear() -> str | Unsure | None:
-            try:
-                return self.hear(ear, timeout, question, options, person)
-            except Stopped:
-                return None
-            finally:
-                hand.set()
-
-        with ThreadPoolExecutor(1, thread_name_prefix="ear") as ears:
-            heard = ears.submit(by_ear) if self.hears_people else None
-            try:
-                asked = Asked(self.language, question, options, person)
-                answer = self.tablet.answer(hand, timeout, asked)
-            except Stopped:  # something was heard, or the robot was stopped
-                answer = None
-            if answer is not None:
-                ear.set()
-        stop.check()
-        if answer is not None:
-            self._screen.noticed(answer)
-            return answer
-        if heard is not None:
-            return heard.result()
-        if self.tablet.connected:
+        def meanwhile(stop: StopFlag) -> str | Unsure | None:
+            if say:
+                self._say(stop, say)
+            if self.hears_people or not self.tablet.connected:
+                return heard(stop)
+            patience(stop, self.tablet, timeout)
             return None
-        return self.hear(stop, timeout, question, options, person)
+
+        if self._screen is None or not self.tablet.connected:
+            return meanwhile(stop)
+        asked = Asked(self.language, question, options, person)
+        touched, words = answered(stop, self.tablet, asked, meanwhile)
+        if touched is not None:
+            self._screen.noticed(touched)
+            return touched
+        gone = not self.tablet.connected and not self.hears_people
+        return heard(stop) if gone and words is None else words
 
     def answer(self, stop: StopFlag, question: str | None) -> str:
         asked = self.listen(stop, None, ANSWER_TIMEOUT) if question is None else question

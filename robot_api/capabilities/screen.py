@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-import time
 from abc import abstractmethod
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -12,7 +11,7 @@ from robot_api.capabilities.base import Capability, Turns
 from robot_api.capabilities.page import Page
 from robot_api.capabilities.simulation import InSimulation
 from robot_api.capabilities.sound import Asked
-from robot_api.capabilities.tablet import Act
+from robot_api.capabilities.tablet import Act, answered, patience
 from robot_api.driver import StopFlag
 from robot_api.errors import InvalidCall, NotFound, TimedOut
 
@@ -85,8 +84,6 @@ class Screen(Capability):
                 content["text"] = prompt
             self.display(content)
             try:
-                if prompt and self._speech is not None:
-                    self._speech.say(stop, prompt)
                 touched = self._pressed(stop, options, prompt)
             finally:
                 with self._lock:
@@ -123,16 +120,27 @@ class Screen(Capability):
             self.display(self._content)
 
     def _pressed(self, stop: StopFlag, options: Sequence[str], prompt: str | None) -> str | None:
-        """Whoever stands at a real tablet presses the button; should it go away, somebody else."""
-        end = time.monotonic() + TOUCH_TIMEOUT
-        if self.tablet.connected:
-            asked = Asked(self._language(), prompt, options)
-            touched = self.tablet.answer(stop, TOUCH_TIMEOUT, asked)
-            if touched is not None:
-                self.noticed(touched)
-            if touched is not None or self.tablet.connected:
-                return touched
-        return self.touched(stop, options, max(0.0, end - time.monotonic()))
+        """Whoever stands at a real tablet presses a button, and need not wait until the prompt is
+        spoken; should the tablet go away, or be none, somebody else does."""
+
+        def prompted(stop: StopFlag) -> None:
+            if prompt and self._speech is not None:
+                self._speech.say(stop, prompt)
+
+        def meanwhile(stop: StopFlag) -> None:
+            prompted(stop)
+            patience(stop, self.tablet, TOUCH_TIMEOUT)
+
+        if not self.tablet.connected:
+            prompted(stop)
+            return self.touched(stop, options, TOUCH_TIMEOUT)
+        asked = Asked(self._language(), prompt, options)
+        touched, _ = answered(stop, self.tablet, asked, meanwhile)
+        if touched is not None:
+            self.noticed(touched)
+        elif not self.tablet.connected:
+            return self.touched(stop, options, TOUCH_TIMEOUT)
+        return touched
 
     def _language(self) -> str:
         return self._speech.language if self._speech is not None else "en"

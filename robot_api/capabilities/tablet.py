@@ -7,11 +7,19 @@ types and takes calls; a robot without one has `NO_TABLET`, and does what it doe
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
-from typing import Literal, Protocol
+from concurrent.futures import ThreadPoolExecutor
+from typing import Final, Literal, Protocol, TypeVar
 
 from robot_api.capabilities.sound import Asked
 from robot_api.driver import StopFlag
+from robot_api.errors import Stopped
+
+T = TypeVar("T")
+
+_LOOKS_EVERY: Final = 0.1
+"""Seconds."""
 
 Act = Literal["click", "type"]
 """What is done to an element of the shown page."""
@@ -25,9 +33,9 @@ class Tablet(Protocol):
         """Whether somebody can see it now."""
         ...
 
-    def answer(self, stop: StopFlag, timeout: float, asked: Asked) -> str | None:
-        """What somebody touches or types within `timeout` real seconds: one of the options exactly,
-        or words; None if nobody does, or if the tablet is gone. Raises `Stopped`."""
+    def answer(self, stop: StopFlag, asked: Asked) -> str | None:
+        """What somebody touches or types before `stop` is set: one of the options exactly, or
+        words; None if the tablet is gone. Raises `Stopped`."""
         ...
 
     def page(self) -> str | None:
@@ -53,7 +61,7 @@ class Tablet(Protocol):
 class _NoTablet:
     connected = False
 
-    def answer(self, stop: StopFlag, timeout: float, asked: Asked) -> str | None:
+    def answer(self, stop: StopFlag, asked: Asked) -> str | None:
         return None
 
     def page(self) -> str | None:
@@ -70,3 +78,41 @@ class _NoTablet:
 
 
 NO_TABLET: Tablet = _NoTablet()
+
+
+def answered(
+    stop: StopFlag, tablet: Tablet, asked: Asked, meanwhile: Callable[[StopFlag], T]
+) -> tuple[str | None, T | None]:
+    """What is touched or typed while the robot does something else, such as to ask and to listen;
+    or else what came of that. The first who has an answer breaks the other off. Raises `Stopped`,
+    and what `meanwhile` raises."""
+    hand, rest = StopFlag(), StopFlag()
+    for flag in (hand, rest):
+        stop.on_set(flag.set)
+
+    def in_its_thread() -> T | None:
+        try:
+            return meanwhile(rest)
+        except Stopped:
+            return None
+        finally:
+            hand.set()
+
+    with ThreadPoolExecutor(1, thread_name_prefix="meanwhile") as threads:
+        result = threads.submit(in_its_thread)
+        try:
+            touched = tablet.answer(hand, asked)
+        except Stopped:
+            touched = None
+        if touched is not None:
+            rest.set()
+    stop.check()
+    return (touched, None) if touched is not None else (None, result.result())
+
+
+def patience(stop: StopFlag, tablet: Tablet, seconds: float) -> None:
+    """Give people time, while there is a tablet to touch. Raises `Stopped`."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end and tablet.connected:
+        stop.wait(_LOOKS_EVERY)
+        stop.check()

@@ -15,14 +15,14 @@ const EYES = [
 const EYE_Y = 128;
 const EYE_WIDE = 47;
 const EYE_HIGH = 58;
-const MOUTH = {x: 200, y: 240, wide: 50};
+const MOUTH = {x: 200, y: 238, wide: 56};
 
 /** What a look is made of, as the neutral one has it. */
 const NEUTRAL = {
   eye: 1, // the size of the eyes
-  lid: 0.1, // how far the upper lids hang
+  lid: 0.08, // how far the upper lids hang
   slant: 0, // which way the upper lids lean: 1 is angry, -1 sad
-  low: 0.04, // how far the lower lids are raised
+  low: 0, // how far the lower lids are raised
   squint: 0, // how much more closed the left eye is than the right
   pupil: 1,
   x: 0, // where the eyes look, -1 to 1
@@ -41,11 +41,11 @@ const NEUTRAL = {
 
 const LOOKS = {
   neutral: {},
-  happy: {lid: 0.02, low: 0.36, smile: 1, open: 0.42, wide: 1.3, brow: 9, blush: 0.75, nod: -2},
+  happy: {lid: -0.04, low: 0.25, smile: 1, open: 0.6, wide: 1.25, brow: 12, pupil: 1.1, blush: 0.75, nod: -2},
   sad: {lid: 0.3, slant: -0.75, smile: -0.85, wide: 0.85, brow: 4, tilt: -1, y: 0.4, pupil: 1.1, nod: 4},
-  confused: {squint: 0.4, lid: 0.06, lift: 22, tilt: 0.1, smile: -0.05, wave: 11, wide: 0.95, nod: 8, x: 0.25, y: -0.2},
+  confused: {squint: 0.36, lid: 0.04, lift: 24, brow: -4, smile: -0.1, wave: 15, wide: 0.9, nod: 8, x: 0.3, y: 0.05},
   angry: {lid: 0.24, slant: 0.9, low: 0.14, smile: -0.7, wide: 0.9, brow: -13, tilt: 1, pupil: 0.85},
-  surprised: {eye: 1.14, lid: -0.1, low: 0, pupil: 0.72, brow: 25, open: 0.85, wide: 0.42, smile: 0},
+  surprised: {eye: 1.14, lid: -0.1, low: 0, pupil: 0.78, brow: 25, open: 0.85, wide: 0.42, smile: 0},
   thinking: {x: -0.75, y: -0.85, lift: 15, brow: 6, smile: 0.12, wide: 0.6, skew: 1, nod: -5, lid: 0.06},
   listening: {eye: 1.06, lid: -0.04, brow: 13, smile: 0.55, wide: 0.85, nod: 6, pupil: 1.12},
 };
@@ -173,19 +173,22 @@ class Face {
   _drawEye({x, side}, index, blink) {
     const now = this._now;
     const [wide, high] = [EYE_WIDE * now.eye, EYE_HIGH * now.eye];
-    const bottom = high * (1 - 2 * now.low);
-    const closed = Math.max(blink, side > 0 ? now.squint : 0);
-    const top = mix(-high * (1 - 2 * Math.max(0, now.lid)) - (now.lid <= 0 ? 8 : 0), bottom, closed);
-    const lean = now.slant * high * 0.55 * (1 - closed) * side;
-    const arch = now.low * 62 * (1 - blink);
+    const shut = Math.max(blink, side > 0 ? now.squint : 0);
+    // The lids meet a little below the middle; a lid that is quite open is out of sight.
+    const meet = high * 0.35;
+    const upper = mix(-high * (1 - 2 * now.lid) - (now.lid > 0 ? 0 : 12), meet, shut);
+    const lower = mix(high * (1 - 2 * now.low) + (now.low > 0 ? 0 : 12), meet, blink);
+    const lean = now.slant * high * 0.5 * (1 - blink) * side;
+    const arch = 10 + now.low * 50 * (1 - blink);
     const edge = wide + 14;
-    const [left, right] = [Math.min(top - lean, bottom), Math.min(top + lean, bottom)];
-    const middle = Math.min((left + right) / 2 - 9 * (1 - closed), bottom);
-    const lid = `M${-edge} ${round(left)}Q0 ${round(middle)} ${edge} ${round(right)}`;
-    set(this._parts[`lids${index}`], {
-      d: `${lid}L${edge} ${round(bottom + arch * 0.4)}Q0 ${round(bottom - arch)} ${-edge} ${round(bottom + arch * 0.4)}Z`,
-    });
-    set(this._parts[`lash${index}`], {d: lid});
+    const left = Math.min(upper - lean, lower);
+    const right = Math.min(upper + lean, lower);
+    const middle = Math.min((left + right) / 2 - 10 * (1 - 1.6 * shut), lower);
+    const line = `M${-edge} ${round(left)}Q0 ${round(middle)} ${edge} ${round(right)}`;
+    const below = `M${-edge} ${round(lower + arch * 0.5)}Q0 ${round(lower - arch)} ${edge} ${round(lower + arch * 0.5)}`;
+    set(this._parts[`upper${index}`], {d: `${line}V${-high - 30}H${-edge}Z`});
+    set(this._parts[`lower${index}`], {d: `${below}V${high + 40}H${-edge}Z`});
+    set(this._parts[`lash${index}`], {d: line});
     for (const ball of [`ball${index}`, `rim${index}`]) set(this._parts[ball], {rx: round(wide), ry: round(high)});
     set(this._parts[`eye${index}`], {transform: `translate(${x} ${EYE_Y})`});
     const lookX = clamp(now.x + this._gaze.x, 1) * 15;
@@ -228,34 +231,32 @@ class Face {
       `M${-half} ${round(left)}` +
       `C${-reach} ${round(upper + now.wave * 1.6)} ${reach} ${round(upper - now.wave * 1.6)} ${half} ${round(right)}` +
       `C${reach} ${round(lower - now.wave * 1.6)} ${-reach} ${round(lower + now.wave * 1.6)} ${-half} ${round(left)}Z`;
-    set(this._parts.mouth, {d});
-    set(this._parts.inside, {d});
-    set(this._parts.tongue, {cy: round(lower * 0.78 + 12), rx: round(half * 0.6)});
+    for (const part of ['mouth', 'cavity', 'inside']) set(this._parts[part], {d});
+    set(this._parts.tongue, {cy: round(lower * 0.75 + 14), rx: round(half * 0.6)});
   }
 }
 
 function eyePicture(index) {
   return `
   <g data-part="eye${index}">
-    <clipPath id="lids${index}"><path data-part="lids${index}"/></clipPath>
     <clipPath id="rim${index}"><ellipse data-part="rim${index}"/></clipPath>
-    <g clip-path="url(#lids${index})">
-      <ellipse data-part="ball${index}" class="ball"/>
-      <g clip-path="url(#rim${index})">
-        <g data-part="iris${index}">
-          <circle r="30" class="iris"/>
-          <circle r="18" class="pupil"/>
-          <circle cx="-10" cy="-12" r="8.5" class="spark"/>
-          <circle cx="10" cy="9" r="4" class="spark faint"/>
-        </g>
+    <ellipse data-part="ball${index}" class="ball"/>
+    <g clip-path="url(#rim${index})">
+      <g data-part="iris${index}">
+        <circle r="31" class="iris"/>
+        <circle r="19" class="pupil"/>
+        <circle cx="-11" cy="-13" r="9" class="spark"/>
+        <circle cx="10" cy="10" r="4.5" class="spark faint"/>
       </g>
+      <path data-part="lower${index}" class="eyelid"/>
+      <path data-part="upper${index}" class="eyelid"/>
+      <path data-part="lash${index}" class="lash"/>
     </g>
-    <g clip-path="url(#rim${index})"><path data-part="lash${index}" class="lash"/></g>
   </g>`;
 }
 
 const PICTURE = `
-<svg viewBox="0 0 400 300" xmlns="${SVG}" aria-hidden="true" focusable="false">
+<svg viewBox="-4 0 408 306" xmlns="${SVG}" aria-hidden="true" focusable="false">
   <defs>
     <radialGradient id="white" cx=".5" cy=".42" r=".65">
       <stop offset=".55" stop-color="#ffffff"/><stop offset="1" stop-color="#b9dcf2"/>
@@ -273,8 +274,9 @@ const PICTURE = `
     ${eyePicture(0)}${eyePicture(1)}
     <path data-part="brow0" class="brow"/><path data-part="brow1" class="brow"/>
     <g transform="translate(${MOUTH.x} ${MOUTH.y})">
+      <path data-part="cavity" class="cavity"/>
+      <g clip-path="url(#inside)"><ellipse data-part="tongue" class="tongue" cx="0" ry="24"/></g>
       <path data-part="mouth" class="mouth"/>
-      <g clip-path="url(#inside)"><ellipse data-part="tongue" class="tongue" cx="0" ry="22"/></g>
     </g>
     <path class="sign tear" d="M92 196c-9 14-13 20-13 27a13 13 0 0 0 26 0c0-7-4-13-13-27z"/>
   </g>

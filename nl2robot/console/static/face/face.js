@@ -51,6 +51,8 @@ function show() {
   const activity = state.asking ? 'listening' : state.mood;
   const look = face.look({emotion: state.emotion, activity});
   at.figure.setAttribute('aria-label', words[`look_${look}`]);
+  const asked = state.asking?.question;
+  if (asked && at.caption.textContent.includes(asked)) at.caption.classList.add('quiet');
   const beside = content.show({
     screen: state.screen,
     asking: state.asking,
