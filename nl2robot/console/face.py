@@ -119,6 +119,8 @@ def part(backstage: Backstage) -> Part:
         calls.left(connection)
         tablet.left(connection)
 
+    spoken = backstage.driver.capabilities().languages
+    languages = {code: name for code, name in LANGUAGES.items() if code in spoken}
     unsubscribe = backstage.subscribe(on_event)
 
     def close() -> None:
@@ -127,7 +129,7 @@ def part(backstage: Backstage) -> Part:
 
     async def page(request: Request) -> HTMLResponse:
         role = getattr(request.state, "role", "observer")
-        return HTMLResponse(_page(face.state, role), headers=HEADERS)
+        return HTMLResponse(_page(face.state, role, languages), headers=HEADERS)
 
     return Part(
         services={**_services(backstage, face, tablet), **calls.services()},
@@ -174,7 +176,9 @@ def _services(backstage: Backstage, face: Face, tablet: FaceTablet) -> dict[str,
         ),
         "face.page": Service(
             lambda p, context: tablet.told(context.connection, p["page"], p["html"]),
-            an_object({"page": number, "html": {**html, "type": "string"}}, "page html"),
+            an_object(
+                {"page": {"type": "integer"}, "html": {**html, "type": "string"}}, "page html"
+            ),
             "Tell what people have made of the page of HTML that is shown.",
         ),
         "face.did": Service(
@@ -212,9 +216,9 @@ def _at_the_start(backstage: Backstage) -> dict[str, Any]:
     }
 
 
-def _page(state: Mapping[str, Any], role: str) -> str:
+def _page(state: Mapping[str, Any], role: str, languages: Mapping[str, str]) -> str:
     words = {code: dict(texts("face", code)) | dict(texts("call", code)) for code in LANGUAGES}
-    data = {"state": state, "role": role, "languages": LANGUAGES, "words": words}
+    data = {"state": state, "role": role, "languages": languages, "words": words}
     # A text in it that says "</script>" must not end it.
     written = msgspec.json.encode(data).decode().replace("<", "\\u003c")
     said = words.get(state["language"], words["en"])

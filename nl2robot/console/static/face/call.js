@@ -193,7 +193,7 @@ class CallView {
   }
 
   _button(name, kind, act) {
-    const button = element('button', {type: 'button', class: `call-button ${kind}`, 'data-call': name});
+    const button = element('button', {type: 'button', class: `call-button ${kind}`, 'data-call': name, title: this._words[name]});
     button.append(icon(name), element('span', {}, this._words[name]));
     button.addEventListener('click', act);
     return button;

@@ -16,6 +16,14 @@ const RULES =
   "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline' http: https:;" +
   ' img-src data: blob: http: https:; font-src data: http: https:; media-src data: blob: http: https:';
 
+/** How a page looks that says nothing about it: large enough for a tablet. Its own styles win. */
+const LOOKS =
+  'html{font:clamp(18px,3.2vmin,30px)/1.45 system-ui,sans-serif;color:#06202e;background:#fff}' +
+  'body{margin:1em}img,video{max-width:100%;height:auto}' +
+  'button,input,select,textarea{font:inherit;padding:.4em .7em;border:2px solid #7d98a8;border-radius:.5em}' +
+  'input:is([type=checkbox],[type=radio]){width:1.4em;height:1.4em;vertical-align:-.25em}' +
+  'button,[type=submit],[type=button]{background:#0b6f86;border-color:#0b6f86;color:#fff;font-weight:600}';
+
 /** Runs inside the page that is shown. It is written out there, so it can use nothing of here. */
 function agent() {
   const FIELDS = 'input, textarea, select, option';
@@ -96,7 +104,7 @@ function agent() {
 const HEAD =
   `<!doctype html><meta http-equiv="Content-Security-Policy" content="${RULES}" data-face-agent>` +
   '<meta name="viewport" content="width=device-width, initial-scale=1" data-face-agent>' +
-  `<script data-face-agent>(${agent})()</script>`;
+  `<style data-face-agent>${LOOKS}</style><script data-face-agent>(${agent})()</script>`;
 
 /**
  * Shows contents in an element. `answered(number, answer)` is called when somebody answers a question,

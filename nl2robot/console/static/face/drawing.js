@@ -176,8 +176,8 @@ class Face {
     const shut = Math.max(blink, side > 0 ? now.squint : 0);
     // The lids meet a little below the middle; a lid that is quite open is out of sight.
     const meet = high * 0.35;
-    const upper = mix(-high * (1 - 2 * now.lid) - (now.lid > 0 ? 0 : 12), meet, shut);
-    const lower = mix(high * (1 - 2 * now.low) + (now.low > 0 ? 0 : 12), meet, blink);
+    const upper = mix(-high * (1 - 2 * now.lid) - hidden(now.lid), meet, shut);
+    const lower = mix(high * (1 - 2 * now.low) + hidden(now.low), meet, blink);
     const lean = now.slant * high * 0.5 * (1 - blink) * side;
     const arch = 10 + now.low * 50 * (1 - blink);
     const edge = wide + 14;
@@ -293,6 +293,8 @@ function set(part, attributes) {
   for (const [name, value] of Object.entries(attributes)) part.setAttribute(name, value);
 }
 
+/** How much farther away a lid is that is as good as open. */
+const hidden = (lid) => 12 * clamp(Math.max(0, 1 - lid * 14), 1);
 const round = (number) => Math.round(number * 100) / 100;
 const mix = (from, to, part) => from + (to - from) * part;
 const clamp = (number, most) => Math.max(-most, Math.min(most, number));
