@@ -342,8 +342,8 @@ def test_the_robot_drives_while_the_stick_is_held_and_stands_when_it_is_not(ward
         with held(ruth, 0.4):
             ward.until(lambda: ward.speed() > 0.3)
         ward.until(lambda: ward.speed() == 0)  # nobody said so: the dead man's switch
-        with held(ruth, -0.4):
-            ward.until(lambda: ward.speed() < -0.1)
+        with held(ruth, 0.4):
+            ward.until(lambda: ward.speed() > 0.1)
         ruth.request("helm.release", {"number": next(_numbers)})
         ward.until(lambda: ward.speed() == 0)
 
