@@ -1,0 +1,41 @@
+/** The page for direct control. */
+
+import {appears, element, pageData} from '/static/page.js';
+import {wire} from '/static/wire.js';
+import {facePanel, gesturePanel, jointPanel, sayPanel} from './body.js';
+import {goPanel, helmBar, joystickPanel, mountMap} from './driving.js';
+import {helm} from './helm.js';
+import {logPanel} from './log.js';
+import {panel} from './panel.js';
+import {callPanel, codePanel, screenPanel} from './showing.js';
+
+const root = await appears('#drive');
+const body = await wire.request('helm.body');
+const operates = pageData.role === 'operator';
+const has = (method) => body.methods.includes(method);
+
+helm.start(pageData.who, operates);
+root.classList.toggle('looks-on', !operates);
+
+const map = element('div', {id: 'drive-map'});
+const columns = [
+  [panel('map', map), has('goto') && operates && goPanel(body), logPanel()],
+  [
+    has('drive') && operates && joystickPanel().section,
+    has('say') && sayPanel(body, pageData.language),
+    has('call') && callPanel(body),
+  ],
+  [
+    has('emotion') && facePanel(body),
+    has('gesture') && operates && gesturePanel(body),
+    has('joint') && operates && jointPanel(body),
+    has('show') && screenPanel(body),
+    operates && codePanel(body),
+  ],
+].map((panels) => element('div', {class: 'column'}, ...panels.filter(Boolean)));
+
+root.append(helmBar(body, operates), element('div', {class: 'columns'}, ...columns));
+mountMap(map, pageData.language, operates).catch((error) => {
+  console.warn(error);
+  map.closest('.panel').hidden = true;
+});

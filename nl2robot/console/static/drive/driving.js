@@ -1,0 +1,195 @@
+/** Who drives, how the robot is, the joystick, and where to go. */
+
+import {element} from '/static/page.js';
+import {wire} from '/static/wire.js';
+import {helm} from './helm.js';
+import {Joystick, SPEEDS} from './joystick.js';
+import {button, controls, doing, labelled, newId, panel} from './panel.js';
+import {clock, say, spoken} from './texts.js';
+
+const SPEED_KEPT = 'drive-speed';
+
+// --- who drives, and how the robot is
+
+export function helmBar(body, operates) {
+  const who = element('p', {class: 'who', role: 'status'});
+  const take = button(say('take'), () => helm.take(), {class: 'primary'});
+  const give = button(say('let_go'), () => helm.give());
+  const asking = element('div', {class: 'asking', role: 'alert'});
+  const tools = element('div', {class: 'row'}, take, give);
+  const bar = element('section', {class: 'card helm', 'aria-label': say('helm_title')});
+  bar.append(element('div', {class: 'helm-who'}, element('span', {class: 'lamp'}), who));
+  if (operates) bar.append(tools);
+  bar.append(vitals(body), asking);
+  helm.onChange(() => {
+    const {state, mine} = helm;
+    bar.dataset.helm = mine ? 'mine' : state.driver ? 'taken' : 'free';
+    who.textContent = whoDrives(state, mine);
+    take.hidden = mine;
+    take.disabled = helm.asked || helm.me === null;
+    take.textContent = say(helm.asked ? 'asked' : state.driver ? 'ask' : 'take');
+    give.hidden = !mine;
+    asking.replaceChildren(...(mine && operates ? state.asking.map(request) : []));
+  });
+  return bar;
+}
+
+function whoDrives(state, mine) {
+  if (mine) return say('you_drive');
+  if (state.driver === null) return say('nobody_drives');
+  return say('somebody_drives', {who: state.who, time: clock(state.since)});
+}
+
+function request(asking) {
+  return element(
+    'div',
+    {class: 'row request'},
+    element('p', {}, say('wants', {who: asking.who})),
+    button(say('hand_over'), () => helm.give(asking.connection), {class: 'primary small'}),
+    button(say('keep'), () => helm.keep(), {class: 'small'}),
+  );
+}
+
+function vitals(body) {
+  const place = element('span', {class: 'chip', 'data-vital': 'place'});
+  const speed = element('span', {class: 'chip', 'data-vital': 'speed'});
+  const battery = element('span', {class: 'chip', 'data-vital': 'battery'});
+  const names = new Map(body.places.map((each) => [each.name, spoken(each)]));
+  const showPose = (pose) => {
+    if (!pose) return;
+    const at = `${pose.x.toFixed(1)}, ${pose.y.toFixed(1)} · ${Math.round(pose.theta)}°`;
+    place.textContent = `${names.get(pose.place) ?? pose.place ?? say('nowhere')} (${at})`;
+    speed.textContent = `${Math.abs(pose.speed ?? 0).toFixed(2)} m/s`;
+    speed.dataset.speed = pose.speed ?? 0;
+  };
+  const showBattery = (state) => {
+    if (!state) return;
+    battery.textContent = `${say('battery')} ${state.percent} %${state.charging ? ' ⚡' : ''}`;
+    battery.classList.toggle('bad', state.percent < 15);
+    battery.classList.toggle('warn', state.percent >= 15 && state.percent < 30);
+  };
+  showPose(body.now.pose);
+  showBattery(body.now.battery);
+  wire.subscribe('pose', showPose);
+  wire.subscribe('battery', showBattery);
+  return element('div', {class: 'row vitals'}, place, speed, battery);
+}
+
+// --- the joystick
+
+export function joystickPanel() {
+  const knob = element('div', {class: 'knob'});
+  const stick = element(
+    'div',
+    {class: 'stick', tabindex: 0, role: 'application', 'aria-label': say('stick')},
+    ...['up', 'right', 'down', 'left'].map((way) => element('span', {class: `tick ${way}`})),
+    knob,
+  );
+  const hint = element('p', {class: 'stick-hint', role: 'status'});
+  const range = element('input', {type: 'range', min: 0, max: SPEEDS.length - 1, step: 1});
+  range.value = localStorage.getItem(SPEED_KEPT) ?? 1;
+  const shown = element('output', {class: 'value'});
+  const showSpeed = () => {
+    const {linear} = SPEEDS[range.value];
+    const name = say(`speed_${range.value}`);
+    shown.textContent = `${name} · ${linear} m/s`;
+    range.setAttribute('aria-valuetext', name);
+    range.style.setProperty('--part', `${(range.value / (SPEEDS.length - 1)) * 100}%`);
+    localStorage.setItem(SPEED_KEPT, range.value);
+  };
+  range.addEventListener('input', showSpeed);
+  // The arrow keys go back to the joystick.
+  range.addEventListener('pointerup', () => stick.focus({preventScroll: true}));
+  showSpeed();
+  let trouble = '';
+  const show = () => {
+    hint.textContent = helm.mine ? trouble || say('stick_hint') : say('stick_no_helm');
+    hint.classList.toggle('trouble', Boolean(helm.mine && trouble));
+  };
+  const joystick = new Joystick(stick, knob, () => SPEEDS[range.value], (told) => {
+    if (told.moving) trouble = '';
+    if (told.slow) trouble = say('slow_connection');
+    if (told.error) trouble = told.error.message;
+    show();
+  });
+  helm.onChange(() => {
+    stick.classList.toggle('off', !helm.mine);
+    stick.setAttribute('aria-disabled', String(!helm.mine));
+    show();
+  });
+  const slider = element('div', {class: 'slider'});
+  range.id = newId('slider');
+  slider.append(element('label', {for: range.id}, say('speed')), shown, range);
+  return {
+    joystick,
+    section: panel('stick', element('div', {class: 'controls stick-place'}, stick, hint, slider)),
+  };
+}
+
+// --- where to go
+
+export function goPanel(body) {
+  const has = (method) => body.methods.includes(method);
+  const list = element('div', {class: 'choices places', role: 'radiogroup'});
+  list.setAttribute('aria-label', say('places'));
+  const filter = element('input', {class: 'field', type: 'search', placeholder: say('filter')});
+  const group = newId('place');
+  const rows = body.places.map((place) => {
+    const input = element('input', {type: 'radio', name: group, value: place.name});
+    const row = element('label', {class: 'choice'}, input, element('span', {}, spoken(place)));
+    const known = [place.name, place.kind, ...Object.values(place.aliases).flat()];
+    row.dataset.known = known.join(' ').toLowerCase();
+    return row;
+  });
+  list.append(...rows);
+  filter.addEventListener('input', () => {
+    const wanted = filter.value.trim().toLowerCase();
+    for (const row of rows) row.hidden = !row.dataset.known.includes(wanted);
+  });
+  const chosen = () => list.querySelector('input:checked')?.value;
+  const errand = errandLine();
+  const go = button(say('go'), () => errand.run('goto', {place: chosen()}), {class: 'primary'});
+  const here = button(say('here'), () => helm.call('localize', {place: chosen()}));
+  here.title = say('here_hint');
+  const dock = button(say('dock'), () => errand.run('dock'));
+  const enable = () => (go.disabled = here.disabled = chosen() === undefined);
+  list.addEventListener('change', enable);
+  enable();
+  const offered = [has('goto') && go, has('localize') && here, has('dock') && dock].filter(Boolean);
+  return panel(
+    'go',
+    errand.line,
+    controls(labelled(say('places'), filter), list, element('div', {class: 'row'}, ...offered)),
+  );
+}
+
+/** A movement that takes its time: it says so, and can be cancelled. */
+function errandLine() {
+  const text = element('span');
+  let cancel = null;
+  const away = button(say('cancel'), () => cancel?.(), {class: 'small'});
+  const line = element('p', {class: 'row errand', role: 'status', hidden: true}, text, away);
+  const run = async (method, given = {}) => {
+    const running = helm.errand(method, given);
+    ({cancel} = running);
+    text.textContent = say('on_the_way');
+    line.hidden = false;
+    try {
+      await running.answer;
+    } finally {
+      if (cancel === running.cancel) line.hidden = true;
+    }
+  };
+  return {line, run};
+}
+
+/** The floor plan, where a click sends the robot and a drag says where it is. */
+export async function mountMap(place, language, operates) {
+  const {mountFloorMap} = await import('/static/floor/floor_map.js');
+  place.addEventListener('go', ({detail: {x, y}}) => doing(helm.call('goto', {x, y})));
+  place.addEventListener('localise', ({detail: {x, y, theta}}) =>
+    doing(helm.call('localize', {x, y, theta})),
+  );
+  const modes = ['look', 'send', 'localise'];
+  await mountFloorMap(place, {wire, language, operator: operates, modes, places: false});
+}
