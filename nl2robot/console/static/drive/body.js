@@ -111,11 +111,11 @@ function emotionButton(name) {
 
 export function gesturePanel(body) {
   const gestures = body.gestures.map((name) =>
-    button(named('gesture', name), () => helm.call('gesture', {name})),
+    button(named('gesture', name), () => helm.call('gesture', {name}), {class: 'small'}),
   );
   const inside = [element('div', {class: 'row'}, ...gestures)];
   const skills = Object.entries(body.skills).map(([skill, what]) =>
-    button(skill, () => helm.call('do', {skill}), {title: what}),
+    button(skill, () => helm.call('do', {skill}), {class: 'small', title: what}),
   );
   if (skills.length) {
     inside.push(element('h3', {}, say('skills')), element('div', {class: 'row'}, ...skills));

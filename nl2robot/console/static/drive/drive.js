@@ -23,13 +23,13 @@ const columns = [
   [
     has('drive') && operates && joystickPanel().section,
     has('say') && sayPanel(body, pageData.language),
-    has('call') && callPanel(body),
+    has('show') && screenPanel(body),
   ],
   [
     has('emotion') && facePanel(body),
     has('gesture') && operates && gesturePanel(body),
     has('joint') && operates && jointPanel(body),
-    has('show') && screenPanel(body),
+    has('call') && callPanel(body),
     operates && codePanel(body),
   ],
 ].map((panels) => element('div', {class: 'column'}, ...panels.filter(Boolean)));

@@ -159,7 +159,7 @@ export function goPanel(body) {
   return panel(
     'go',
     errand.line,
-    controls(labelled(say('places'), filter), list, element('div', {class: 'row'}, ...offered)),
+    controls(labelled(say('find_place'), filter), list, element('div', {class: 'row'}, ...offered)),
   );
 }
 

@@ -30,7 +30,7 @@ export function face(emotion) {
     `<text x="24" y="31" text-anchor="middle" font-size="20">${letterOf(emotion)}</text>`;
   return (
     '<svg class="face" viewBox="0 0 48 48" aria-hidden="true">' +
-    `<circle class="outline" cx="24" cy="24" r="21"/>${inside}</svg>`
+    `<circle class="rim" cx="24" cy="24" r="21"/>${inside}</svg>`
   );
 }
 
