@@ -141,7 +141,7 @@ class _Desk:
                         )
                         self.editor.on_value_change(lambda event: self._edited(event.value or ""))
                     self.foot = ui.html("", sanitize=False)
-            ui.html('<section id="desk-map" class="card"></section>', sanitize=False).classes(
+            ui.html('<section id="desk-map"></section>', sanitize=False).classes(
                 "desk-map"
             )
 

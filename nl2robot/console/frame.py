@@ -77,7 +77,14 @@ def frame(backstage: Backstage, page: str) -> Iterator[Visit]:
 
 
 def _head(visitor: Visitor, words: Mapping[str, str]) -> str:
-    about = {"look": visitor.look, "language": visitor.language, "words": words}
+    about = {
+        "look": visitor.look,
+        "language": visitor.language,
+        "words": words,
+        "role": visitor.role,
+        "who": visitor.name or words["somebody"],
+        "call": texts("call", visitor.language),
+    }
     return (
         f"{_data('frame-data', about)}"
         '<script src="/static/look.js"></script>'
@@ -126,6 +133,7 @@ def _header(page: str, name: str, visitor: Visitor, words: Mapping[str, str]) ->
   <button type="button" id="stop" class="stop" title="{said("stop_hint")}"
     aria-keyshortcuts="Escape Space">{said("stop")}</button>
 </header>
+<div id="calls"></div>
 <p id="notice" class="notice" role="alert" hidden></p>
 <dialog id="settings" aria-label="{said("settings")}">
   <form method="dialog">

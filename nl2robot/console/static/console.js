@@ -3,7 +3,7 @@
 import {keep} from '/static/page.js';
 import {wire} from '/static/wire.js';
 
-const {words} = JSON.parse(document.getElementById('frame-data').textContent);
+const {words, role, who, call} = JSON.parse(document.getElementById('frame-data').textContent);
 const NOTICE_FOR = 6000;
 
 let fading = 0;
@@ -76,6 +76,13 @@ function openSettings() {
   );
 }
 
+/** Calls of the robot ring on every page; a page starts one with the event "call-robot". */
+async function openCalls() {
+  const {mountCall} = await import('/static/face/call.js');
+  const calls = mountCall(document.getElementById('calls'), {wire, words: call, role, who});
+  document.addEventListener('call-robot', () => calls.start());
+}
+
 document.getElementById('stop').addEventListener('click', stop);
 document.getElementById('settings-button').addEventListener('click', openSettings);
 document.getElementById('settings').addEventListener('click', (event) => {
@@ -83,3 +90,4 @@ document.getElementById('settings').addEventListener('click', (event) => {
 });
 document.addEventListener('keydown', onKey, {capture: true});
 wire.onChange(showConnection);
+if (role === 'operator') openCalls();

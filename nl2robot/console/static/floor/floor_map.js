@@ -30,8 +30,22 @@ const NEAR = 0.6; // metres from a place's pose that mean the place
 const NEAR_PIXELS = 14;
 const CLOSE_UP = 48; // pixels a metre, for a place that is shown
 
+const STYLE = '/static/floor/floor.css';
+
+/** The map's own style sheet, which is loaded with the first map of a page. */
+function styled() {
+  if (document.querySelector(`link[href="${STYLE}"]`)) return Promise.resolve();
+  const link = element('link', {rel: 'stylesheet', href: STYLE});
+  return new Promise((resolve) => {
+    link.addEventListener('load', resolve);
+    link.addEventListener('error', resolve);
+    document.head.append(link);
+  });
+}
+
 /** A map in an element, whose `floorMap` it becomes; it is ready when it is returned. */
 export async function mountFloorMap(root, options) {
+  await styled();
   const map = new FloorMap(root, options);
   await map.ready;
   root.floorMap = map;
