@@ -1,5 +1,5 @@
 """`nl2robot bench`: how fast everything is on this machine, in one table; `nl2robot bench hearing`:
-how well it hears."""
+how well it hears; `nl2robot bench console`: how fast the web console is, in a real browser."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="as one JSON object")
-    parser.add_argument("only", nargs="*", help="the parts to measure (default: all but hearing)")
+    parser.add_argument(
+        "only", nargs="*", help="the parts to measure (default: all but hearing and console)"
+    )
     hearing = parser.add_argument_group(
         "hearing", "with the part hearing: commands and answers, synthesised and in noise"
     )
@@ -31,6 +33,8 @@ def run(options: argparse.Namespace) -> int:
     terminal = Terminal()
     if "hearing" in options.only:
         return _hearing(options, terminal)
+    if "console" in options.only:
+        return _console(options, terminal)
     table = terminal.table("part", "what", "measured", "aim")
     results = []
     for part in options.only or PARTS:
@@ -41,6 +45,25 @@ def run(options: argparse.Namespace) -> int:
         print(json.dumps({f"{f.part}: {f.what}": [f.value, f.unit] for f in results}))
     else:
         terminal.console.print(table)
+    return ExitStatus.OK
+
+
+def _console(options: argparse.Namespace, terminal: Terminal) -> int:
+    from rich.progress import Progress
+
+    from nl2robot.console.benchmark import measure
+
+    rows: list[tuple[str, float, str, str]] = []
+    with Progress(console=terminal.console, transient=True) as progress:
+        progress.add_task("Looking at the pages", total=None)
+        rows.extend(measure())
+    if options.json:
+        print(json.dumps({what: [round(figure, 1), unit] for what, figure, unit, _ in rows}))
+        return ExitStatus.OK
+    table = terminal.table("what", "measured", "aim")
+    for what, figure, unit, aim in rows:
+        table.add_row(what, f"{figure:.1f} {unit}", f"{aim} {unit}" if aim else "")
+    terminal.console.print(table)
     return ExitStatus.OK
 
 

@@ -1,9 +1,10 @@
-"""`nl2robot serve`: the robot server, with a simulated hospital by default."""
+"""`nl2robot serve`: the robot server and its web console, with a simulated hospital by default."""
 
 from __future__ import annotations
 
 import argparse
 import socket
+import webbrowser
 
 from nl2robot.commands.options import (
     add_seed,
@@ -30,6 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--port", type=whole(0, 65_535), default=9090, help="(default: 9090)")
     parser.add_argument("--token", help="what clients must show; made up if others are served")
+    parser.add_argument("--open", action="store_true", help="open the console in a browser here")
     parser.add_argument(
         "--speed", type=speed, default=1.0, metavar="X", help="simulated seconds a second"
     )
@@ -57,8 +59,16 @@ def run(options: argparse.Namespace) -> int:
             console=Console,
         ) as station,
     ):
-        station.server.serve_forever(_say_where)
+        station.server.serve_forever(_open_page if options.open else _say_where)
     return ExitStatus.OK
+
+
+def _open_page(server: Server) -> None:
+    _say_where(server)
+    port = server.address.rpartition(":")[2]
+    page = f"http://127.0.0.1:{port}/" + (f"?token={server.token}" if server.token else "")
+    if not webbrowser.open(page):
+        print("There is no browser to open here. Open the page by its address.", flush=True)
 
 
 def _say_where(server: Server) -> None:

@@ -141,9 +141,7 @@ class _Desk:
                         )
                         self.editor.on_value_change(lambda event: self._edited(event.value or ""))
                     self.foot = ui.html("", sanitize=False)
-            ui.html('<section id="desk-map"></section>', sanitize=False).classes(
-                "desk-map"
-            )
+            ui.html('<section id="desk-map"></section>', sanitize=False).classes("desk-map")
 
     def _draw(self) -> None:
         """Show the dialogue as it stands now."""
