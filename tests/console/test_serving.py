@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from playwright.sync_api import Page, expect
 
-from tests.console.conftest import Look, Served
+from tests.console.conftest import Look, Served, serving
 
 
 def test_stop_is_on_the_page_and_reaches_the_robot(page: Page, served: Served) -> None:
@@ -30,3 +32,31 @@ def test_no_page_asks_for_anything_from_elsewhere(look: Look, served: Served) ->
     expect(page.locator("#connection")).to_have_attribute("data-state", "connected")
     assert asked
     assert all(url.startswith((served.url, "data:", "blob:")) for url in asked), asked
+
+
+def test_a_page_outlives_its_server(look: Look, tmp_path: Path) -> None:
+    with serving(tmp_path) as first:
+        page = look(url=first.url)
+        line = page.get_by_label("Tell the robot what to do")
+        line.fill("say good")
+        first.process.kill()
+        first.process.wait()
+        expect(page.get_by_role("alert")).to_contain_text("No connection to the robot.")
+    with serving(tmp_path, "--port", first.address.partition(":")[2]):
+        expect(page.locator("#connection")).to_have_attribute("data-state", "connected")
+        page.wait_for_function("!document.querySelector('.nicegui-error-popup[aria-hidden=false]')")
+        expect(line).to_have_value("say good")
+        line.press_sequentially(" morning")
+        line.press("Enter")
+        expect(page.locator(".cm-content")).to_have_text('robot.say("Good morning.")')
+
+
+def test_others_need_the_token_that_the_start_up_line_prints(look: Look, tmp_path: Path) -> None:
+    with serving(tmp_path, "--host", "0.0.0.0") as server:
+        here = f"http://127.0.0.1:{server.address.partition(':')[2]}"
+        refused = look(url=here)
+        expect(refused.locator("body")).to_contain_text("token is missing or wrong")
+        link = next(word for line in server.said for word in line.split() if "?token=" in word)
+        page = look("/?token=" + link.partition("?token=")[2], url=here)
+        expect(page.get_by_role("button", name="Send")).to_be_visible()
+        assert "token" not in page.url
