@@ -30,6 +30,7 @@ from sim.zones import distance_to
 
 if TYPE_CHECKING:
     from nl2robot.rehearsal import Call, Course, DryRun
+    from sim.record import Sample
     from sim.simulation import Simulation
 
 DATA: Final = Path(__file__).parent / "data" / "risks.yaml"
@@ -138,12 +139,12 @@ class _Looking:
         self.done: tuple[Call, ...] = tried.course.calls if tried else ()
 
     def found(self) -> _Found:
-        yield from self.leaves()
         yield from self.zone_goals()
         yield from self.fast()
         yield from self.unknown_people()
         yield from self.endless()
         if self.tried is not None:
+            yield from self.leaves(self.tried)
             yield from self.zones_on_the_way(self.tried)
             yield from self.near_people(self.tried)
             yield from self.loud(self.tried)
@@ -161,25 +162,22 @@ class _Looking:
             if place is not None and METHODS[method].moves:
                 yield line, place.name
 
-    def leaves(self) -> _Found:
+    def leaves(self, tried: Tried) -> _Found:
         """The first line by which the robot is out of the ward, department or floor it is in."""
-        area = _area_of(self.world, self.tried.situation.place) if self.tried else None
+        area = _area_of(self.world, tried.situation.place)
         if area is None:
             return
-        reached = ((call.line, place) for call, place in self.arrivals())
         left = sorted(
             (line, place)
-            for line, place in itertools.chain(self.goals(), reached)
+            for line, place in itertools.chain(self.goals(), self.arrivals(tried))
             if _is_outside(self.world, area, place)
         )
         for line, place in left[:1]:
             yield line, "leaves", "leaves", {"area": area, "place": place}
 
-    def arrivals(self) -> Iterator[tuple[Call, str]]:
-        """Where the dry run's movements end."""
-        if self.tried is None:
-            return
-        samples = self.tried.course.record.samples
+    def arrivals(self, tried: Tried) -> Iterator[tuple[int, str]]:
+        """The lines of the dry run's movements, and the places in which they end."""
+        samples = tried.course.record.samples
         times = [sample.time for sample in samples]
         for call in self.done:
             latest = bisect.bisect_right(times, call.ended + MOMENT)
@@ -187,7 +185,7 @@ class _Looking:
                 last = samples[latest - 1]
                 place = self.world.place_at(last.x, last.y)
                 if place is not None:
-                    yield call, place.name
+                    yield call.line, place.name
 
     def zone_goals(self) -> _Found:
         for line, name in self.goals():
@@ -233,7 +231,7 @@ class _Looking:
                 if speed > FAST_NEAR_PEOPLE and math.dist(spot, (there.x, there.y)) < NEAR:
                     yield call.line, "speed", "fast_near", {"speed": f"{speed:.1f}", "person": name}
 
-    def steps(self, tried: Tried) -> Iterator[tuple[Call, tuple[Any, Any]]]:
+    def steps(self, tried: Tried) -> Iterator[tuple[Call, tuple[Sample, Sample]]]:
         """Where the robot was from one moment of the dry run to the next, and by which call."""
         calls = iter(call for call in self.done if METHODS[call.method].moves)
         call = next(calls, None)
