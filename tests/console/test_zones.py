@@ -28,15 +28,12 @@ class Console:
     def __init__(self, world: World, real: bool = False) -> None:
         self.published: list[tuple[str, Any]] = []
         self.simulation = None if real else Simulation(world)
-        self.part = zones.part(
-            Backstage(
-                driver=cast(Any, None),
-                runner=cast(Any, SimpleNamespace(knowledge=Knowledge(world))),
-                simulation=self.simulation,
-                publish=lambda kind, data, to=None: self.published.append((kind, data)),
-                wanted=lambda kind: True,
-            )
+        backstage = SimpleNamespace(
+            runner=SimpleNamespace(knowledge=Knowledge(world)),
+            simulation=self.simulation,
+            publish=lambda kind, data: self.published.append((kind, data)),
         )
+        self.part = zones.part(cast(Backstage, backstage))
 
     def __call__(self, method: str, **params: Any) -> list[dict[str, Any]]:
         context = Context("tester", StopFlag(), lambda kind, data, to=None: None)
