@@ -18,6 +18,7 @@ from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.models import lacking_beside, need
 from nl2robot.routines import open_routines
+from nl2robot.terminal import words_in
 
 if TYPE_CHECKING:
     from nl2robot.speech.audio import Audio, Samples
@@ -61,7 +62,8 @@ def run(options: argparse.Namespace) -> int:
     microphone = Microphone(options.device)  # before the model is loaded, for it may be missing
     hearing = _hearing(options, model)
     with microphone:
-        return live(microphone.blocks(), hearing, sys.stdout, quiet=options.json)
+        blocks, quiet = microphone.blocks(), options.json
+        return live(blocks, hearing, sys.stdout, quiet=quiet, language=options.lang)
 
 
 class Hearing(Protocol):
@@ -83,6 +85,7 @@ class _Commands:
         from nl2robot.hearing import Ear
 
         self._options = options
+        self._words = words_in(options.lang)
         knowledge = Knowledge(names_of(options), routines=open_routines())
         self._ear = Ear(model, knowledge, options.lang)
         for missing in self._ear.deaf_to():
@@ -106,7 +109,8 @@ class _Commands:
             data = {**msgspec.to_builtins(translation), "heard": heard.text}
             print(json.dumps(data, ensure_ascii=False), flush=True)
         else:
-            print(f'heard: "{heard.text}" ({heard.confidence:.0%})')
+            told = self._words["heard"].format(text=heard.text, share=f"{heard.confidence:.0%}")
+            print(told)
             print(translation.readable(self._options.lang), flush=True)
 
 
@@ -116,6 +120,7 @@ class _Answers:
         from nl2robot.speech.recogniser import load
 
         self._json = options.json
+        self._words = words_in(options.lang)
         self._expected = expect(options.expect, options.lang)
         self._recogniser = load(options.lang)
 
@@ -130,9 +135,10 @@ class _Answers:
         if self._json:
             print(json.dumps(msgspec.to_builtins(heard), ensure_ascii=False), flush=True)
         else:
-            said = f'"{heard.heard}"' if heard.heard else "nothing"
-            answer = heard.answer or "-"
-            print(f"heard: {said}, answer: {answer} ({heard.confidence:.0%})", flush=True)
+            told = self._words["heard_answer" if heard.heard else "heard_none"].format(
+                text=heard.heard, answer=heard.answer or "-", share=f"{heard.confidence:.0%}"
+            )
+            print(told, flush=True)
 
     def listener(self) -> Listener:
         from nl2robot.speech.listening import ANSWERS, Listener
@@ -158,15 +164,23 @@ def recordings(files: Sequence[str], hearing: Hearing) -> int:
     return status
 
 
-def live(blocks: Iterable[Samples], hearing: Hearing, output: TextIO, *, quiet: bool) -> int:
+def live(
+    blocks: Iterable[Samples],
+    hearing: Hearing,
+    output: TextIO,
+    *,
+    quiet: bool,
+    language: str = "en",
+) -> int:
     """Hear what is said until Ctrl-C, or until the sound ends. Partial words are shown where they
-    can be overwritten, unless `quiet`. Raises `AudioError`."""
+    can be overwritten, unless `quiet`; what else is told, in that language. Raises `AudioError`."""
     from nl2robot.speech.listening import NothingHeard, PartialText, SpeechEnded, TooLong
 
+    texts = words_in(language)
     listener = hearing.listener()
     line = _Line(output, shown=output.isatty() and not quiet)
     complained = False
-    print("Listening. Speak; Ctrl-C ends.", file=sys.stderr, flush=True)
+    print(texts["speak_now"], file=sys.stderr, flush=True)
     try:
         for event in _events(listener, blocks):
             if isinstance(event, PartialText):
@@ -181,14 +195,11 @@ def live(blocks: Iterable[Samples], hearing: Hearing, output: TextIO, *, quiet: 
                     except UserError as error:  # the next one may be heard
                         print(error, file=sys.stderr)
                 case TooLong():
-                    print("This was too long for a command. Say less at once.", file=sys.stderr)
+                    print(texts["too_long"], file=sys.stderr)
                 case NothingHeard(seconds) if not complained:
                     complained = True
-                    print(
-                        f"Nothing was heard for {seconds:.0f} seconds. "
-                        "Check that the microphone is on, and speak towards it.",
-                        file=sys.stderr,
-                    )
+                    told = texts["nothing_heard"].format(seconds=round(seconds))
+                    print(told, file=sys.stderr)
     except KeyboardInterrupt:
         pass
     finally:

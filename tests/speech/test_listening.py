@@ -392,14 +392,27 @@ def test_ctrl_c_ends_it_and_half_a_command_is_not_acted_on() -> None:
     assert said.seconds == []
 
 
+@pytest.mark.parametrize(
+    ("language", "nothing", "too_long"),
+    [
+        (
+            "en",
+            "Nothing was heard for 10 seconds. Check that the microphone is on",
+            "This was too long for a command.",
+        ),
+        ("de", "Seit 10 Sekunden ist nichts zu hören.", "Das war zu lang für einen Befehl."),
+        ("fr", "On n'entend rien depuis 10 secondes.", "C'était trop long pour un ordre."),
+    ],
+)
 def test_a_microphone_that_is_switched_off_is_suspected_once(
-    capsys: pytest.CaptureFixture[str],
+    capsys: pytest.CaptureFixture[str], language: str, nothing: str, too_long: str
 ) -> None:
     listener = Listener(manner=replace(COMMANDS, patience=10, longest=5), detector=sure)
-    live([sound((35, 0), (8, 90), (1, 0))], Said(listener), io.StringIO(), quiet=True)
+    heard = [sound((35, 0), (8, 90), (1, 0))]
+    live(heard, Said(listener), io.StringIO(), quiet=True, language=language)
     told = capsys.readouterr().err
-    assert told.count("Nothing was heard for 10 seconds. Check that the microphone is on") == 1
-    assert told.count("This was too long for a command.") == 1
+    assert told.count(nothing) == 1
+    assert told.count(too_long) == 1
 
 
 @pytest.mark.parametrize("options", [(), ("--expect", "digits")])
