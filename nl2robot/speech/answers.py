@@ -13,7 +13,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from math import exp, log
 from pathlib import Path
 from typing import Any, Final
@@ -69,6 +69,22 @@ class Expected:
     """The language, where single digits are expected: those are also told by their sound alone."""
     figures: tuple[str, ...] = ()
     """Numbers as they are written; `phrases` has them in words."""
+    besides: frozenset[str] = frozenset()
+    """Words that may stand around a number."""
+    everyday: bool = False
+    """The answers are words that fit into much else that people say: "right", "okay", "no"."""
+
+    @cached_property
+    def words(self) -> frozenset[str]:
+        """Those that answers are made of."""
+        phrases = (*self.phrases, *self.figures)
+        return self.besides.union(*(map(_words, phrases)))
+
+    def read_alone(self, text: str) -> str | None:
+        """As `read`, of what may be no answer at all: a number among other words, as in "one
+        handed", is none, for too much of what people say sounds like one."""
+        answer = self.read(text)
+        return None if self.figures and not self.words.issuperset(_words(text)) else answer
 
 
 @dataclass(frozen=True)
@@ -84,6 +100,8 @@ BOTH_HEARD: Final = _Limit(behind=12.0, least=-12.0)
 BOTH_HEARD_FIGURES: Final = _Limit(behind=8.0, least=-9.0)
 """The same for digits and numbers, of which some sounds like whatever is said."""
 ONE_HEARD: Final = _Limit(behind=2.0, least=-4.0)
+NEVER_FREELY: Final = _Limit(behind=4.0, least=-7.0)
+"""Where both hear one of everyday's words, but neither of them when anything may be said."""
 
 
 def expected_by(question: str, options: Sequence[str] | None, language: str) -> str | list[str]:
@@ -114,7 +132,9 @@ def expect(what: str | Sequence[str], language: str) -> Expected:
         return _digits(language)
     sayings = _sayings(language)
     if what == "yes-no":
-        return _choice({said: answer for answer in ("yes", "no") for said in sayings[answer]})
+        spoken: dict[str, str | None] = dict.fromkeys(sayings["neither"])
+        spoken |= {said: answer for answer in ("yes", "no") for said in sayings[answer]}
+        return _choice(spoken, everyday=True)
     if what == "number":
         return _number(language)
     if what == "times":
@@ -173,7 +193,7 @@ def _judged(heard: Heard, audio: Audio, expected: Expected, second: SecondEar) -
     texts: dict[str, Judged] = {}  # the likeliest of each answer
     no_answer: Judged | None = None
     for judged in sorted(opinion.readings, key=lambda judged: judged.likelihood):
-        answer = expected.read(judged.text.replace(",", ""))
+        answer = expected.read_alone(judged.text.replace(",", ""))
         if answer is None:
             no_answer = judged
         else:
@@ -195,13 +215,24 @@ def _judged(heard: Heard, audio: Audio, expected: Expected, second: SecondEar) -
     # either of them is what the recogniser hears.
     first = max(by_words, key=by_words.__getitem__, default=None)
     both = not heard.doubtful and answer in (first, expected.read(heard.text))
-    limit = ONE_HEARD if not both else BOTH_HEARD_FIGURES if expected.figures else BOTH_HEARD
+    freely = answer in (expected.read(text or "") for text in (heard.free_text, opinion.free))
+    limit = _limit(expected, both, freely)
     likelihood = texts[answer].likelihood
     behind = no_answer.likelihood - likelihood if no_answer else 0.0
     if share < UNSURE or behind > limit.behind or likelihood < limit.least:
         said = no_answer.text if no_answer and behind > 0 else texts[answer].text
         return Answer(said, None, 0.0, shares[:2])
     return Answer(texts[answer].text, answer, share, shares[:2])
+
+
+def _limit(expected: Expected, both: bool, freely: bool) -> _Limit:
+    """When to believe an answer that both ears hear, or only the second one; `freely`: one of them
+    hears it also when anything may be said."""
+    if not both:
+        return ONE_HEARD
+    if expected.everyday and not freely:
+        return NEVER_FREELY
+    return BOTH_HEARD_FIGURES if expected.figures else BOTH_HEARD
 
 
 def _by_sound(audio: Audio, expected: Expected) -> Mapping[str, float] | None:
@@ -253,7 +284,13 @@ def _digits(language: str) -> Expected:
         said = text.split()
         return "".join(words[word] for word in said) or None if words.keys() >= {*said} else None
 
-    return Expected(tuple(words), read, digits_of=language, figures=tuple(map(str, range(10))))
+    return Expected(
+        tuple(words),
+        read,
+        digits_of=language,
+        figures=tuple(map(str, range(10))),
+        besides=_besides(language),
+    )
 
 
 def _number(language: str) -> Expected:
@@ -269,7 +306,16 @@ def _number(language: str) -> Expected:
             return one_by_one(text)
         return whole.read(text)
 
-    return Expected(whole.phrases, read, figures=tuple(dict.fromkeys(spoken.values())))
+    return Expected(
+        whole.phrases,
+        read,
+        figures=tuple(dict.fromkeys(spoken.values())),
+        besides=_besides(language),
+    )
+
+
+def _besides(language: str) -> frozenset[str]:
+    return frozenset(map(str, _sayings(language)["besides"]))
 
 
 @cache
@@ -300,10 +346,13 @@ def _times(language: str) -> dict[str, str]:
 
 
 def _choice(
-    spoken: Mapping[str, str], around: Sequence[str] = (), nearest: bool = True
+    spoken: Mapping[str, str | None],
+    around: Sequence[str] = (),
+    nearest: bool = True,
+    everyday: bool = False,
 ) -> Expected:
-    """One of several: `spoken` is what is said -> the answer that it means; `nearest`: most of the
-    words of one will do."""
+    """One of several: `spoken` is what is said -> the answer that it means, if any; `nearest`: most
+    of the words of one will do; `everyday`: see `Expected`."""
     sayings = {_words(said): answer for said, answer in spoken.items()}
 
     def read(text: str) -> str | None:
@@ -311,15 +360,16 @@ def _choice(
         said = _said(heard, sayings)
         return _only(said or _nearest(heard, sayings) if nearest else said)
 
-    return Expected((*spoken, *around), read)
+    return Expected((*spoken, *around), read, everyday=everyday)
 
 
 Words = tuple[str, ...]
 
 
-def _said(heard: Words, sayings: dict[Words, str]) -> set[str]:
+def _said(heard: Words, sayings: Mapping[Words, str | None]) -> set[str | None]:
     """The answers of the sayings among these words."""
-    answers, at = set(), 0
+    answers: set[str | None] = set()
+    at = 0
     longest = max(map(len, sayings))
     while at < len(heard):
         # The longest saying wins: "i do not" is not "i do", "green tea" is not "tea".
@@ -331,14 +381,14 @@ def _said(heard: Words, sayings: dict[Words, str]) -> set[str]:
     return answers
 
 
-def _nearest(heard: Words, sayings: dict[Words, str]) -> set[str]:
+def _nearest(heard: Words, sayings: Mapping[Words, str | None]) -> set[str | None]:
     """The answers of which most was said: "intensive care" for "intensive care unit"."""
     share = {said: len({*said} & {*heard}) / len(said) for said in sayings}
     most = max(share.values())
     return {answer for said, answer in sayings.items() if share[said] == most > 0.5}
 
 
-def _only(answers: set[str]) -> str | None:
+def _only(answers: set[str | None]) -> str | None:
     return next(iter(answers)) if len(answers) == 1 else None
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -32,6 +33,10 @@ DRINKS = ["tea", "green tea", "coffee", "water"]
         ("i do not", "no"),
         ("no thank you", "no"),
         ("yes no", None),
+        ("i don't know", None),
+        ("i do not know maybe", None),
+        ("i am not sure", None),
+        ("sure", "yes"),
         ("", None),
     ],
 )
@@ -256,6 +261,31 @@ def test_a_greeting_is_no_digit_though_the_recogniser_hears_one() -> None:
     assert (answer.heard, answer.answer) == ("good morning", None)
 
 
+def test_a_number_among_other_words_is_none() -> None:
+    """ "One handed" is what "one hundred" sounds like, and no one."""
+    numbers = expect("number", "en")
+    judge = Judge(one_handed=-1.9, one_hundred=-4.0, one=-7.5)
+    answer = answer_in(heard(("one hundred", 32.0)), NOTHING, numbers, judge)
+    assert (answer.heard, answer.answer) == ("one hundred", "100")
+    hedged = answer_in(
+        heard(("twelve", 32.0)), NOTHING, numbers, Judge(i_think_about_twelve=-0.9, twelve=-9.5)
+    )
+    assert hedged.answer == "12"
+
+
+def test_everyday_words_are_an_answer_if_they_are_heard_freely_or_are_likely() -> None:
+    """ "Look at that" is "okay" to an ear that only expects a yes or a no."""
+    yes_no = expect("yes-no", "en")
+    okay = heard(("okay", 40.0))  # freely "big"
+    aside = answer_in(okay, NOTHING, yes_no, Judge(look_at_that=-2.6, okay=-7.8))
+    assert (aside.heard, aside.answer) == ("look at that", None)
+    likely = answer_in(okay, NOTHING, yes_no, Judge(oh_gay=-2.6, okay=-3.9))
+    assert likely.answer == "yes"
+    freely = replace(okay, free_text="okay then")
+    sure = answer_in(freely, NOTHING, yes_no, Judge(look_at_that=-2.6, okay=-7.8))
+    assert sure.answer == "yes"
+
+
 def test_where_nothing_like_an_answer_is_heard_there_is_none() -> None:
     judge = Judge(good_morning=-0.1)
     answer = answer_in(heard(("pharmacy", 32.0)), NOTHING, expect(WAYS, "en"), judge)
@@ -270,10 +300,15 @@ def test_nothing_to_choose_from_is_said(nothing: str) -> None:
 
 @pytest.mark.parametrize("language", ["en", "de", "fr"])
 def test_each_language_has_its_yes_and_no(language: str) -> None:
-    words = {"en": ("yes", "nope"), "de": ("ja gerne", "nein danke"), "fr": ("oui", "non merci")}
-    yes, no = words[language]
+    words = {
+        "en": ("yes", "nope", "I have no idea"),
+        "de": ("ja gerne", "nein danke", "das weiß ich nicht"),
+        "fr": ("oui", "non merci", "je ne sais pas"),
+    }
+    yes, no, neither = words[language]
     assert expect("yes-no", language).read(yes) == "yes"
     assert expect("yes-no", language).read(no) == "no"
+    assert expect("yes-no", language).read(neither) is None
 
 
 # ── with the real model ──────────────────────────────────────────────────────────────────────
