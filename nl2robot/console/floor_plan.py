@@ -6,21 +6,21 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from sim.view import ThingSeen
-from sim.world import Door, Furniture, Person, Place, Polygon, Thing, World
+from sim.world import Door, Furniture, Person, Place, Point, Polygon, Thing, World
 
 Names = dict[str, str]
 
 
 def floor_plan(world: World, things: Sequence[ThingSeen] = ()) -> dict[str, Any]:
     """What does not change on a floor. `things` says where the world's objects were at first."""
-    x1, y1, x2, y2 = world.bounds
+    ground = [_polygon(outline) for outline in _ground(world)]
     return {
         "name": world.name,
         "robot": {"name": world.robot.name, "radius": world.robot.radius},
-        "bounds": [x1, y1, x2, y2],
+        "bounds": _bounds(world, ground),
         "wall": world.wall_thickness,
         "walls": world.drawn_walls,
-        "ground": [_polygon(outline) for outline in _ground(world)],
+        "ground": ground,
         "doors": [_door(world, door) for door in world.doors],
         "places": [_place(world, place) for place in world.places],
         "people": {person.name: names for person in world.people if (names := _names(person))},
@@ -38,7 +38,15 @@ def _ground(world: World) -> Iterable[Polygon]:
     return outlines(world.map)
 
 
-def _polygon(polygon: Polygon) -> list[tuple[float, float]]:
+def _bounds(world: World, ground: list[list[Point]]) -> tuple[float, float, float, float]:
+    """What there is to see: of an image the floor, without the unknown around it."""
+    if not ground or world.drawn_walls:
+        return world.bounds
+    xs, ys = zip(*(corner for outline in ground for corner in outline), strict=True)
+    return (min(xs), min(ys), max(xs), max(ys))
+
+
+def _polygon(polygon: Polygon) -> list[Point]:
     return [(round(x, 3), round(y, 3)) for x, y in polygon]
 
 

@@ -5,11 +5,14 @@ from __future__ import annotations
 import queue
 import threading
 from collections.abc import Iterator
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import msgspec
+import numpy as np
 import pytest
+from PIL import Image
 
 from nl2robot.console.floor_plan import floor_plan
 from nl2robot.console.part import Backstage
@@ -83,7 +86,7 @@ def test_the_floor_has_everything_with_its_names_in_every_language() -> None:
     pharmacy = next(place for place in plan["places"] if place["name"] == "pharmacy")
     assert pharmacy["names"] == {"de": "Apotheke", "fr": "pharmacie"}
     assert len(pharmacy["area"]) >= 4 and len(pharmacy["pose"]) == 3
-    assert plan["bounds"] == [0, 0, 40, 25]
+    assert plan["bounds"] == (0, 0, 40, 25)
     assert len(plan["walls"]) > 20 and len(plan["furniture"]) > 20
     entrance = next(door for door in plan["doors"] if door["name"] == "main entrance")
     assert not entrance["open"]
@@ -92,6 +95,17 @@ def test_the_floor_has_everything_with_its_names_in_every_language() -> None:
 def test_a_part_of_a_room_is_told_from_a_room_of_its_own() -> None:
     parts = {place["name"]: place["part"] for place in floor_plan(HOSPITAL)["places"]}
     assert parts["charger"] and not parts["pharmacy"]
+
+
+def test_of_a_map_s_image_the_known_floor_is_shown(tmp_path: Path) -> None:
+    cells = np.full((120, 200), 205, np.uint8)  # unknown
+    cells[20:100, 20:180] = 254
+    Image.fromarray(cells).save(tmp_path / "floor.pgm")
+    file = tmp_path / "map.yaml"
+    file.write_text("image: floor.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n")
+    plan = floor_plan(load_world(file))
+    assert len(plan["ground"]) == 1
+    assert plan["bounds"] == pytest.approx((1, 1, 9, 5), abs=0.1)
 
 
 def test_the_map_has_the_same_texts_in_every_language() -> None:

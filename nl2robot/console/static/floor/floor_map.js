@@ -176,7 +176,8 @@ export class FloorMap {
     return scene && scene.x !== null ? [scene.x, scene.y, scene.theta] : null;
   }
 
-  /** What a click means to drive to: a place by its label or where one stands in it, else a spot. */
+  /** What a click means to drive to: a place by its name or near where one stands in it, else a
+   * spot. */
   targetAt([x, y], [u, v]) {
     const near = Math.max(NEAR, NEAR_PIXELS / this.camera.scale);
     const named = this.layers.names && this.#plan.placeNamedAt(this.camera, u, v);
@@ -406,11 +407,12 @@ export class FloorMap {
       layers: this.layers,
       path: this.#path,
       trail: this.#replay ? [] : this.motion.trail,
+      plan: this.#plan,
       floor: this.floor,
-      taken: this.#plan.taken(this.camera, this.layers),
     });
     this.#tool.paint(new Pen(context, this.camera), this.palette);
-    if (!this.#replay && this.motion.moving(now)) this.draw();
+    const unsettled = this.layers.names && !this.#plan.settled(this.camera);
+    if (unsettled || (!this.#replay && this.motion.moving(now))) this.draw();
   }
 
   #setLayer(name, on) {

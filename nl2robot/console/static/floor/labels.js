@@ -78,14 +78,14 @@ export function beside(context, name, u, v, radius, size, ...tests) {
   return null;
 }
 
-/** Write lines of text in the middle of a box, moved by some pixels. */
-export function writeLabel(context, {lines, size, box}, du, dv, ink, halo) {
+/** Write lines of text in the middle of a box. */
+export function writeLabel(context, {lines, size, box}, ink, halo) {
   context.font = `${size}px ${FONT}`;
   context.textAlign = 'center';
   context.textBaseline = 'middle';
   context.lineJoin = 'round';
-  const u = (box.left + box.right) / 2 + du;
-  const top = (box.top + box.bottom) / 2 + dv - (size * LINE * (lines.length - 1)) / 2;
+  const u = (box.left + box.right) / 2;
+  const top = (box.top + box.bottom) / 2 - (size * LINE * (lines.length - 1)) / 2;
   lines.forEach((line, number) => {
     const v = top + size * LINE * number + size * 0.05;
     if (halo) {

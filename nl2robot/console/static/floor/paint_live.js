@@ -22,18 +22,19 @@ const NAMES_FROM = 12; // pixels a metre: on a smaller plan the initials must do
 const REACH = 795; // centimetres: what the lidar reports beyond that is nothing
 
 /** Paints the scene of a frame.
- * `shown` has: floor, scene, trail, path (a dry run's), layers, taken (boxes of names). */
+ * `shown` has: plan (its painter), floor, scene, trail, path (a dry run's), layers. */
 export function paintLive(context, {camera, palette}, shown) {
   const pen = new Pen(context, camera);
   const {scene, layers} = shown;
   context.clearRect(0, 0, camera.width, camera.height);
   if (layers.paths) paintTrail(pen, palette, shown.trail, scene);
   if (shown.path) paintDryRun(pen, palette, shown.path);
+  if (scene && layers.paths) paintWay(pen, palette, scene);
+  const taken = layers.names ? shown.plan.paintNames(context, {camera, palette}) : [];
   if (!scene) return;
-  if (layers.paths) paintWay(pen, palette, scene);
   if (layers.lidar) paintLidar(pen, palette, scene);
   if (layers.things) paintThings(pen, palette, shown.floor.thingsIn(scene));
-  if (layers.people) paintPeople(pen, palette, shown);
+  if (layers.people) paintPeople(pen, palette, shown, taken);
   if (scene.x !== null) {
     paintRobot(pen, palette, [scene.x, scene.y, scene.theta], shown.floor.robot.radius);
     if (scene.holding.length && layers.names) paintHeld(pen, palette, scene, shown.floor);
@@ -167,7 +168,7 @@ function paintThings(pen, palette, things) {
   }
 }
 
-function paintPeople(pen, palette, {floor, scene, layers, taken}) {
+function paintPeople(pen, palette, {floor, scene, layers}, taken) {
   const {context} = pen;
   const size = headSize(pen.scale);
   const boxes = [...taken];
@@ -198,7 +199,7 @@ function paintPeople(pen, palette, {floor, scene, layers, taken}) {
     if (!box) continue;
     boxes.push(box);
     const label = {lines: [called], size: 11, box};
-    writeLabel(context, label, 0, 0, palette.get('ink'), palette.get('name-halo'));
+    writeLabel(context, label, palette.get('ink'), palette.get('name-halo'));
   }
 }
 
@@ -222,5 +223,5 @@ function paintHeld(pen, palette, scene, floor) {
   const text = scene.holding.map((name) => floor.thingName(name)).join(', ');
   const box = boxAt(u, v - robotSize(pen.scale, floor.robot.radius) - 9, 0, 0);
   const label = {lines: [text], size: 11, box};
-  writeLabel(pen.context, label, 0, 0, palette.get('ink'), palette.get('name-halo'));
+  writeLabel(pen.context, label, palette.get('ink'), palette.get('name-halo'));
 }

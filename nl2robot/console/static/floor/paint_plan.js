@@ -1,7 +1,10 @@
-/** What stands still: rooms, walls, doors, furniture, names, zones; as in a printed floor plan. */
+/** What stands still: rooms, walls, doors, furniture, zones, names; as in a printed floor plan. */
 
 import {placeNames, writeLabel} from './labels.js';
-import {along, area, boxAbout, radians, rectangle} from './shapes.js';
+import {along, area, boxAbout, boxAt, radians, rectangle, touches} from './shapes.js';
+
+const PAUSE = 120; // milliseconds between two placings of the names while one zooms
+const MUCH = 0.25; // zoomed by e to this, names are placed anew at once
 
 /**
  * Draws the plan of a floor.
@@ -9,7 +12,7 @@ import {along, area, boxAbout, radians, rectangle} from './shapes.js';
  */
 export class PlanPainter {
   #labels = [];
-  #labelled = null; // what the labels were placed for
+  #placed = {scale: 0, at: -Infinity}; // what the labels were placed for, and when
 
   constructor(floor) {
     this.floor = floor;
@@ -26,48 +29,55 @@ export class PlanPainter {
     if (layers.furniture) this.#paintFurniture(pen, palette);
     this.#paintDoors(pen, palette, closed);
     this.#paintWalls(context, pen, palette);
+    this.#paintSpots(pen, palette);
     this.#paintCharger(pen, palette);
     if (layers.zones) for (const zone of zones) paintZone(pen, palette, zone.polygon);
-    if (layers.names) this.#paintNames(context, camera, palette);
   }
 
-  /** The boxes of the names in pixels, for those who write between them. */
-  taken(camera, layers) {
-    if (!layers.names) return [];
-    const [u, v] = camera.toScreen(0, 0);
-    return this.#placed(null, camera).map(({box}) => ({
-      left: box.left + u,
-      right: box.right + u,
-      top: box.top + v,
-      bottom: box.bottom + v,
-    }));
+  /** Write the names, over the ways that lead below them; returns their boxes in pixels. */
+  paintNames(context, {camera, palette}) {
+    this.#place(context, camera);
+    const [ink, halo] = [palette.get('name'), palette.get('name-halo')];
+    const labels = this.#inPicture(camera);
+    for (const label of labels) writeLabel(context, label, ink, halo);
+    return labels.map(({box}) => box);
+  }
+
+  /** Whether the names are where they are best; while one zooms they only move along. */
+  settled(camera) {
+    return this.#placed.scale === camera.scale;
   }
 
   /** The place whose name is under the pixel. */
   placeNamedAt(camera, u, v) {
-    const [du, dv] = camera.toScreen(0, 0);
-    const found = this.#labels.find(
-      ({box}) =>
-        u >= box.left + du - 4 &&
-        u <= box.right + du + 4 &&
-        v >= box.top + dv - 4 &&
-        v <= box.bottom + dv + 4,
-    );
-    return found ? found.place : null;
+    const at = boxAt(u, v, 8, 8);
+    return this.#inPicture(camera).find(({box}) => touches(box, at))?.place ?? null;
   }
 
-  #placed(context, camera) {
-    if (context && this.#labelled !== camera.scale) {
-      this.#labelled = camera.scale;
-      const {now, things, places} = this.floor;
-      const spots = [
-        ...now.people.map(([, , x, y]) => [x, y]),
-        ...things.map(({x, y}) => [x, y]),
-        ...places.flatMap(({pose}) => (pose ? [pose] : [])),
-      ];
-      this.#labels = placeNames(context, this.floor, spots, camera.scale);
-    }
-    return this.#labels;
+  #place(context, {scale}) {
+    const now = performance.now();
+    const zoomed = Math.abs(Math.log(scale / this.#placed.scale));
+    if (!zoomed || (zoomed < MUCH && now - this.#placed.at < PAUSE)) return;
+    const {people} = this.floor.now;
+    const spots = [
+      ...people.map(([, , x, y]) => [x, y]),
+      ...this.floor.things.map(({x, y}) => [x, y]),
+      ...this.floor.places.flatMap(({pose}) => (pose ? [pose] : [])),
+    ];
+    this.#labels = placeNames(context, this.floor, spots, scale);
+    this.#placed = {scale, at: now};
+  }
+
+  /** The labels in pixels of the picture. */
+  #inPicture(camera) {
+    const [du, dv] = camera.toScreen(0, 0);
+    const ratio = camera.scale / this.#placed.scale;
+    return this.#labels.map((label) => {
+      const {left, top, right, bottom} = label.box;
+      const u = ((left + right) / 2) * ratio + du;
+      const v = ((top + bottom) / 2) * ratio + dv;
+      return {...label, box: boxAt(u, v, right - left, bottom - top)};
+    });
   }
 
   #paintRooms(context, pen, palette) {
@@ -159,6 +169,13 @@ export class PlanPainter {
     }
   }
 
+  /** Places that are no rooms: where one stands in them. */
+  #paintSpots(pen, palette) {
+    for (const {area: floor, kind, pose} of this.floor.places) {
+      if (pose && !floor.length && kind !== 'charger') pen.disc(pose, 3, palette.get('name'));
+    }
+  }
+
   #paintCharger(pen, palette) {
     const charger = this.floor.places.find((place) => place.kind === 'charger' && place.pose);
     if (!charger) return;
@@ -176,13 +193,6 @@ export class PlanPainter {
       bolt.map(([a, b]) => [u + a * size, v + b * size]),
       palette.get('bolt'),
     );
-  }
-
-  #paintNames(context, camera, palette) {
-    const [u, v] = camera.toScreen(0, 0);
-    for (const label of this.#placed(context, camera)) {
-      writeLabel(context, label, u, v, palette.get('name'), palette.get('name-halo'));
-    }
   }
 }
 

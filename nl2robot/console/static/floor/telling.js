@@ -7,7 +7,8 @@ const PACE = 4000; // milliseconds between two texts, so that a screen reader ca
 /** Where the robot is, where it goes, and how many people are there, in a sentence or two. */
 export function inWords(scene, floor, words) {
   if (!scene || scene.x === null) return words.told_unknown;
-  const robot = floor.robot.name;
+  const {name} = floor.robot;
+  const robot = name.slice(0, 1).toUpperCase() + name.slice(1); // it begins a sentence
   const place = floor.placeAt(scene.x, scene.y);
   const told = [
     place
