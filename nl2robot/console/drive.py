@@ -18,6 +18,7 @@ def part(backstage: Backstage) -> Part:
         def drive() -> None:
             with frame(backstage, "drive") as visit:
                 ui.add_head_html(
+                    '<link rel="stylesheet" href="/static/floor/floor.css">'
                     '<link rel="stylesheet" href="/static/drive/drive.css">'
                     '<script type="module" src="/static/drive/drive.js"></script>'
                 )

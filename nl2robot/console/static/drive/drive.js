@@ -17,9 +17,10 @@ const has = (method) => body.methods.includes(method);
 helm.start(pageData.who, operates);
 root.classList.toggle('looks-on', !operates);
 
+const go = has('goto') && operates ? goPanel(body) : null;
 const map = element('div', {id: 'drive-map'});
 const columns = [
-  [panel('map', map), has('goto') && operates && goPanel(body), logPanel()],
+  [panel('map', map), go?.section, logPanel()],
   [
     has('drive') && operates && joystickPanel().section,
     has('say') && sayPanel(body, pageData.language),
@@ -29,13 +30,13 @@ const columns = [
     has('emotion') && facePanel(body),
     has('gesture') && operates && gesturePanel(body),
     has('joint') && operates && jointPanel(body),
-    has('call') && callPanel(body),
+    has('call') && callPanel(body, pageData.who, operates),
     operates && codePanel(body),
   ],
 ].map((panels) => element('div', {class: 'column'}, ...panels.filter(Boolean)));
 
 root.append(helmBar(body, operates), element('div', {class: 'columns'}, ...columns));
-mountMap(map, pageData.language, operates).catch((error) => {
+mountMap(map, pageData.language, go?.run).catch((error) => {
   console.warn(error);
   map.closest('.panel').hidden = true;
 });

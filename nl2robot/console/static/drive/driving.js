@@ -26,8 +26,8 @@ export function helmBar(body, operates) {
     bar.dataset.helm = mine ? 'mine' : state.driver ? 'taken' : 'free';
     who.textContent = whoDrives(state, mine);
     take.hidden = mine;
-    take.disabled = helm.asked || helm.me === null;
-    take.textContent = say(helm.asked ? 'asked' : state.driver ? 'ask' : 'take');
+    take.disabled = helm.me === null;
+    take.textContent = say(helm.asked ? 'ask_again' : state.driver ? 'ask' : 'take');
     give.hidden = !mine;
     asking.replaceChildren(...(mine && operates ? state.asking.map(request) : []));
   });
@@ -37,7 +37,8 @@ export function helmBar(body, operates) {
 function whoDrives(state, mine) {
   if (mine) return say('you_drive');
   if (state.driver === null) return say('nobody_drives');
-  return say('somebody_drives', {who: state.who, time: clock(state.since)});
+  const told = say('somebody_drives', {who: state.who, time: clock(state.since)});
+  return helm.asked ? `${told} ${say('asked')}` : told;
 }
 
 function request(asking) {
@@ -128,6 +129,7 @@ export function joystickPanel() {
 
 // --- where to go
 
+/** The panel, and `run(method, given)` for other movements that take their time. */
 export function goPanel(body) {
   const has = (method) => body.methods.includes(method);
   const list = element('div', {class: 'choices places', role: 'radiogroup'});
@@ -156,11 +158,13 @@ export function goPanel(body) {
   list.addEventListener('change', enable);
   enable();
   const offered = [has('goto') && go, has('localize') && here, has('dock') && dock].filter(Boolean);
-  return panel(
+  const tools = element('div', {class: 'row'}, ...offered);
+  const section = panel(
     'go',
     errand.line,
-    controls(labelled(say('find_place'), filter), list, element('div', {class: 'row'}, ...offered)),
+    controls(labelled(say('find_place'), filter), list, tools),
   );
+  return {section, run: errand.run};
 }
 
 /** A movement that takes its time: it says so, and can be cancelled. */
@@ -183,13 +187,13 @@ function errandLine() {
   return {line, run};
 }
 
-/** The floor plan, where a click sends the robot and a drag says where it is. */
-export async function mountMap(place, language, operates) {
+/** The floor plan; with `run`, a click sends the robot and a drag says where it is. */
+export async function mountMap(place, language, run) {
   const {mountFloorMap} = await import('/static/floor/floor_map.js');
-  place.addEventListener('go', ({detail: {x, y}}) => doing(helm.call('goto', {x, y})));
+  place.addEventListener('go', ({detail: {x, y}}) => doing(run('goto', {x, y})));
   place.addEventListener('localise', ({detail: {x, y, theta}}) =>
     doing(helm.call('localize', {x, y, theta})),
   );
   const modes = ['look', 'send', 'localise'];
-  await mountFloorMap(place, {wire, language, operator: operates, modes, places: false});
+  await mountFloorMap(place, {wire, language, operator: Boolean(run), modes, places: false});
 }

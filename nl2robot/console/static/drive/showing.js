@@ -1,7 +1,7 @@
 /** What the robot shows, scans, and whom it calls. */
 
 import {notice} from '/static/console.js';
-import {element} from '/static/page.js';
+import {element, pageData} from '/static/page.js';
 import {wire} from '/static/wire.js';
 import {helm} from './helm.js';
 import {button, controls, doing, labelled, newId, panel} from './panel.js';
@@ -224,26 +224,33 @@ async function copied(text) {
 
 // --- telepresence
 
-export function callPanel(body) {
+export function callPanel(body, who, operates) {
+  const state = element('p', {class: 'call-state', role: 'status'});
   const whom = element('select', {class: 'field'});
   whom.append(...body.contacts.map((name) => element('option', {value: name}, name)));
-  const state = element('p', {class: 'call-state', role: 'status'});
-  const show = (call) => {
-    const going = call && call.state !== 'ended';
-    state.textContent = call ? say(`call_${call.state}`, {who: call.contact}) : '';
-    hangUp.disabled = !going;
-  };
-  const ring = button(say('call'), () => helm.call('call', {contact: whom.value}), {
-    class: 'primary',
-  });
+  const ring = button(say('robot_call'), () => helm.call('call', {contact: whom.value}));
   const hangUp = button(say('hang_up'), () => helm.call('hang_up'), {class: 'danger'});
+  const show = (call) => {
+    state.textContent = call ? say(`call_${call.state}`, {who: call.contact}) : '';
+    hangUp.disabled = !call || call.state === 'ended';
+  };
   show(body.now.call);
   wire.subscribe('call', show);
   const mount = element('section', {id: 'call', 'aria-label': say('call_title')});
-  return panel(
-    'call',
-    controls(labelled(say('contact'), whom), element('div', {class: 'row'}, ring, hangUp)),
-    state,
-    mount,
+  const byRobot = controls(
+    labelled(say('contact'), whom),
+    element('div', {class: 'row'}, ring, hangUp),
   );
+  const inside = [byRobot, state, mount];
+  if (operates) inside.unshift(callTheRobot(mount, who));
+  return panel('call', ...inside);
+}
+
+/** A video call with whoever stands before the robot; it needs no helm. */
+function callTheRobot(mount, who) {
+  const calls = import('/static/face/call.js').then(({mountCall}) =>
+    mountCall(mount, {wire, words: pageData.call, role: 'operator', who}),
+  );
+  calls.catch((error) => console.warn(error));
+  return button(say('call_robot'), async () => (await calls).start(), {class: 'primary'});
 }
