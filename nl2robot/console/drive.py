@@ -13,6 +13,7 @@ def part(backstage: Backstage) -> Part:
         from nicegui import ui
 
         from nl2robot.console.frame import frame
+        from nl2robot.console.visitor import texts
 
         @ui.page("/drive")
         def drive() -> None:
@@ -22,7 +23,8 @@ def part(backstage: Backstage) -> Part:
                     '<link rel="stylesheet" href="/static/drive/drive.css">'
                     '<script type="module" src="/static/drive/drive.js"></script>'
                 )
-                visit.hand_over({"words": dict(visit.words)})
+                words = {"words": dict(visit.words), "call": dict(texts("call", visit.language))}
+                visit.hand_over(words)
                 ui.html('<div id="drive"></div>', sanitize=False)
 
     return Part(pages=pages)

@@ -184,6 +184,14 @@ def test_what_the_panels_do(look: Look, watch: Watch, tmp_path: Any, picture: An
     codes = panel(page, "Bar and QR codes")
     codes.locator("input[type=file]").set_input_files(file)
     expect(codes.get_by_role("listitem")).to_contain_text("bed 12")
+    with page.expect_response("**/codes") as looked:
+        codes.get_by_role("button", name="With this camera").click()
+    assert looked.value.json() == {"codes": []}
+    codes.get_by_role("button", name="Switch the camera off").click()
+    expect(codes.locator("video")).to_be_hidden()
+
+    page.get_by_role("button", name="Video call with the robot").click()
+    expect(page.locator("#notice, #call")).to_contain_text(["face is not open"])
 
     log = panel(page, "Log")
     log.get_by_label("Search").fill("head_yaw")
