@@ -173,7 +173,7 @@ MOUNT = """async (words) => {
   const {wire} = await import('/static/wire.js');
   const corner = document.createElement('div');
   document.body.append(corner);
-  window.calls = mountCall(corner, {wire, words, role: 'operator', who: 'Nurse Ann'});
+  mountCall(corner, {wire, words, role: 'operator', who: 'Nurse Ann'});
   await wire.request('call.ready', {side: 'operator'});
 }"""
 MOVES = """() => {
@@ -224,7 +224,7 @@ def test_a_call_between_two_browsers(look: Look, served: Served) -> None:
         with pytest.raises(NotPossible, match="declined"):
             called.result(AT_ONCE)
 
-    desk.evaluate("calls.start()")
+    desk.evaluate("document.dispatchEvent(new CustomEvent('call-robot'))")
     face.get_by_role("button", name="Accept").click()
     for page in (desk, face):
         page.wait_for_function(MOVES)

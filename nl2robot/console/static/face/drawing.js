@@ -3,7 +3,7 @@
  *
  *   const face = drawFace(element);
  *   face.look({emotion: 'happy', activity: 'listening'});
- *   face.speak(3.5);
+ *   face.speak(3.5);      // or, where it is heard here: face.sound(0.4), how loud it is just now
  *
  * By itself it blinks, breathes and lets its eyes wander, unless the system asks for less motion.
  */
@@ -61,6 +61,7 @@ const ALIASES = {
 const SVG = 'http://www.w3.org/2000/svg';
 const QUICK = 0.085; // seconds in which a feature covers most of its way to a new look
 const SYLLABLE = 0.17;
+const SOUND_LASTS = 0.25; // seconds after which a sound that is not told of any more is over
 
 /** The look of that name, or of its alias; neutral for one that nobody knows. */
 export function lookNamed(name) {
@@ -83,6 +84,8 @@ class Face {
     this._nextGaze = this._nextBlink = 1.5;
     this._blinkAt = -1;
     this._speaksUntil = 0;
+    this._loud = 0;
+    this._loudUntil = 0;
     this._time = performance.now() / 1000;
     element.innerHTML = PICTURE;
     this._parts = Object.fromEntries(
@@ -110,6 +113,15 @@ class Face {
   speak(seconds) {
     this._speaksUntil = performance.now() / 1000 + seconds;
     this._element.dataset.speaking = seconds > 0 ? 'yes' : '';
+  }
+
+  /** Move the mouth as loud as it sounds, 0 to 1; 0 when nothing sounds any more. */
+  sound(level) {
+    const now = performance.now() / 1000;
+    this._loud = level;
+    this._loudUntil = now + SOUND_LASTS;
+    if (level > 0) this.speak(Math.max(SOUND_LASTS, this._speaksUntil - now));
+    else this._speaksUntil = Math.min(this._speaksUntil, now + SOUND_LASTS);
   }
 
   get speaking() {
@@ -217,7 +229,9 @@ class Face {
     let half = MOUTH.wide * now.wide;
     if (this.speaking) {
       const beat = time || 0.1;
-      const talk = Math.abs(Math.sin((beat / SYLLABLE) * Math.PI * 0.5) * Math.sin(beat * 3.7 + 1));
+      const heard = performance.now() / 1000 < this._loudUntil;
+      const babble = Math.sin((beat / SYLLABLE) * Math.PI * 0.5) * Math.sin(beat * 3.7 + 1);
+      const talk = heard ? this._loud : Math.abs(babble);
       open = Math.max(open * 0.5, 0.16) + 0.5 * talk;
       half *= 0.82 + 0.16 * Math.cos(beat * 5.3);
     }

@@ -4,6 +4,7 @@ import {mountCall} from '/static/face/call.js';
 import {Content} from '/static/face/content.js';
 import {drawFace} from '/static/face/drawing.js';
 import {element, pageData} from '/static/page.js';
+import {playSpeech} from '/static/voice.js';
 import {wire} from '/static/wire.js';
 
 const SECONDS_A_LETTER = 0.06;
@@ -176,6 +177,13 @@ document.addEventListener('visibilitychange', () => {
   keepAwake();
 });
 
+playSpeech(wire, {
+  onLevel: (level) => face.sound(level),
+  onBlocked(blocked) {
+    if (blocked) notice(words.touch_to_hear, true);
+    else at.notice.hidden = true;
+  },
+});
 wire.subscribe('face', (change) => (early ? early.push(change) : apply(change)));
 wire.subscribe('face.act', async (order) => {
   const html = await content.act(order);
