@@ -8,6 +8,7 @@ not logged is not done.
 
 from __future__ import annotations
 
+import json
 import os
 import sqlite3
 import threading
@@ -60,9 +61,13 @@ CREATE TABLE IF NOT EXISTS output (
     time REAL NOT NULL,
     text TEXT NOT NULL
 );
+CREATE TABLE IF NOT EXISTS movements (
+    run INTEGER PRIMARY KEY REFERENCES runs(id),
+    record BLOB NOT NULL             -- see nl2robot/kept_record.py
+);
 """
 
-_VERSION = 3
+_VERSION = 4
 _ADDED = {"start": "TEXT", "process": "INTEGER"}
 """Columns of `runs` that a log of an older version has not got."""
 
@@ -97,10 +102,11 @@ class Run(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def going_on(self) -> bool:
         """Whether it is not over and the process that runs it still lives."""
-        return self.status is None and self.process is not None and _lives(self.process)
+        return self.status is None and self.process is not None and lives(self.process)
 
 
-def _lives(process: int) -> bool:
+def lives(process: int) -> bool:
+    """Whether the process of this number is there."""
     try:
         os.kill(process, 0)
     except ProcessLookupError:
@@ -221,6 +227,15 @@ class RunLog:
     def picture(self, run: int, path: str) -> None:
         self._write("UPDATE runs SET picture = ? WHERE id = ?", path, run)
 
+    def keep_movement(self, run: int, record: bytes, kept: int) -> None:
+        """Keep where the robot was in a run; of all those only the newest `kept`."""
+        self._write("INSERT OR REPLACE INTO movements VALUES (?, ?)", run, record)
+        self._write(
+            "DELETE FROM movements WHERE run <="
+            " (SELECT run FROM movements ORDER BY run DESC LIMIT 1 OFFSET ?)",
+            kept,
+        )
+
     # --- reading
 
     def runs(self, last: int = 20) -> list[Run]:
@@ -243,6 +258,18 @@ class RunLog:
     def output(self, run: int) -> list[str]:
         rows = self._read("SELECT text FROM output WHERE run = ? ORDER BY time, rowid", run)
         return [row["text"] for row in rows]
+
+    def movement(self, run: int) -> bytes | None:
+        rows = self._read("SELECT record FROM movements WHERE run = ?", run)
+        return rows[0]["record"] if rows else None
+
+    def whole(self, run: Run) -> dict[str, Any]:
+        """Everything about a run, as JSON data."""
+        data: dict[str, Any] = msgspec.to_builtins(run)
+        data["plan"] = json.loads(run.plan) if run.plan else None
+        data["calls"] = msgspec.to_builtins(self.calls(run.id))
+        data["output"] = self.output(run.id)
+        return data
 
     # --- the file
 

@@ -8,8 +8,6 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 from nl2robot.commands.options import open_log, whole
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.plain import visible
@@ -45,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
     if row is None:
         raise UserError(f"There is no run {options.run}. `nl2robot log` lists those there are.")
     if options.json:
-        print(json.dumps(_whole(log, row), ensure_ascii=False))
+        print(json.dumps(log.whole(row), ensure_ascii=False))
     elif options.replay:
         return _replay(log, row, terminal, options.picture)
     else:
@@ -57,7 +55,7 @@ def _list(log: RunLog, terminal: Terminal, options: argparse.Namespace) -> None:
     runs = log.runs(options.last)
     if options.json:
         for row in runs:
-            print(json.dumps(_whole(log, row), ensure_ascii=False))
+            print(json.dumps(log.whole(row), ensure_ascii=False))
         return
     if not runs:
         terminal.console.print('Nothing was run yet. Try: nl2robot run "say hello"')
@@ -127,14 +125,6 @@ def _replay(log: RunLog, row: Run, terminal: Terminal, picture: str | None) -> i
         draw(simulation.record, world, Path(picture))
         terminal.console.print(f"Picture: {picture}", soft_wrap=True, markup=False)
     return ExitStatus.OK if not again.differences else ExitStatus.FAILED
-
-
-def _whole(log: RunLog, row: Run) -> dict[str, Any]:
-    data: dict[str, Any] = msgspec.to_builtins(row)
-    data["plan"] = json.loads(row.plan) if row.plan else None
-    data["calls"] = msgspec.to_builtins(log.calls(row.id))
-    data["output"] = log.output(row.id)
-    return data
 
 
 def _how(row: Run) -> str:
