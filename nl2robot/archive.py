@@ -27,6 +27,8 @@ State = Literal["running", "done", "failed", "stopped", "limit", "interrupted"]
 STATES: Final[tuple[State, ...]] = get_args(State)
 PAGE: Final = 50
 """Runs on a page."""
+READ_AT_ONCE: Final = 1000
+"""Runs, of those for a file."""
 LONGEST: Final = 200
 """Letters of what is looked for; the rest is left out."""
 MOST_WORDS: Final = 8
@@ -108,15 +110,16 @@ class Archive:
         return Page(runs=tuple(runs[:size]), more=len(runs) > size, found=found)
 
     def all(self, wanted: Wanted, most: int) -> Iterator[Brief]:
-        """The newest `most` runs that are wanted, read page by page."""
+        """The newest `most` runs that are wanted, read some at a time."""
         before = None
         while most > 0:
-            page = self.page(wanted, before, min(most, 500)).runs
-            yield from page
-            if not page:
+            with self._reading() as db:
+                runs = _briefs(db, *_condition(wanted, db), before, min(most, READ_AT_ONCE))
+            yield from runs
+            if len(runs) < READ_AT_ONCE:
                 return
-            most -= len(page)
-            before = page[-1].id
+            most -= len(runs)
+            before = runs[-1].id
 
     def neighbours(self, run: int) -> tuple[int | None, int | None]:
         """The runs before and after this one."""

@@ -1,0 +1,146 @@
+"""The log of past runs: the list (`/runs`) and the page of one run (`/runs/12`).
+
+    /runs?words=tea&state=failed     search over sentences, programs, people; state and day
+    /runs/export.csv, export.json    the same runs as a file
+    /runs/12                         said, approved, run: program, calls, picture, to watch again
+    /runs/12/run.json, program.py    all of it, and the program alone
+    /runs/12/movement.json, floor.svg, picture.svg       what the page watches
+
+The pages are made at the server (`runs_view`), to be there at once; `static/past_runs.js`
+keeps a run that goes on up to date, and lets its movement be watched. Nothing here moves a robot:
+"run again" opens the review with the program.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+from starlette.requests import Request
+
+from nl2robot.archive import Archive
+from nl2robot.console import runs_files, runs_view
+from nl2robot.console.part import Backstage, Part
+from nl2robot.console.runs_asked import PROPERTIES, Asked, BadDay, asked
+from nl2robot.console.visitor import texts, visitor_of
+from nl2robot.errors import UserError
+from nl2robot.kept_record import Recorder
+from nl2robot.wire import service
+from robot_api.errors import NotPossible
+from robot_api.server import Service
+
+_HEAD = (
+    '<link rel="stylesheet" href="/static/past_runs.css">'
+    '<script type="module" src="/static/past_runs.js"></script>'
+)
+_FOR_SCRIPTS = (
+    *("play", "pause", "says", "hears", "shows", "feels", "gestures"),
+    *("replay_failed", "shortened", "stale"),
+)
+
+
+def part(backstage: Backstage) -> Part:
+    archive = Archive(backstage.runner.log.path)
+    recorder = Recorder(backstage.runner.log)
+    return Part(
+        services=_services(backstage, archive),
+        routes=runs_files.routes(backstage, archive),
+        pages=partial(_pages, backstage, archive),
+        close=backstage.subscribe(recorder.note),
+    )
+
+
+def _pages(backstage: Backstage, archive: Archive) -> None:
+    from nicegui import ui
+
+    from nl2robot.console.frame import frame
+
+    def show(html: str) -> None:
+        with frame(backstage, "runs") as visit:
+            visit.hand_over({"words": {name: visit.words[name] for name in _FOR_SCRIPTS}})
+            ui.add_head_html(_HEAD)
+            ui.html(html, sanitize=False)
+
+    @ui.page("/runs")
+    async def runs(request: Request) -> None:
+        show(await asyncio.to_thread(_list_page, archive, request))
+
+    @ui.page("/runs/{number:int}")
+    async def run(request: Request, number: int) -> None:
+        show(await asyncio.to_thread(_run_page, backstage, archive, request, number))
+
+
+def _list_page(archive: Archive, request: Request) -> str:
+    words = texts("runs", visitor_of(request).language)
+    try:
+        wanted = asked(request.query_params)
+        page = archive.page(wanted.wanted, wanted.before)
+    except BadDay as error:
+        trouble = words["bad_day"].format(day=error.day)
+    except UserError as error:
+        trouble = str(error)
+    else:
+        return runs_view.list_page(wanted, page, None, words)
+    return runs_view.list_page(Asked(), None, trouble, words)
+
+
+def _run_page(backstage: Backstage, archive: Archive, request: Request, number: int) -> str:
+    visitor = visitor_of(request)
+    words = texts("runs", visitor.language)
+    log = backstage.runner.log
+    try:
+        run = log.run(number)
+        if run is not None:
+            return runs_view.run_page(
+                run,
+                log,
+                backstage.runner.knowledge,
+                visitor.language,
+                words,
+                visitor.role,
+                archive.neighbours(number),
+            )
+    except UserError as error:
+        return runs_view.list_page(Asked(), None, str(error), words)
+    return runs_view.list_page(Asked(), None, words["no_such_run"].format(number=number), words)
+
+
+def _services(backstage: Backstage, archive: Archive) -> dict[str, Service]:
+    log = backstage.runner.log
+
+    def listed(p: Mapping[str, Any]) -> Any:
+        wanted = asked(p)
+        page = archive.page(wanted.wanted, wanted.before)
+        return {
+            "runs": [runs_files.row(run) for run in page.runs],
+            "found": page.found,
+            "more": page.more,
+        }
+
+    def shown(p: Mapping[str, Any]) -> Any:
+        run = log.run(p["run"])
+        if run is None:
+            raise NotPossible(f"There is no run {p['run']}. runs.list tells those there are.")
+        return log.whole(run)
+
+    def looking(
+        handler: Callable[[Mapping[str, Any]], Any], doc: str, properties: Any, required: str = ""
+    ) -> Service:
+        return service(handler, doc, dict(properties), required, observes=True)
+
+    return {
+        "runs.list": looking(
+            listed,
+            "List past runs, newest first: those with all these words, in this state, of these"
+            " days (2026-11-24), older than the run `before`.",
+            PROPERTIES,
+        ),
+        "runs.show": looking(
+            shown,
+            "Everything that is logged of a run.",
+            {"run": {"type": "integer", "minimum": 1}},
+            "run",
+        ),
+    }

@@ -1,0 +1,193 @@
+"""The log of past runs as HTML, made at the server; see `templates/`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from datetime import datetime
+from functools import cache
+from typing import Any, Final
+from urllib.parse import quote
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from grammar.explain import LineTold, explain_program
+from grammar.language import load_language
+from grammar.naming import naming
+from nl2robot.archive import STATES, Page, state_of
+from nl2robot.console.highlight import highlighted
+from nl2robot.console.runs_asked import Asked
+from nl2robot.knowledge import Knowledge
+from nl2robot.plain import visible
+from nl2robot.runlog import LoggedCall, Run, RunLog
+
+CALLS_SHOWN: Final = 500
+"""Of a run; the newest."""
+LONGEST_RESULT: Final = 2000
+"""Letters of a result or an argument."""
+
+Words = Mapping[str, str]
+
+
+def list_page(asked: Asked, page: Page | None, trouble: str | None, words: Words) -> str:
+    """The whole list page."""
+    return _rendered("runs.html", **_found(asked, page, trouble, words), states=STATES, words=words)
+
+
+def found(asked: Asked, page: Page | None, trouble: str | None, words: Words) -> str:
+    """What was found; None and what is the trouble if it could not be looked for."""
+    return _rendered("runs_found.html", **_found(asked, page, trouble, words), words=words)
+
+
+def _found(asked: Asked, page: Page | None, trouble: str | None, words: Words) -> dict[str, Any]:
+    about: dict[str, Any] = {"asked": asked, "page": page, "trouble": trouble}
+    if page is not None:
+        number = f"{page.found:,}".replace(",", words["thousands"])
+        about |= {
+            "number_found": words["found_one" if page.found == 1 else "found_many"].format(
+                number=number
+            ),
+            "query": asked.query(),
+            "newest": asked.before is not None,
+            "older": asked.query(page.runs[-1].id) if page.more else None,
+        }
+    return about
+
+
+def run_page(
+    run: Run,
+    log: RunLog,
+    knowledge: Knowledge,
+    language: str,
+    words: Words,
+    role: str,
+    neighbours: tuple[int | None, int | None],
+) -> str:
+    """The whole page of a run."""
+    told = _told(run.program, knowledge, language)
+    lines = [
+        {
+            "number": number,
+            "code": code,
+            "readings": [each for each in told if each.line == number],
+        }
+        for number, code in enumerate(highlighted(run.program), 1)
+    ]
+    return _rendered(
+        "run.html",
+        **_standing(run, log, words),
+        lines=lines,
+        role=role,
+        older=neighbours[0],
+        newer=neighbours[1],
+    )
+
+
+def run_parts(run: Run, log: RunLog, words: Words) -> dict[str, Any]:
+    """What changes of a run's page while it goes on: its parts by name, its state, its line."""
+    about = _standing(run, log, words)
+    parts = {name: _rendered(f"run_{name}.html", **about) for name in ("head", "watch", "calls")}
+    return {**parts, "state": about["state"], "line": about["line"]}
+
+
+def _standing(run: Run, log: RunLog, words: Words) -> dict[str, Any]:
+    calls = log.calls(run.id)
+    state = state_of(run.status, run.process)
+    return {
+        "run": run,
+        "state": state,
+        "line": calls[-1].line if calls and state == "running" else None,
+        "title": run.utterance or run.heard or words["written"],
+        "calls": [_call(call, run) for call in calls[-CALLS_SHOWN:]],
+        "left_out": max(0, len(calls) - CALLS_SHOWN),
+        "printed": "".join(log.output(run.id)),
+        "moved": log.movement(run.id) is not None,
+        "pictured": run.picture is not None,
+        "words": words,
+    }
+
+
+def _call(call: LoggedCall, run: Run) -> dict[str, Any]:
+    given = {name: value for name, value in json.loads(call.arguments).items() if value is not None}
+    written = ", ".join(f"{name}={value!r}" for name, value in given.items())
+    [code] = highlighted(f"robot.{call.method}({written[:LONGEST_RESULT]})".replace("\n", " "))
+    result = call.error or ("" if call.result in (None, "null") else _shown(call.result or ""))
+    return {
+        "at": call.started - run.started,
+        "line": call.line,
+        "call": code,
+        "result": result[:LONGEST_RESULT],
+        "trouble": call.error is not None,
+        "seconds": call.seconds,
+    }
+
+
+def _shown(result: str) -> str:
+    """A result as people write it: a text without quotation marks."""
+    value = json.loads(result)
+    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+
+
+def _told(program: str, knowledge: Knowledge, language: str) -> list[LineTold]:
+    """The program in plain words; nothing of what is none in this version."""
+    called = naming(knowledge.lexicon(language), load_language(language)).called
+    try:
+        return explain_program(program, language, called)
+    except (SyntaxError, ValueError, RecursionError):
+        return []
+
+
+# --- how things are written -------------------------------------------------------------------
+
+
+def duration(seconds: float) -> str:
+    """ "42 s", "1:42 min", "2:05 h"."""
+    whole = max(0, round(seconds))
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60}:{whole % 60:02} min"
+    return f"{whole // 3600}:{whole // 60 % 60:02} h"
+
+
+def clock(seconds: float) -> str:
+    """ "1:05", minutes and seconds of a run."""
+    whole = max(0, int(seconds))
+    return f"{whole // 60}:{whole % 60:02}"
+
+
+def _when(seconds: float, words: Words) -> str:
+    return datetime.fromtimestamp(seconds).strftime(words["when"])
+
+
+def _iso(seconds: float) -> str:
+    return datetime.fromtimestamp(seconds).astimezone().isoformat(timespec="seconds")
+
+
+def _visible(text: str) -> str | Markup:
+    return text if isinstance(text, Markup) else visible(text)
+
+
+@cache
+def _environment() -> Environment:
+    environment = Environment(
+        loader=PackageLoader("nl2robot.console"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {
+        "visible": _visible,
+        "when": _when,
+        "iso": _iso,
+        "duration": duration,
+        "clock": clock,
+        "encoded": lambda text: quote(text, safe=""),
+    }
+    return environment
+
+
+def _rendered(template: str, **about: Any) -> str:
+    return _environment().get_template(template).render(**about)
