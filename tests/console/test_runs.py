@@ -114,7 +114,9 @@ def test_a_run_is_told_in_every_language(log, knowledge, language) -> None:
 
 def test_a_program_is_shown_with_its_lines_in_plain_words(log, knowledge) -> None:
     page = page_of(log, knowledge, ran(log))
-    assert '<span class="s2">"pharmacy"</span>'.replace('"pharmacy"', "&quot;pharmacy&quot;") in page
+    assert (
+        '<span class="s2">"pharmacy"</span>'.replace('"pharmacy"', "&quot;pharmacy&quot;") in page
+    )
     assert "go to the pharmacy" in plain(page)
     assert f'href="/?program={quote(PROGRAM, safe="")}"' in page
 
