@@ -56,11 +56,18 @@ NOTICE_SIGNALS: Final = 0.1
 may hand it to another thread."""
 
 _log = logging.getLogger("robot_api.server")
-# It says so, partly with a traceback, of every stranger who is refused or talks nonsense.
+# It says so, partly with a traceback, of every stranger who is refused or talks nonsense, and of
+# every browser that leaves before its page has come.
 _NO_NEWS: Final = ("without completing handshake", "Invalid UTF-8", "Invalid HTTP request")
-logging.getLogger("uvicorn.error").addFilter(
-    lambda record: not any(words in record.getMessage() for words in _NO_NEWS)
-)
+_LEFT_EARLY: Final = "No response returned."
+
+
+def _is_news(record: logging.LogRecord) -> bool:
+    error = record.exc_info[1] if record.exc_info else None
+    return str(error) != _LEFT_EARLY and not any(words in record.getMessage() for words in _NO_NEWS)
+
+
+logging.getLogger("uvicorn.error").addFilter(_is_news)
 
 
 class CannotListen(Exception):
