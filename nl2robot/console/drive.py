@@ -13,18 +13,15 @@ def part(backstage: Backstage) -> Part:
         from nicegui import ui
 
         from nl2robot.console.frame import frame
-        from nl2robot.console.visitor import texts
 
         @ui.page("/drive")
         def drive() -> None:
             with frame(backstage, "drive") as visit:
                 ui.add_head_html(
-                    '<link rel="stylesheet" href="/static/floor/floor.css">'
                     '<link rel="stylesheet" href="/static/drive/drive.css">'
                     '<script type="module" src="/static/drive/drive.js"></script>'
                 )
-                words = {"words": dict(visit.words), "call": dict(texts("call", visit.language))}
-                visit.hand_over(words)
+                visit.hand_over({"words": dict(visit.words)})
                 ui.html('<div id="drive"></div>', sanitize=False)
 
     return Part(pages=pages)

@@ -22,7 +22,7 @@ const map = element('div', {id: 'drive-map'});
 const columns = [
   [panel('map', map), go?.section, logPanel()],
   [
-    has('drive') && operates && joystickPanel().section,
+    has('drive') && operates && joystickPanel(() => go?.cancel()),
     has('say') && sayPanel(body, pageData.language),
     has('show') && screenPanel(body),
   ],
@@ -30,7 +30,7 @@ const columns = [
     has('emotion') && facePanel(body),
     has('gesture') && operates && gesturePanel(body),
     has('joint') && operates && jointPanel(body),
-    has('call') && callPanel(body, pageData.who, operates),
+    has('call') && operates && callPanel(body),
     operates && codePanel(body),
   ],
 ].map((panels) => element('div', {class: 'column'}, ...panels.filter(Boolean)));

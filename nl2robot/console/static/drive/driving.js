@@ -29,7 +29,7 @@ export function helmBar(body, operates) {
     take.disabled = helm.me === null;
     take.textContent = say(helm.asked ? 'ask_again' : state.driver ? 'ask' : 'take');
     give.hidden = !mine;
-    asking.replaceChildren(...(mine && operates ? state.asking.map(request) : []));
+    asking.replaceChildren(...(mine ? state.asking.map(request) : []));
   });
   return bar;
 }
@@ -78,7 +78,8 @@ function vitals(body) {
 
 // --- the joystick
 
-export function joystickPanel() {
+/** `grasped` is called when somebody takes hold of it. */
+export function joystickPanel(grasped) {
   const knob = element('div', {class: 'knob'});
   const stick = element(
     'div',
@@ -107,8 +108,9 @@ export function joystickPanel() {
     hint.textContent = helm.mine ? trouble || say('stick_hint') : say('stick_no_helm');
     hint.classList.toggle('trouble', Boolean(helm.mine && trouble));
   };
-  const joystick = new Joystick(stick, knob, () => SPEEDS[range.value], (told) => {
-    if (told.moving) trouble = '';
+  new Joystick(stick, knob, () => SPEEDS[range.value], (told) => {
+    if (told.moving) grasped();
+    if (told.moving || told.obeyed) trouble = '';
     if (told.slow) trouble = say('slow_connection');
     if (told.error) trouble = told.error.message;
     show();
@@ -121,10 +123,7 @@ export function joystickPanel() {
   const slider = element('div', {class: 'slider'});
   range.id = newId('slider');
   slider.append(element('label', {for: range.id}, say('speed')), shown, range);
-  return {
-    joystick,
-    section: panel('stick', element('div', {class: 'controls stick-place'}, stick, hint, slider)),
-  };
+  return panel('stick', element('div', {class: 'controls stick-place'}, stick, hint, slider));
 }
 
 // --- where to go
@@ -159,32 +158,36 @@ export function goPanel(body) {
   enable();
   const offered = [has('goto') && go, has('localize') && here, has('dock') && dock].filter(Boolean);
   const tools = element('div', {class: 'row'}, ...offered);
-  const section = panel(
-    'go',
-    errand.line,
-    controls(labelled(say('find_place'), filter), list, tools),
-  );
-  return {section, run: errand.run};
+  const search = labelled(say('find_place'), filter);
+  const section = panel('go', errand.line, controls(search, list, tools));
+  return {section, run: errand.run, cancel: errand.cancel};
 }
 
-/** A movement that takes its time: it says so, and can be cancelled. */
+/** A movement that takes its time: it says so, can be cancelled, and makes way for another. */
 function errandLine() {
-  const text = element('span');
-  let cancel = null;
-  const away = button(say('cancel'), () => cancel?.(), {class: 'small'});
+  let running = null;
+  const cancel = async () => {
+    const broken = running;
+    await broken?.cancel();
+    await broken?.answer.catch(() => {});
+  };
+  const away = button(say('cancel'), cancel, {class: 'small'});
+  const text = element('span', {}, say('on_the_way'));
   const line = element('p', {class: 'row errand', role: 'status', hidden: true}, text, away);
   const run = async (method, given = {}) => {
-    const running = helm.errand(method, given);
-    ({cancel} = running);
-    text.textContent = say('on_the_way');
+    await cancel();
+    const mine = (running = helm.errand(method, given));
     line.hidden = false;
     try {
-      await running.answer;
+      await mine.answer;
     } finally {
-      if (cancel === running.cancel) line.hidden = true;
+      if (running === mine) {
+        running = null;
+        line.hidden = true;
+      }
     }
   };
-  return {line, run};
+  return {line, run, cancel};
 }
 
 /** The floor plan; with `run`, a click sends the robot and a drag says where it is. */

@@ -30,7 +30,7 @@ export const SPEEDS = [
 export class Joystick {
   /**
    * `stick` is the element to drag, with its knob inside; `speed()` the limits;
-   * `told({moving, error})` hears how it goes.
+   * `told({moving, obeyed, slow, error})` hears how it goes, one of them at a time.
    */
   constructor(stick, knob, speed, told) {
     this._stick = stick;
@@ -160,6 +160,7 @@ export class Joystick {
         const {linear, angular} = this._speed();
         const wanted = {linear: rounded(ahead * linear), angular: rounded(left * angular)};
         await wire.request('helm.drive', {...wanted, number});
+        this._told({obeyed: true});
       }
     } catch (error) {
       // Stopped: a newer movement took over, or the stick was let go.

@@ -1,7 +1,7 @@
 /** What the robot shows, scans, and whom it calls. */
 
 import {notice} from '/static/console.js';
-import {element, pageData} from '/static/page.js';
+import {element} from '/static/page.js';
 import {wire} from '/static/wire.js';
 import {helm} from './helm.js';
 import {button, controls, doing, labelled, newId, panel} from './panel.js';
@@ -224,7 +224,7 @@ async function copied(text) {
 
 // --- telepresence
 
-export function callPanel(body, who, operates) {
+export function callPanel(body) {
   const state = element('p', {class: 'call-state', role: 'status'});
   const whom = element('select', {class: 'field'});
   whom.append(...body.contacts.map((name) => element('option', {value: name}, name)));
@@ -236,21 +236,12 @@ export function callPanel(body, who, operates) {
   };
   show(body.now.call);
   wire.subscribe('call', show);
-  const mount = element('section', {id: 'call', 'aria-label': say('call_title')});
   const byRobot = controls(
     labelled(say('contact'), whom),
     element('div', {class: 'row'}, ring, hangUp),
   );
-  const inside = [byRobot, state, mount];
-  if (operates) inside.unshift(callTheRobot(mount, who));
-  return panel('call', ...inside);
-}
-
-/** A video call with whoever stands before the robot; it needs no helm. */
-function callTheRobot(mount, who) {
-  const calls = import('/static/face/call.js').then(({mountCall}) =>
-    mountCall(mount, {wire, words: pageData.call, role: 'operator', who}),
-  );
-  calls.catch((error) => console.warn(error));
-  return button(say('call_robot'), async () => (await calls).start(), {class: 'primary'});
+  // With whoever stands before the robot; every page can make such calls (`console.js`).
+  const startCall = async () => document.dispatchEvent(new CustomEvent('call-robot'));
+  const byPage = button(say('call_robot'), startCall, {class: 'primary'});
+  return panel('call', byPage, byRobot, state);
 }
