@@ -115,13 +115,19 @@ class Controls:
     def _on_event(self, kind: str, data: Event) -> None:
         match kind:
             case "log":
-                self._log.append(data)
+                self._keep(data)
             case "pose" | "battery" | "emotion" | "screen" | "call":
                 self._seen[kind] = data
             case "stopped":
                 self.helm.stopped()
             case "program" if data["what"] == "state" and data["state"] == "running":
                 self.helm.yield_to_program()
+
+    def _keep(self, line: Event) -> None:
+        """Of a drive with the joystick, ten lines a second, only the last one is kept."""
+        if self._log and all(_by_stick(each) for each in (self._log[-1], line)):
+            self._log.pop()
+        self._log.append(line)
 
     def _places(self) -> list[dict[str, Any]]:
         return [
@@ -229,6 +235,10 @@ def _service(
     observes: bool = False,
 ) -> Service:
     return Service(handler, an_object(properties or {}, required), doc, observes=observes)
+
+
+def _by_stick(line: Event) -> bool:
+    return str(line.get("message", "")).startswith(("drive(", "drive:"))
 
 
 def _plain(state: State) -> dict[str, Any]:

@@ -4,6 +4,7 @@ panels."""
 import re
 import threading
 from collections.abc import Callable, Iterator
+from hashlib import sha256
 from typing import Any
 
 import pytest
@@ -159,6 +160,22 @@ def test_two_operators_hand_over_and_an_observer_looks_on(look: Look, served: An
     expect(observer.get_by_text("Nobody drives the robot by hand.")).to_be_visible()
     for name in ("Take the helm", "Say it", "Go there", "Show"):
         expect(observer.get_by_role("button", name=name)).to_have_count(0)
+
+
+def test_a_program_goes_on_when_the_driver_leaves(look: Look, watch: Watch) -> None:
+    page = driving(look)
+    ask = watch.robot.request
+    program = "robot.wait(600)"
+    approval = {"program": program, "sha256": sha256(program.encode()).hexdigest(), "by": "Ruth"}
+    run = ask("program.run", {"approval": ask("program.approve", approval)["id"]})
+    expect(page.get_by_text("A program is running, and drives the robot.")).to_be_visible()
+    expect(page.get_by_role("button", name="Say it")).to_be_disabled()
+    page.reload()  # the connection is lost, and the program is found again
+    expect(page.get_by_role("link", name="A program runs")).to_be_visible()
+    state = ask("program.state", {})
+    assert (state["run"], state["state"]) == (run, "running")
+    page.get_by_role("button", name="STOP").click()
+    expect(page.get_by_role("button", name="Say it")).to_be_enabled()
 
 
 def test_what_the_panels_do(look: Look, watch: Watch, tmp_path: Any, picture: Any) -> None:

@@ -360,6 +360,8 @@ def test_the_robot_drives_while_the_stick_is_held_and_stands_when_it_is_not(ward
             ward.until(lambda: ward.speed() > 0.1)
         ruth.request("helm.release", {"number": next(_numbers)})
         ward.until(lambda: ward.speed() == 0)
+        lines = [line["message"] for line in ruth.request("helm.log", {})]
+        assert len([line for line in lines if line.startswith("drive")]) == 1, "not ten a second"
 
 
 def test_a_lost_connection_stops_the_joystick_and_the_errand(ward: Ward) -> None:

@@ -17,10 +17,13 @@ export function helmBar(body, operates) {
   const give = button(say('let_go'), () => helm.give());
   const asking = element('div', {class: 'asking', role: 'alert'});
   const tools = element('div', {class: 'row'}, take, give);
+  const program = element('a', {class: 'chip warn', href: '/'}, say('program_runs'));
   const bar = element('section', {class: 'card helm', 'aria-label': say('helm_title')});
   bar.append(element('div', {class: 'helm-who'}, element('span', {class: 'lamp'}), who));
   if (operates) bar.append(tools);
-  bar.append(vitals(body), asking);
+  const chips = vitals(body);
+  chips.prepend(program);
+  bar.append(chips, asking);
   helm.onChange(() => {
     const {state, mine} = helm;
     bar.dataset.helm = mine ? 'mine' : state.driver ? 'taken' : 'free';
@@ -29,6 +32,7 @@ export function helmBar(body, operates) {
     take.disabled = helm.me === null;
     take.textContent = say(helm.asked ? 'ask_again' : state.driver ? 'ask' : 'take');
     give.hidden = !mine;
+    program.hidden = !helm.program;
     asking.replaceChildren(...(mine ? state.asking.map(request) : []));
   });
   return bar;
@@ -105,8 +109,9 @@ export function joystickPanel(grasped) {
   showSpeed();
   let trouble = '';
   const show = () => {
-    hint.textContent = helm.mine ? trouble || say('stick_hint') : say('stick_no_helm');
-    hint.classList.toggle('trouble', Boolean(helm.mine && trouble));
+    const waiting = say(helm.mine ? 'program_drives' : 'stick_no_helm');
+    hint.textContent = helm.moves ? trouble || say('stick_hint') : waiting;
+    hint.classList.toggle('trouble', Boolean(helm.moves && trouble));
   };
   new Joystick(stick, knob, () => SPEEDS[range.value], (told) => {
     if (told.moving) grasped();
@@ -116,8 +121,8 @@ export function joystickPanel(grasped) {
     show();
   });
   helm.onChange(() => {
-    stick.classList.toggle('off', !helm.mine);
-    stick.setAttribute('aria-disabled', String(!helm.mine));
+    stick.classList.toggle('off', !helm.moves);
+    stick.setAttribute('aria-disabled', String(!helm.moves));
     show();
   });
   const slider = element('div', {class: 'slider'});

@@ -11,6 +11,8 @@ class Helm {
     this.state = {driver: null, who: null, since: null, asking: []};
     this.me = null;
     this._who = '';
+    /** Whether a program runs, and drives. */
+    this.program = false;
     this._listeners = new Set();
     this._againUntil = 0;
   }
@@ -19,6 +21,9 @@ class Helm {
   start(who, operates) {
     this._who = who;
     wire.subscribe('helm', (state) => this._show(state));
+    wire.subscribe('program', ({what, state}) => {
+      if (what === 'state') this._showProgram(state);
+    });
     wire.onChange((connected) => {
       if (!connected) {
         this.me = null;
@@ -29,12 +34,18 @@ class Helm {
         this._againUntil = performance.now() + AGAIN_WITHIN;
       }
       wire.request('helm.state').then((state) => this._show(state), () => {});
+      wire.request('program.state').then((run) => this._showProgram(run?.state), () => {});
     });
   }
 
   /** Whether this page drives. */
   get mine() {
     return this.me !== null && this.state.driver === this.me;
+  }
+
+  /** Whether this page can move the robot. */
+  get moves() {
+    return this.mine && !this.program;
   }
 
   /** Whether this page has asked for the helm. */
@@ -87,6 +98,11 @@ class Helm {
     } else if (state.driver !== null && this.me !== null) {
       sessionStorage.removeItem(KEPT);
     }
+    this._tell();
+  }
+
+  _showProgram(state) {
+    this.program = state === 'running' || state === 'paused';
     this._tell();
   }
 

@@ -76,13 +76,13 @@ export class Joystick {
     document.addEventListener('robot-stopped', end);
     wire.subscribe('stopped', end);
     wire.onChange((connected) => connected || this.end());
-    helm.onChange(() => helm.mine || this.end());
+    helm.onChange(() => helm.moves || this.end());
   }
 
   // --- the finger and the mouse
 
   _grasp(event) {
-    if (!helm.mine || this.held || event.button !== 0) return;
+    if (!helm.moves || this.held || event.button !== 0) return;
     event.preventDefault();
     this._stick.focus({preventScroll: true});
     this._pointer = event.pointerId;
@@ -105,7 +105,7 @@ export class Joystick {
   _press(event) {
     const key = KEYS[event.code];
     if (!key || event.ctrlKey || event.metaKey || event.altKey || takesKeys(event.target)) return;
-    if (!helm.mine || this._pointer !== null) return;
+    if (!helm.moves || this._pointer !== null) return;
     event.preventDefault();
     // A key that is still down after a stop has to be lifted first.
     if (event.repeat) return;

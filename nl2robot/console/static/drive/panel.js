@@ -27,7 +27,7 @@ export function panel(name, ...inside) {
 /** Controls that only whoever drives can use; observers do not see them. */
 export function controls(...inside) {
   const fieldset = element('fieldset', {class: 'controls'}, ...inside);
-  helm.onChange(() => (fieldset.disabled = !helm.mine));
+  helm.onChange(() => (fieldset.disabled = !helm.moves));
   return fieldset;
 }
 
