@@ -7,6 +7,7 @@ import threading
 import urllib.request
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import MISSING, fields
 from typing import Any
 
 import pytest
@@ -49,6 +50,12 @@ class Ears:
         return self.words
 
 
+def backstage_with(**given: Any) -> Backstage:
+    """What the face uses of it; the rest is missing."""
+    needed = [field.name for field in fields(Backstage) if field.default_factory is MISSING]
+    return Backstage(**{name: given.get(name) for name in needed})
+
+
 class Ward:
     """A robot with the face's services, and no browser."""
 
@@ -59,8 +66,7 @@ class Ward:
         def publish(kind: str, data: Any, to: str | None = None) -> None:
             self.server.publish(kind, data, to)
 
-        no_runner: Any = None
-        backstage = Backstage(self.driver, no_runner, simulation, publish, lambda kind: True)
+        backstage = backstage_with(driver=self.driver, simulation=simulation, publish=publish)
         self.part = face.part(backstage)
         self.server = Server(
             self.driver,
@@ -325,7 +331,7 @@ def test_the_state_has_all_that_is_to_be_seen(ward: Ward, front: Tablet) -> None
 
 
 def test_a_program_that_searches_looks_thoughtful(ward: Ward) -> None:
-    told = Backstage(ward.driver, None, None, lambda *given: None, lambda kind: True)  # type: ignore[arg-type]
+    told = backstage_with(driver=ward.driver, publish=lambda *given: None)
     seen = face.Face(told)
     seen.on_event("program", {"what": "call", "method": "find"})
     assert seen.state["mood"] == "thinking"

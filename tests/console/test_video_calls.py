@@ -11,7 +11,6 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from nl2robot.console.video import Calls
-from nl2robot.console.visitor import texts
 from robot_api.driver import StopFlag
 from robot_api.errors import NotPossible, Stopped, TimedOut
 from robot_api.server import Context
@@ -168,14 +167,6 @@ def test_an_operator_calls_the_robot(board: Switchboard) -> None:
 
 # --- in browsers
 
-MOUNT = """async (words) => {
-  const {mountCall} = await import('/static/face/call.js');
-  const {wire} = await import('/static/wire.js');
-  const corner = document.createElement('div');
-  document.body.append(corner);
-  mountCall(corner, {wire, words, role: 'operator', who: 'Nurse Ann'});
-  await wire.request('call.ready', {side: 'operator'});
-}"""
 MOVES = """() => {
   const video = document.querySelector('video.theirs');
   return video && video.videoWidth > 0 && video.currentTime > 0.3;
@@ -195,8 +186,7 @@ CAMERA_IS_OFF = "() => tracks.length > 0 && tracks.every((track) => track.readyS
 def operators_page(look: Look) -> Page:
     page = look("/")
     page.evaluate(WATCH_TRACKS)
-    if page.locator(".video-call.operator").count() == 0:
-        page.evaluate(MOUNT, dict(texts("call", "en")))
+    expect(page.locator(".video-call.operator")).to_be_attached()
     return page
 
 

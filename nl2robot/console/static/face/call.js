@@ -2,7 +2,7 @@
  * A video call between the robot's face and an operator's page, from browser to browser.
  *
  *   const calls = mountCall(element, {wire, words, role: 'operator', who: 'Nurse Ann'});
- *   calls.start();      // or from anywhere: document.dispatchEvent(new CustomEvent('call-robot'))
+ *   calls.start();
  *
  * It rings, is answered or declined, shows both pictures and ends; whichever way it ends, camera and
  * microphone are let go of. The two browsers find each other over the robot's wire and need no other
@@ -41,7 +41,6 @@ class CallView {
       if (connected) wire.request('call.ready', {side: this._side}).catch(() => {});
       else if (this._call) this._over('lost');
     });
-    if (this._side === 'operator') document.addEventListener('call-robot', () => this.start());
     addEventListener('pagehide', () => this._call?.link?.close());
   }
 
