@@ -359,6 +359,16 @@ def test_who_looks_on_touches_nothing(ward: Ward, front: Tablet) -> None:
     assert front.touch("tea") and touched.result(AT_ONCE) == "tea"
 
 
+def test_a_web_page_that_cannot_be_framed_is_found_out(ward: Ward, front: Tablet) -> None:
+    for url, answer in (
+        (f"http://{ward.server.address}/face", "refuses"),
+        (f"http://{ward.server.address}/healthz", "yes"),
+        ("http://127.0.0.1:1/", "away"),
+    ):
+        ward.driver.call("show", {"url": url}, StopFlag())
+        assert front.request("site") == answer
+
+
 # --- in a browser
 
 PROGRAM = """\
@@ -385,8 +395,9 @@ def test_a_program_meets_somebody_at_the_tablet(
     page = look("/face", width=1024, height=768)
     phone = look("/face", width=390, height=844)
     robot = served.robot()
-    expect(page.locator("#figure")).to_have_attribute("aria-label", "The robot looks at you.")
-    expect(phone.locator("#figure")).to_have_attribute("data-look", "neutral")
+    for each in (page, phone):
+        expect(each.locator("body[data-ready]")).to_be_attached()
+        expect(each.locator("#figure")).to_have_attribute("aria-label", "The robot looks at you.")
     run = start(robot, PROGRAM)
     expect(page.locator(".choice")).to_have_text(["tea", "coffee"])
     expect(page.locator("#figure")).to_have_attribute("data-look", "happy")
@@ -406,6 +417,7 @@ def test_a_program_meets_somebody_at_the_tablet(
 def test_a_page_is_filled_in_at_the_tablet(look: Look, served: Served) -> None:
     page = look("/face", width=1024, height=768)
     robot = served.robot()
+    expect(page.locator("body[data-ready]")).to_be_attached()
     robot.show(html=FORM)
     shown = page.frame_locator(".shown-page")
     shown.locator("#name").fill("Ann")

@@ -186,14 +186,15 @@ CAMERA_IS_OFF = "() => tracks.length > 0 && tracks.every((track) => track.readyS
 def operators_page(look: Look) -> Page:
     page = look("/")
     page.evaluate(WATCH_TRACKS)
-    expect(page.locator(".video-call.operator")).to_be_attached()
+    expect(page.locator(".video-call.operator[data-ready]")).to_be_attached()
     return page
 
 
 def test_a_call_between_two_browsers(look: Look, served: Served) -> None:
     face = look("/face", width=1024, height=768)
     face.evaluate(WATCH_TRACKS)
-    expect(face.locator("#figure")).to_have_attribute("data-look", "neutral")
+    expect(face.locator(".video-call.face[data-ready]")).to_be_attached()
+    expect(face.locator("body[data-ready]")).to_be_attached()
     desk = operators_page(look)
     robot = served.robot()
     with ThreadPoolExecutor() as threads:

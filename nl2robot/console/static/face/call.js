@@ -15,6 +15,8 @@ const STYLE = '/static/face/call.css';
 const MENDS_WITHIN = 5000;
 const CONNECTS_WITHIN = 15000;
 const NOTICE_FOR = 5000;
+const RINGS_EVERY = 2200;
+const RING_GAIN = 0.15;
 
 export function mountCall(root, options) {
   return new CallView(root, options);
@@ -38,10 +40,16 @@ class CallView {
       if (call === this._call?.number) this._call.link?.hear(signal);
     });
     wire.onChange((connected) => {
-      if (connected) wire.request('call.ready', {side: this._side}).catch(() => {});
+      if (connected) this._offerUp();
       else if (this._call) this._over('lost');
     });
-    addEventListener('pagehide', () => this._call?.link?.close());
+    addEventListener('pagehide', () => this._letGo(this._call));
+  }
+
+  /** Let this page be rung up. */
+  async _offerUp() {
+    await this._wire.request('call.ready', {side: this._side}).catch(() => {});
+    this._root.dataset.ready = 'yes';
   }
 
   /** Call the robot; for operators. */
@@ -67,8 +75,8 @@ class CallView {
       return;
     }
     if (told.state === 'ringing' || told.state === 'calling') {
-      current?.link?.close();
-      this._call = {number: told.call, who: told.who, caller: told.caller, link: null};
+      this._letGo(current);
+      this._call = {number: told.call, who: told.who, caller: told.caller};
       this._call.draw = () => this._drawRinging(told.state === 'ringing');
       this._call.draw();
       const byItself = new URLSearchParams(location.search).get('answer') === 'auto';
@@ -91,7 +99,7 @@ class CallView {
     const decline = this._button(rings ? 'decline' : 'hang_up', 'bad', () => this._end('hung_up'));
     const buttons = rings ? [this._button('accept', 'good', () => this._accept()), decline] : [decline];
     this._draw('ringing', element('p', {class: 'call-sentence'}, sentence), this._row(buttons));
-    if (rings && this._side === 'operator') buttons[0].focus({preventScroll: true});
+    if (rings) this._call.bell ??= ringing();
   }
 
   async _accept() {
@@ -106,6 +114,7 @@ class CallView {
 
   _connect(offers) {
     const call = this._call;
+    call.bell?.();
     const theirs = element('video', {
       class: 'theirs', autoplay: true, playsinline: true, 'aria-label': this._words.their_picture,
     });
@@ -172,8 +181,13 @@ class CallView {
   _over(because) {
     const call = this._call;
     this._call = null;
-    call?.link?.close();
+    this._letGo(call);
     this._notice(this._words[`ended_${because}`] ?? this._words.ended_hung_up);
+  }
+
+  _letGo(call) {
+    call?.link?.close();
+    call?.bell?.();
   }
 
   _notice(sentence) {
@@ -208,6 +222,7 @@ class Link {
     this._on = {theirs: onTheirs, own: onOwn, connected: onConnected, broken: onBroken};
     this._own = null;
     this._closed = false;
+    this._early = [];
     this._peer = new RTCPeerConnection({iceServers: []});
     // Signals are acted on one after the other; the first wait until our camera is there.
     this._turn = new Promise((resolve) => (this._ready = resolve));
@@ -247,10 +262,13 @@ class Link {
   hear(signal) {
     this._turn = this._turn.then(async () => {
       if (this._closed) return;
-      if (signal.candidate) {
+      if (signal.candidate && !this._peer.remoteDescription) {
+        this._early.push(signal.candidate); // it has overtaken the description
+      } else if (signal.candidate) {
         await this._peer.addIceCandidate(signal.candidate);
       } else if (signal.description) {
         await this._peer.setRemoteDescription(signal.description);
+        for (const candidate of this._early.splice(0)) await this._peer.addIceCandidate(candidate);
         if (signal.description.type === 'offer') {
           await this._peer.setLocalDescription();
           this._send({description: this._peer.localDescription.toJSON()});
@@ -316,6 +334,29 @@ async function ownPicture() {
     }
   }
   return [null, 'no_camera'];
+}
+
+/** Ring, where the browser lets a page be heard; returns what ends it. */
+function ringing() {
+  const context = new AudioContext();
+  const ring = () => {
+    [0, 0.22].forEach((after, index) => {
+      const loudness = new GainNode(context, {gain: 0});
+      const tone = new OscillatorNode(context, {frequency: index ? 880 : 660});
+      const start = context.currentTime + after;
+      loudness.gain.setTargetAtTime(RING_GAIN, start, 0.01);
+      loudness.gain.setTargetAtTime(0, start + 0.16, 0.04);
+      tone.connect(loudness).connect(context.destination);
+      tone.start(start);
+      tone.stop(start + 0.5);
+    });
+  };
+  ring();
+  const again = setInterval(ring, RINGS_EVERY);
+  return () => {
+    clearInterval(again);
+    if (context.state !== 'closed') context.close();
+  };
 }
 
 function stopped(stream) {

@@ -28,6 +28,8 @@ let mine = null; // the name of our connection
 let words = pageData.words[state.language] ?? pageData.words.en;
 let fading = 0;
 let quiet = 0;
+let untold = null; // what has become of the page, and is not told yet
+let telling = false;
 
 const face = drawFace(at.figure);
 const content = new Content(at.content, {
@@ -41,7 +43,10 @@ const content = new Content(at.content, {
       return false;
     }
   },
-  paged: (page, html) => wire.request('face.page', {page, html}).catch(() => {}),
+  paged(page, html) {
+    untold = {page, html};
+    if (!telling) tellPage();
+  },
   site: () => wire.request('face.site'),
 });
 const calls = operates ? mountCall(at.call, {wire, words, role: 'face'}) : null;
@@ -117,6 +122,17 @@ async function stop() {
   }
 }
 
+/** Tell what people have made of the page: one thing after the other, and only the newest. */
+async function tellPage() {
+  telling = true;
+  while (untold) {
+    const newest = untold;
+    untold = null;
+    await wire.request('face.page', newest).catch(() => {});
+  }
+  telling = false;
+}
+
 /** Tell that somebody can see this face, and find out what it is to show. */
 async function here() {
   early ??= [];
@@ -124,12 +140,12 @@ async function here() {
   try {
     const now = operates ? await wire.request('face.here', {visible}) : await wire.request('face.state');
     mine = now.name ?? null;
-    // The server may have been started anew and count from the beginning.
-    state = now;
-    const changes = early;
+    if (now.version >= state.version) state = now;
+    const changes = early ?? [];
     early = null;
-    for (const change of changes ?? []) apply(change);
+    for (const change of changes) apply(change);
     show();
+    document.body.dataset.ready = 'yes';
   } catch (error) {
     notice(error.message);
   }
@@ -143,6 +159,7 @@ function onConnection(connected) {
     keepAwake();
   } else if (mine !== null) {
     early = [];
+    state.version = 0; // the server may be another then, which counts from the beginning
     face.speak(0);
     notice(words.lost, true);
   }
