@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 from urllib.parse import unquote
 
@@ -43,6 +44,14 @@ def robot_pose(page: Page) -> list[float]:
     return found
 
 
+@contextmanager
+def sent(page: Page) -> Iterator[Callable[[], str]]:
+    """Something in here opens the desk with a program; gives that."""
+    with page.expect_request(lambda request: "/?program=" in request.url) as asked:
+        yield lambda: unquote(asked.value.url).split("/?program=")[1]
+    page.wait_for_url("**/")  # the desk has taken it
+
+
 def choose(page: Page, mode: str) -> None:
     page.get_by_role("radio", name=mode).check()
 
@@ -70,17 +79,17 @@ def test_the_map_shows_and_says_where_the_robot_is(
 def test_a_click_on_a_name_sends_there_after_a_review(floor: Callable[..., Page]) -> None:
     page = floor()
     choose(page, "Send")
-    page.mouse.click(*pixel(page, *place(page, "ward a")[:2]))
-    page.wait_for_url(lambda url: "program=" in url)
-    assert unquote(page.url).endswith('/?program=robot.goto("ward a")')
+    with sent(page) as program:
+        page.mouse.click(*pixel(page, *place(page, "ward a")[:2]))
+    assert program() == 'robot.goto("ward a")'
 
 
 def test_a_click_on_the_floor_sends_to_that_spot(floor: Callable[..., Page]) -> None:
     page = floor()
     choose(page, "Send")
-    page.mouse.click(*pixel(page, 3.0, 7.7))
-    page.wait_for_url(lambda url: "program=" in url)
-    x, y = unquote(page.url).split("robot.goto(")[1].rstrip(")").split(", ")
+    with sent(page) as program:
+        page.mouse.click(*pixel(page, 3.0, 7.7))
+    x, y = program().removeprefix("robot.goto(").rstrip(")").split(", ")
     assert abs(float(x) - 3.0) < 0.1 and abs(float(y) - 7.7) < 0.1
 
 
@@ -100,9 +109,9 @@ def test_a_keyboard_moves_the_view_and_sends_the_robot(floor: Callable[..., Page
     page.keyboard.press("ArrowRight")
     expect(page.get_by_text("Click where the robot should go.")).to_be_visible()
     page.get_by_role("button", name="pharmacy", exact=True).focus()
-    page.keyboard.press("Enter")
-    page.wait_for_url(lambda url: "program=" in url)
-    assert unquote(page.url).endswith('/?program=robot.goto("pharmacy")')
+    with sent(page) as program:
+        page.keyboard.press("Enter")
+    assert program() == 'robot.goto("pharmacy")'
 
 
 def test_the_robot_is_dragged_to_where_it_stands(
@@ -136,6 +145,29 @@ def test_a_zone_is_drawn_and_kept_and_removed(floor: Callable[..., Page], pictur
     page.get_by_role("button", name="Remove wet floor").click()
     expect(page.get_by_text("No keep-out zones yet")).to_be_visible()
     expect(other.get_by_text("No keep-out zones yet")).to_be_visible()
+
+
+def test_a_run_is_watched_again_frame_by_frame(floor: Callable[..., Page]) -> None:
+    page = floor()
+    page.evaluate(
+        "() => { const map = document.querySelector('#map').floorMap;"
+        " map.showPath([[3, 3], [9, 3]]); map.showAt({...map.floor.now, x: 3, y: 3, people: []}); }"
+    )
+    expect(page.locator(".floor-told")).to_have_text("Robin is here: pharmacy.")
+    assert robot_pose(page)[:2] == [3, 3]
+    page.evaluate("document.querySelector('#map').floorMap.showAt(null)")
+    expect(page.locator(".floor-told")).to_contain_text("13 people.")
+
+
+def test_what_is_hidden_stays_hidden(floor: Callable[..., Page]) -> None:
+    page = floor()
+    page.get_by_label("What to show").click()
+    page.get_by_label("Laser scanner").uncheck()
+    page.reload()
+    page.wait_for_function("document.querySelector('#map')?.floorMap")
+    page.get_by_label("What to show").click()
+    expect(page.get_by_label("Laser scanner")).not_to_be_checked()
+    expect(page.get_by_label("Objects")).to_be_checked()
 
 
 def test_who_only_looks_on_sees_the_map_and_can_do_nothing(

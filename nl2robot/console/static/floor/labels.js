@@ -15,7 +15,7 @@ export const FONT = 'system-ui, sans-serif';
  * The labels of all places that there is room for at a scale.
  * They are placed in pixels of a floor whose origin is pixel 0, 0: panning moves them all alike.
  * @param {import('./floor.js').Floor} floor
- * @param {number[][]} spots where people and things are at first and the robot stops:
+ * @param {number[][]} spots where people and things are at first:
  *   labels keep off them, as far as they can
  * @returns {{place: object, lines: string[], size: number, box: object}[]}
  */

@@ -18,7 +18,7 @@ const COLOURS = {
   grey: '#9aa3ab',
   gray: '#9aa3ab',
 };
-const NAMES_FROM = 12; // pixels a metre: on a smaller plan the initials must do
+const NAMES_FROM = 16; // pixels a metre: on a smaller plan the initials must do
 const REACH = 795; // centimetres: what the lidar reports beyond that is nothing
 
 /** Paints the scene of a frame.

@@ -55,17 +55,13 @@ export class PlanPainter {
   }
 
   #place(context, {scale}) {
-    const now = performance.now();
+    const at = performance.now();
     const zoomed = Math.abs(Math.log(scale / this.#placed.scale));
-    if (!zoomed || (zoomed < MUCH && now - this.#placed.at < PAUSE)) return;
-    const {people} = this.floor.now;
-    const spots = [
-      ...people.map(([, , x, y]) => [x, y]),
-      ...this.floor.things.map(({x, y}) => [x, y]),
-      ...this.floor.places.flatMap(({pose}) => (pose ? [pose] : [])),
-    ];
+    if (!zoomed || (zoomed < MUCH && at - this.#placed.at < PAUSE)) return;
+    const {now, things} = this.floor;
+    const spots = [...now.people.map(([, , x, y]) => [x, y]), ...things.map(({x, y}) => [x, y])];
     this.#labels = placeNames(context, this.floor, spots, scale);
-    this.#placed = {scale, at: now};
+    this.#placed = {scale, at};
   }
 
   /** The labels in pixels of the picture. */
