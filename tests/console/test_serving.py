@@ -6,6 +6,7 @@ from pathlib import Path
 
 from playwright.sync_api import Page, expect
 
+from nl2robot.console.reference import reference
 from tests.console.conftest import Look, Served, serving
 
 
@@ -60,3 +61,11 @@ def test_others_need_the_token_that_the_start_up_line_prints(look: Look, tmp_pat
         page = look("/?token=" + link.partition("?token=")[2], url=here)
         expect(page.get_by_role("button", name="Send")).to_be_visible()
         assert "token" not in page.url
+
+
+def test_the_docs_tell_what_the_console_adds_to_the_wire(served: Served) -> None:
+    docs = Path(__file__).parents[2] / "docs" / "console.md"
+    with served.robot() as robot:
+        told = reference(robot.request("rpc.discover", {}))
+    hint = f"python -m nl2robot.console.reference {served.address}"
+    assert told in docs.read_text(encoding="utf-8"), f"anew: {hint}"
