@@ -37,9 +37,11 @@ class Watched:
         self.backstage = Backstage(
             driver=driver,
             runner=SimpleNamespace(knowledge=SimpleNamespace(world=world)),  # type: ignore[arg-type]
+            talks=None,  # type: ignore[arg-type]
             simulation=simulation,
             publish=lambda kind, data, to=None: self.frames.put(dict(data)),
             wanted=self._wanted,
+            stop=lambda because: None,
         )
         driver.subscribe(self.backstage.tell)
         self.scene = Scene(self.backstage)
