@@ -1,6 +1,6 @@
 /** Where the names of rooms go, so that none is cut, covers another, or hides much below it. */
 
-import {area, boxAbout, boxAt, contains, overlap, rectangle} from './shapes.js';
+import {area, boxAbout, boxAt, contains, overlap, rectangle, touches} from './shapes.js';
 
 const SIZES = [15, 14, 13, 12, 11, 10, 9];
 const SHARE = 0.6; // of a metre: how large a name may be on a small plan
@@ -25,6 +25,7 @@ export function placeNames(context, floor, spots, scale) {
   const drawn = furniture.map((piece) =>
     boxAbout(rectangle(piece.pose, piece.size).map(toPixels)),
   );
+  const walls = floor.walls.map(([x1, y1, x2, y2]) => boxAbout([[x1, y1], [x2, y2]].map(toPixels)));
   const busy = spots.map((spot) => boxAt(...toPixels(spot), SPOT, SPOT));
   const smallFirst = places
     .map((place) => ({place, size: place.area.length ? area(place.area) : 0}))
@@ -51,8 +52,9 @@ export function placeNames(context, floor, spots, scale) {
     if (!place.pose) continue;
     const taken = [...symbols, ...labels.map(({box}) => box)];
     const free = (box) => !taken.some((other) => overlap(other, box));
+    const offWalls = (box) => free(box) && !walls.some((wall) => touches(wall, box));
     const radius = place === charger ? SYMBOL / 2 : 4;
-    const box = beside(context, name, ...toPixels(place.pose), radius, 11, free);
+    const box = beside(context, name, ...toPixels(place.pose), radius, 11, offWalls, free);
     if (box) labels.push({place, lines: [name], size: 11, box});
   }
   return labels;

@@ -2,7 +2,7 @@
 
 import {filled} from '/static/page.js';
 
-const PACE = 4000; // milliseconds between two texts, so that a screen reader can keep up
+const PACE = 3000; // milliseconds between two texts, so that a screen reader can keep up
 
 /** Where the robot is, where it goes, and how many people are there, in a sentence or two. */
 export function inWords(scene, floor, words) {
