@@ -14,7 +14,7 @@ def pages(backstage: Backstage) -> None:
     @ui.page("/map")
     def map_page() -> None:
         with frame(backstage, "map") as visit:
-            visit.hand_over({"words": visit.words})
+            visit.hand_over({})  # the map fetches its texts with the floor
             ui.add_head_html(
                 '<link rel="stylesheet" href="/static/floor/floor.css">'
                 '<script type="module" src="/static/floor/page.js"></script>'

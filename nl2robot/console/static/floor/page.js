@@ -4,11 +4,10 @@ import {appears, pageData} from '/static/page.js';
 import {wire} from '/static/wire.js';
 import {mountFloorMap} from './floor_map.js';
 
-const {words, language, role} = pageData;
+const {language, role} = pageData;
 const root = await appears('#map');
 const map = await mountFloorMap(root, {
   wire,
-  words,
   language,
   operator: role === 'operator',
   places: true,
