@@ -6,7 +6,7 @@ import threading
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, expect
 
 from robot_api.client import Robot
 from robot_api.errors import Stopped
@@ -119,5 +119,17 @@ def test_a_browser_that_plays_nothing_before_a_touch_says_so(
             robot.say("This is heard.")
             page.wait_for_function("Math.max(...levels) > 0.2")
             assert page.evaluate("blocked") == [True, False]
+            page.close()
+            face = strict.new_page()
+            face.goto(f"{served.url}/face")
+            expect(face.locator("body")).to_have_attribute("data-view", "face")
+            robot.say("The face says so, too.")
+            expect(face.locator("#notice")).to_have_text("Touch the screen once to hear me.")
+            face.keyboard.press("Tab")
+            expect(face.locator("#notice")).to_be_hidden()
+            saying, _ = said(robot, LONG)
+            expect(face.locator("#figure")).to_have_attribute("data-speaking", "yes")
+            robot.stop()
+            saying.join(SOON / 1000)
     finally:
         strict.close()
