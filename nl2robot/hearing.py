@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Sequence
 from pathlib import Path
+from typing import Final
 
 import msgspec
 import numpy as np
@@ -13,12 +14,16 @@ from grammar.samples import all_samples
 from grammar.vocabulary import vocabulary
 from nl2robot.knowledge import Knowledge
 from nl2robot.speech.audio import RATE, Audio, read
+from nl2robot.speech.hotword_words import WORDS
 from nl2robot.speech.listening import COMMANDS, Listener, Manner, has_speech
 from nl2robot.speech.recogniser import Decoding, Heard, Recogniser, choose
 from nl2robot.speech.second_ear import second_ear
 from nl2robot.speech.streaming import Streaming
 from nl2robot.speech.vocabulary import Missing, missing_words
 from nl2robot.translation import Planner, Talk, Translation, translate
+
+LONGEST_CRY: Final = 3
+"""Words: who wants the robot to stop says no more. "Go to the bus stop" is longer."""
 
 
 class Ear:
@@ -68,6 +73,17 @@ class Ear:
     def program(self, text: str) -> str | None:
         """What a command means when it is typed."""
         return self._translate(text).program
+
+    def is_stop(self, text: str) -> bool:
+        """Whether the words so far are a cry to stop: "stop", "please stop", "no, stop!"."""
+        words = text.lower().split()
+        if not words or len(words) > LONGEST_CRY:
+            return False
+        known = WORDS.get(self.language)
+        if known is not None and words[-1] in known.stop:
+            return True
+        program = self.program(text)
+        return program is not None and set(program.split()) == {"robot.stop()"}
 
     def _is_understood(self, text: str) -> bool:
         translation = self._translate(text)

@@ -30,7 +30,8 @@ from robot_api.server import Service
 
 if TYPE_CHECKING:
     from nl2robot.hearing import Ear
-    from nl2robot.speech.audio import Converter
+    from nl2robot.speech.audio import Converter, Samples
+    from nl2robot.speech.hotword import Detector
     from nl2robot.speech.listening import Event, Listener
 
 MOST_OPEN: Final = 8
@@ -54,6 +55,10 @@ class _Open:
     talk: str | None
     interrupts: bool
     """Whether the robot is to be silent when somebody begins to speak here."""
+    cries: Detector | None
+    """Hears "stop", where that is to be told at once."""
+    behind: list[Samples] = field(default_factory=list)
+    """What was heard and is still to be recognised: a cry is told first."""
     lock: threading.Lock = field(default_factory=threading.Lock)
     """Blocks of one microphone come one after the other."""
     used: float = field(default_factory=time.monotonic)
@@ -85,14 +90,21 @@ class Microphones:
         talk: str | None,
         *,
         interrupts: bool = False,
+        held: bool = False,
     ) -> int:
         """Listen to a microphone; returns its number. `interrupts`: whoever speaks there makes the
-        robot silent, as the microphone does not hear the robot itself. Raises `UserError` without a
-        speech model, or for a rate that no voice has."""
+        robot silent, as the microphone does not hear the robot itself. `held`: it hears while a
+        button is held; all that is said until it is closed is one command, and a cry of "stop" is
+        told at once. Raises `UserError` without a speech model, or for a rate that no voice has."""
         from nl2robot.speech.audio import Converter
+        from nl2robot.speech.hotword import StopWord
+        from nl2robot.speech.hotword_words import WORDS
+        from nl2robot.speech.listening import COMMANDS, HELD
 
         ear = self._ear(language)
-        opened = _Open(ear, ear.listener(), Converter(rate, channels), talk, interrupts)
+        listener = ear.listener(HELD if held else COMMANDS)
+        cries = StopWord(language) if held and language in WORDS else None
+        opened = _Open(ear, listener, Converter(rate, channels), talk, interrupts, cries)
         with self._lock:
             number = next(self._numbers)
             self._open[number] = opened
@@ -109,8 +121,11 @@ class Microphones:
         opened = self._known(number)
         with opened.lock:
             opened.used = time.monotonic()
-            events = opened.listener.feed(opened.converter.convert(block))
-            return [self._told(opened, event) for event in events]
+            samples = opened.converter.convert(block)
+            opened.behind.append(samples)
+            if opened.cries is not None and opened.cries.feed(samples):
+                return [{"what": "stop"}]
+            return self._recognised(opened)
 
     def close(self, number: int) -> list[dict[str, Any]]:
         """No more sound comes: whoever still speaks has ended. Raises `InvalidCall`."""
@@ -118,9 +133,15 @@ class Microphones:
         with opened.lock:
             with self._lock:
                 self._open.pop(number, None)
-            events = opened.listener.feed(opened.converter.finish())
-            events += opened.listener.finish()
-            return [self._told(opened, event) for event in events]
+            opened.behind.append(opened.converter.finish())
+            events = self._recognised(opened)
+            return events + [self._told(opened, event) for event in opened.listener.finish()]
+
+    def _recognised(self, opened: _Open) -> list[dict[str, Any]]:
+        samples, opened.behind = opened.behind, []
+        return [
+            self._told(opened, event) for block in samples for event in opened.listener.feed(block)
+        ]
 
     def _known(self, number: int) -> _Open:
         with self._lock:
@@ -163,7 +184,7 @@ class Microphones:
                     self._give_way()
                 return {"what": "began"}
             case PartialText(text):
-                return {"what": "partial", "text": text}
+                return {"what": "partial", "text": text, "stop": opened.ear.is_stop(text)}
             case SpeechEnded():
                 assert event.heard is not None
                 heard = opened.ear.understood(event.heard)
@@ -171,6 +192,7 @@ class Microphones:
                 return {
                     "what": "heard",
                     "text": heard.text,
+                    "stop": opened.ear.is_stop(heard.text),
                     "doubtful": heard.doubtful,
                     "perhaps": heard.free_text,
                     "translation": msgspec.to_builtins(translation),
@@ -192,22 +214,26 @@ def voice_services(microphones: Microphones) -> dict[str, Service]:
                 p.get("language", "en"),
                 p.get("talk"),
                 interrupts=p.get("interrupts", False),
+                held=p.get("held", False),
             ),
             "Listen to a client's microphone; returns its number. With interrupts, whoever speaks"
-            " there makes the robot silent: for one that does not hear the robot itself.",
+            " there makes the robot silent: for one that does not hear the robot itself. With held,"
+            " all until voice.close is one command, and stop is told at once.",
             {
                 "rate": {"type": "integer"},
                 "channels": {"type": "integer"},
                 "language": {"type": "string", "pattern": "^[a-z]{2}$"},
                 "talk": {"type": ["string", "null"], "maxLength": 100},
                 "interrupts": {"type": "boolean"},
+                "held": {"type": "boolean"},
             },
             "rate",
         ),
         "voice.push": service(
             lambda p: microphones.push(p["microphone"], p["sound"]),
             "Hand over a block of sound (base64 of 16-bit samples); returns what happened: began,"
-            " partial, heard with its program, too long.",
+            " partial, heard with its program, too long, and of a held microphone stop. To call"
+            " robot.stop then is the client's.",
             {"microphone": number, "sound": {"type": "string", "maxLength": LARGEST_BLOCK}},
             "microphone sound",
         ),

@@ -8,6 +8,7 @@ import json
 from collections.abc import Callable, Iterable, Iterator
 from datetime import datetime
 from functools import lru_cache, partial
+from itertools import islice
 from pathlib import Path
 from typing import Any, Final
 
@@ -59,8 +60,8 @@ def routes(backstage: Backstage, archive: Archive) -> list[Route]:
         runs = archive.all(wanted, MOST_EXPORTED)
         name = f"runs-{datetime.now():%Y-%m-%d}.{kind}"
         if kind == "csv":
-            return StreamingResponse(_csv(runs), media_type="text/csv", headers=_as_file(name))
-        return StreamingResponse(_json(runs), media_type="application/json", headers=_as_file(name))
+            return _streamed(_csv(runs), "text/csv", name)
+        return _streamed(_json(runs), "application/json", name)
 
     def parts(run: Run, request: Request) -> Response:
         words = texts("runs", visitor_of(request).language)
@@ -180,6 +181,16 @@ _COLUMNS: Final = (
     *("id", "started", "finished", "state", "utterance", "heard", "program", "approved_by"),
     *("robot", "world", "message", "calls"),
 )
+
+
+def _streamed(pieces: Iterator[str], kind: str, name: str) -> Response:
+    """A file of many small pieces, sent some at a time."""
+
+    def together() -> Iterator[str]:
+        while some := "".join(islice(pieces, 500)):
+            yield some
+
+    return StreamingResponse(together(), media_type=kind, headers=_as_file(name))
 
 
 def _csv(runs: Iterable[Brief]) -> Iterator[str]:

@@ -51,6 +51,9 @@ class Manner:
 
 
 COMMANDS: Final = Manner()
+HELD: Final = Manner(pause=10.0)
+"""While somebody holds a button: what they say until they let go is one command, however long they
+think in between."""
 ANSWERS: Final = Manner(pause=0.5, shortest=0.06)
 """To a question: a few words, between which nobody stops to think."""
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import base64
+from typing import Any
 
 import numpy as np
 import pytest
 
-from nl2robot import cli
+from nl2robot import cli, models
 from nl2robot.commands.talk import voice_input
 from nl2robot.errors import ExitStatus, UserError
+from nl2robot.hearing import Ear
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.speech.audio import RATE, Samples, read
 from nl2robot.speech.hotword import Detection
@@ -274,3 +276,37 @@ class TestOverTheWire:
     def test_a_language_without_a_model_is_a_sentence(self, microphones) -> None:
         with pytest.raises(UserError, match="German speech model is not installed"):
             microphones.open(RATE, 1, "de", None)
+
+    def test_while_a_button_is_held_all_is_one_command(self, microphones) -> None:
+        quiet = np.zeros(RATE, np.int16)
+        sound = [spoken("Go to the pharmacy"), quiet, spoken("then say hello."), quiet]
+        number = microphones.open(RATE, 1, "en", None, held=True)
+        told = [*pushes(microphones, number, np.concatenate(sound)), *microphones.close(number)]
+        [heard] = [event for event in told if event["what"] == "heard"]
+        assert "robot.goto" in heard["translation"]["program"]
+        assert "robot.say" in heard["translation"]["program"]
+        assert not any(event["what"] == "stop" or event.get("stop") for event in told)
+
+    def test_stop_is_told_while_it_is_still_said(self, microphones) -> None:
+        sound = np.concatenate([np.zeros(RATE, np.int16), spoken("Stop!")])
+        number = microphones.open(RATE, 1, "en", None, held=True)
+        assert {"what": "stop"} in pushes(microphones, number, sound)
+        assert microphones.close(number)[-1]["stop"]
+
+    def test_what_says_stop_is_told_from_what_only_has_the_word(
+        self, recogniser, knowledge
+    ) -> None:
+        ear = Ear(models.need("en"), knowledge)
+        assert all(ear.is_stop(text) for text in ("stop", "please stop", "no stop", "stop moving"))
+        assert not any(ear.is_stop(text) for text in ("", "go to the bus stop", "start", "go on"))
+
+
+def pushes(microphones: Microphones, number: int, sound: Samples) -> list[dict[str, Any]]:
+    """What is told while a sound is pushed a tenth of a second at a time."""
+    return [
+        event
+        for at in range(0, len(sound), 1600)
+        for event in microphones.push(
+            number, base64.b64encode(sound[at : at + 1600].tobytes()).decode()
+        )
+    ]

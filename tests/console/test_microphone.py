@@ -1,0 +1,511 @@
+"""Who holds the button is heard, word by word; whatever goes wrong is told in a sentence.
+
+The bad moments are tried with a wire that answers as it is told to, what is heard with the real
+recogniser and a microphone that plays a recording.
+"""
+
+from __future__ import annotations
+
+import json
+import threading
+import wave
+from collections.abc import Callable, Iterator
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Locator, Page, expect
+
+from nl2robot import models
+from nl2robot.console.app import STATIC
+from nl2robot.console.visitor import LANGUAGES, texts
+from nl2robot.operator import Operator
+from nl2robot.speech.audio import RATE, Samples, from_float
+from nl2robot.speech.voices import joined, voice
+from tests.console.conftest import CHROMIUM, FLAGS, SOON, serving
+
+PAGE = """<!doctype html><html><head><link rel="stylesheet" href="/static/console.css"></head>
+<body><script type="module">SCRIPT</script></body></html>"""
+SCRIPT = """
+import {mountMicrophone} from '/static/microphone.js';
+WIRE
+document.body.insertAdjacentHTML('afterbegin', `<div class="card row" style="margin: 6rem">
+  <button id="talk" class="icon-button"></button> <p id="partial"></p> <ol id="heard"></ol>
+  <p id="trouble" role="alert"></p></div>`);
+const write = (id, text) => (document.getElementById(id).textContent = text);
+window.microphone = mountMicrophone(document.getElementById('talk'), {
+  wire, words: WORDS, language: () => 'en', talk: 'a test', ...window.more,
+  onPartial: (text) => write('partial', text),
+  onHeard: (heard) => document.getElementById('heard').append(
+    Object.assign(document.createElement('li'), {textContent: JSON.stringify(heard)})),
+  onTrouble: (sentence) => write('trouble', sentence),
+});
+window.wire = wire;
+"""
+REAL_WIRE = "import {wire} from '/static/wire.js';"
+TOLD_WIRE = """
+window.asked = [];
+window.answers = {'voice.open': () => 7, 'voice.push': () => [], 'voice.close': () => [],
+  'robot.stop': () => null};
+const listeners = [];
+const wire = {
+  connected: true,
+  async request(method, params) {
+    asked.push([method, params]);
+    if (!wire.connected) throw Object.assign(new Error('lost'), {kind: 'LostConnection'});
+    return answers[method](params);
+  },
+  onChange(listener) { listeners.push(listener); listener(wire.connected); return () => {}; },
+  becomes(connected) { wire.connected = connected; for (const told of listeners) told(connected); },
+};
+"""
+ELSEWHERE = "http://ward.example"
+WORDS = texts("microphone", "en")
+
+
+class Files(SimpleHTTPRequestHandler):
+    """The page with the button, and the files of the console."""
+
+    def do_GET(self) -> None:
+        if self.path.startswith("/static/"):
+            super().do_GET()
+            return
+        self.send_response(200)
+        self.send_header("Content-Type", "text/html; charset=utf-8")
+        self.end_headers()
+        self.wfile.write(PAGE.replace("SCRIPT", script(TOLD_WIRE)).encode())
+
+    def translate_path(self, path: str) -> str:
+        return str(STATIC / path.removeprefix("/static/"))
+
+    def log_message(self, *arguments: Any) -> None: ...
+
+
+@pytest.fixture(scope="module")
+def address() -> Iterator[str]:
+    """Where the page is: on this machine, so that the browser gives it the microphone."""
+    with ThreadingHTTPServer(("127.0.0.1", 0), Files) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_port}"
+        server.shutdown()
+
+
+@pytest.fixture
+def open_page(chromium: Browser, address: str) -> Iterator[Callable[..., Page]]:
+    """A page with the button and a wire that answers as it is told."""
+    contexts = []
+
+    def open_page(before: str = "", elsewhere: bool = False) -> Page:
+        context = chromium.new_context(locale="en")
+        context.set_default_timeout(SOON)
+        contexts.append(context)
+        page = context.new_page()
+        page.add_init_script(before)
+        if elsewhere:
+            page.route(
+                f"{ELSEWHERE}/**",
+                lambda route: route.fulfill(
+                    response=route.fetch(url=route.request.url.replace(ELSEWHERE, address))
+                ),
+            )
+        page.goto(ELSEWHERE if elsewhere else address)
+        page.wait_for_function("window.microphone")
+        return page
+
+    yield open_page
+    for context in contexts:
+        context.close()
+
+
+def script(wire: str) -> str:
+    """What makes a button on a page."""
+    words = json.dumps(dict(WORDS)).replace("<", "\\u003c")
+    return SCRIPT.replace("WORDS", words).replace("WIRE", wire)
+
+
+def button(page: Page) -> Locator:
+    return page.get_by_role("button", name=WORDS["hold"])
+
+
+def hold(page: Page) -> None:
+    """Press the mouse on the button and wait until it listens."""
+    button(page).hover()
+    page.mouse.down()
+    becomes(page, "listening")
+
+
+def becomes(page: Page, state: str) -> None:
+    expect(button(page)).to_have_attribute("data-state", state, timeout=SOON)
+
+
+def trouble(page: Page, key: str) -> None:
+    sentence = WORDS[key].split("{")[0]
+    expect(page.locator("#trouble")).to_contain_text(sentence, timeout=SOON)
+
+
+def asked(page: Page, method: str) -> list[Any]:
+    return [params for name, params in page.evaluate("asked") if name == method]
+
+
+def pushed(page: Page, more: int = 6) -> None:
+    """Wait until so many more blocks went over the wire; it is held for long enough then."""
+    count = "asked.filter(([method]) => method === 'voice.push').length"
+    page.wait_for_function(f"{count} >= {page.evaluate(count) + more}")
+
+
+def answers(page: Page, method: str, function: str) -> None:
+    """What the wire answers from now on: a function of JavaScript."""
+    page.evaluate("([method, text]) => { answers[method] = eval(text); }", [method, function])
+
+
+# --- bad moments ---------------------------------------------------------------------------------
+
+
+def test_every_sentence_is_there_in_every_language() -> None:
+    for language in LANGUAGES:
+        assert all(texts("microphone", language).values())
+
+
+def test_from_press_to_release_it_is_one_command(open_page) -> None:
+    page = open_page()
+    page.evaluate(
+        """() => {
+          let pushes = 0;
+          answers['voice.push'] = () => {
+            pushes += 1;
+            const partial = {what: 'partial', text: 'go to', stop: false};
+            return pushes === 2 ? [{what: 'began'}, partial] : [];
+          };
+          answers['voice.close'] = () => [{what: 'heard', text: 'go to bed', doubtful: true,
+            perhaps: 'goat', stop: false, translation: {program: null}}];
+        }"""
+    )
+    expect(button(page)).to_have_attribute("aria-pressed", "false")
+    hold(page)
+    expect(button(page)).to_have_attribute("aria-pressed", "true")
+    expect(page.locator("#partial")).to_have_text("go to")
+    page.wait_for_function(
+        "document.getElementById('talk').style.getPropertyValue('--level') > 0"
+    )  # the fake microphone beeps
+    page.mouse.up()
+    expect(page.locator("#heard li")).to_have_count(1)
+    heard = json.loads(page.locator("#heard li").inner_text())
+    assert (heard["text"], heard["doubtful"], heard["perhaps"]) == ("go to bed", True, "goat")
+    becomes(page, "ready")
+    [opened] = asked(page, "voice.open")
+    about = {"language": "en", "talk": "a test", "interrupts": False, "held": True}
+    assert opened == {"rate": 16000, "channels": 1, **about}
+    assert all(params["microphone"] == 7 for params in asked(page, "voice.push"))
+    assert len(asked(page, "voice.close")) == 1
+    expect(page.locator("#trouble")).to_be_empty()
+
+
+def test_the_space_and_enter_keys_hold_it_and_nothing_else_is_pressed(open_page) -> None:
+    page = open_page()
+    button(page).focus()
+    for key in (" ", "Enter"):
+        page.keyboard.down(key)
+        becomes(page, "listening")
+        page.keyboard.down(key)  # repeats, as long as it is held
+        pushed(page)
+        page.keyboard.up(key)
+        trouble(page, "nothing")
+        becomes(page, "ready")
+    assert len(asked(page, "voice.open")) == 2
+
+
+def test_a_screen_reader_clicks_once_to_begin_and_once_to_end(open_page) -> None:
+    page = open_page()
+    page.evaluate("document.getElementById('talk').click()")
+    becomes(page, "listening")
+    pushed(page)
+    page.evaluate("document.getElementById('talk').click()")
+    trouble(page, "nothing")
+
+
+def test_the_sound_right_before_the_press_is_heard_too(open_page) -> None:
+    page = open_page()
+    hold(page)
+    pushed(page)
+    page.mouse.up()
+    becomes(page, "ready")
+    page.wait_for_function("microphone._sound._before.length === 3")
+    sent = len(asked(page, "voice.push"))
+    answers(page, "voice.open", "() => new Promise((done) => (window.opened = done))")
+    hold(page)
+    page.evaluate("opened(8)")
+    pushed(page, 1)
+    first = asked(page, "voice.push")[sent]["sound"]
+    assert len(first) * 3 / 4 / 2 >= 3 * 1600, "three tenths of a second in the first push"
+
+
+def test_the_microphone_is_let_go_of_when_it_is_not_used(open_page) -> None:
+    page = open_page(before="window.more = {warm: 50}")
+    hold(page)
+    pushed(page)
+    page.mouse.up()
+    trouble(page, "nothing")
+    becomes(page, "off")
+    assert page.evaluate("microphone._sound.open") is False
+
+
+def test_who_only_clicks_is_told_to_hold(open_page) -> None:
+    page = open_page(before="window.performance.now = () => 1e6")
+    hold(page)
+    page.mouse.up()
+    trouble(page, "hold_longer")
+    assert len(asked(page, "voice.close")) == 1, "nothing stays open"
+
+
+def test_who_lets_go_while_the_browser_asks_is_told_when_it_is_ready(open_page) -> None:
+    page = open_page(
+        before="""
+        const get = navigator.mediaDevices.getUserMedia.bind(navigator.mediaDevices);
+        navigator.mediaDevices.getUserMedia = async (what) => {
+          await new Promise((allow) => (window.allow = allow));
+          return get(what);
+        };"""
+    )
+    button(page).hover()
+    page.mouse.down()
+    becomes(page, "opening")
+    page.mouse.up()
+    page.evaluate("allow()")
+    trouble(page, "now_ready")
+    assert asked(page, "voice.open") == []
+
+
+@pytest.mark.parametrize(
+    ("error", "key"),
+    [
+        ("NotAllowedError", "denied"),
+        ("NotFoundError", "no_microphone"),
+        ("NotReadableError", "in_use"),
+        ("TypeError", "failed"),
+    ],
+)
+def test_why_there_is_no_microphone_is_told(open_page, error, key) -> None:
+    page = open_page(
+        before=f"navigator.mediaDevices.getUserMedia = () =>"
+        f" Promise.reject(new DOMException('no', '{error}'))"
+    )
+    button(page).hover()
+    page.mouse.down()
+    trouble(page, key)
+    becomes(page, "off")
+
+
+def test_a_page_that_is_not_secure_has_no_microphone(open_page) -> None:
+    page = open_page(elsewhere=True)
+    button(page).hover()
+    page.mouse.down()
+    trouble(page, "not_secure")
+
+
+def test_a_missing_speech_model_is_told_with_what_to_do(open_page) -> None:
+    page = open_page()
+    sentence = "The speech model is not installed. Run `nl2robot models get de` to fetch it."
+    answers(page, "voice.open", f"() => {{ throw new Error({sentence!r}); }}")
+    button(page).hover()
+    page.mouse.down()
+    expect(page.locator("#trouble")).to_contain_text("nl2robot models get de")
+    becomes(page, "ready")
+
+
+def test_a_lost_connection_is_told_and_the_next_sentence_is_heard(open_page) -> None:
+    page = open_page()
+    hold(page)
+    pushed(page)
+    page.evaluate("wire.becomes(false)")
+    trouble(page, "lost")
+    page.mouse.up()
+    page.mouse.down()
+    trouble(page, "lost")
+    page.mouse.up()
+    page.evaluate("wire.becomes(true)")
+    page.evaluate("document.getElementById('trouble').textContent = ''")
+    hold(page)
+    pushed(page)
+    page.mouse.up()
+    trouble(page, "nothing")
+
+
+def test_a_server_that_forgot_the_microphone_is_told(open_page) -> None:
+    page = open_page()
+    answers(page, "voice.push", "() => { throw new Error('It is not open.'); }")
+    button(page).hover()
+    page.mouse.down()
+    trouble(page, "failed")
+
+
+@pytest.mark.parametrize(
+    "cry", [{"what": "stop"}, {"what": "partial", "text": "please stop", "stop": True}]
+)
+def test_stop_while_it_is_held_stops_the_robot_once(open_page, cry) -> None:
+    page = open_page()
+    answers(page, "voice.push", f"() => [{json.dumps(cry)}]")
+    answers(page, "voice.close", "() => [{what: 'heard', text: 'stop', stop: true}]")
+    hold(page)
+    pushed(page)  # with a cry in each
+    trouble(page, "stopped")
+    page.mouse.up()
+    becomes(page, "ready")
+    assert len(asked(page, "robot.stop")) == 1
+    expect(page.locator("#heard li")).to_have_count(0)  # there is nothing left to be reviewed
+
+
+def test_a_stop_that_does_not_reach_the_robot_is_told(open_page) -> None:
+    page = open_page()
+    answers(page, "voice.push", "() => [{what: 'stop'}]")
+    answers(page, "robot.stop", "() => { throw new Error('lost'); }")
+    hold(page)
+    trouble(page, "not_stopped")
+
+
+def test_what_is_held_for_minutes_ends_by_itself(open_page) -> None:
+    page = open_page(before="window.more = {longest: 600}")
+    hold(page)
+    trouble(page, "too_long")
+    becomes(page, "ready")
+    page.mouse.up()
+    assert len(asked(page, "voice.close")) == 1
+
+
+def test_a_sentence_without_end_is_told(open_page) -> None:
+    page = open_page()
+    answers(page, "voice.push", "() => [{what: 'too long'}]")
+    button(page).hover()
+    page.mouse.down()
+    trouble(page, "too_long")
+
+
+def test_leaving_the_page_lets_go_of_the_microphone(open_page) -> None:
+    page = open_page()
+    hold(page)
+    page.evaluate(
+        """() => {
+          Object.defineProperty(document, 'hidden', {value: true});
+          document.dispatchEvent(new Event('visibilitychange'));
+        }"""
+    )
+    trouble(page, "left")
+    becomes(page, "off")
+
+
+def test_escape_takes_back_what_was_said(open_page) -> None:
+    page = open_page()
+    answers(page, "voice.close", "() => [{what: 'heard', text: 'dance', stop: false}]")
+    button(page).focus()
+    page.keyboard.down(" ")
+    becomes(page, "listening")
+    page.keyboard.press("Escape")
+    trouble(page, "cancelled")
+    page.keyboard.up(" ")
+    page.wait_for_function("asked.some(([method]) => method === 'voice.close')")
+    expect(page.locator("#heard li")).to_have_count(0)
+
+
+def test_a_muted_microphone_is_told(open_page) -> None:
+    page = open_page(
+        before="""
+        navigator.mediaDevices.getUserMedia = async () => {
+          const context = new AudioContext();
+          const quiet = context.createMediaStreamDestination();
+          const source = context.createConstantSource();
+          source.offset.value = 0;
+          source.connect(quiet);
+          source.start();
+          return quiet.stream;
+        };"""
+    )
+    hold(page)
+    pushed(page)
+    page.mouse.up()
+    trouble(page, "silent")
+
+
+# --- with the recogniser -------------------------------------------------------------------------
+
+
+def spoken(text: str) -> Samples:
+    sound = joined(voice("en").speak(text))
+    return from_float((sound.samples / np.float32(32768))[:, None], sound.rate).samples
+
+
+@pytest.fixture(scope="module")
+def listening(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    """A console with the English speech model."""
+    if models.find("en") is None:
+        pytest.skip("There is no English speech model: nl2robot models get en.")
+    home = tmp_path_factory.mktemp("home")
+    with serving(home, "--speed", "1", models=True) as served:
+        yield served
+
+
+@pytest.fixture
+def says(chromium: Browser, listening: Any, tmp_path: Path) -> Iterator[Callable[..., Page]]:
+    """A page of that console in a browser whose microphone plays these sentences."""
+    browsers = []
+
+    def says(*sentences: str) -> Page:
+        quiet = np.zeros(RATE, np.int16)
+        sound = np.concatenate(
+            [quiet, *(part for each in sentences for part in (spoken(each), quiet))]
+        )
+        file = tmp_path / "said.wav"
+        with wave.open(str(file), "wb") as written:
+            written.setparams((1, 2, RATE, 0, "NONE", ""))
+            written.writeframes(sound.tobytes())
+        browser = chromium.browser_type.launch(
+            executable_path=CHROMIUM,
+            args=[*FLAGS, f"--use-file-for-fake-audio-capture={file}%noloop"],
+        )
+        browsers.append(browser)
+        page = browser.new_page()
+        page.set_default_timeout(SOON)
+        page.goto(f"{listening.url}/runs")
+        page.add_script_tag(content=script(REAL_WIRE), type="module")
+        page.wait_for_function("window.microphone && wire.connected")
+        return page
+
+    yield says
+    for browser in browsers:
+        browser.close()
+
+
+def test_words_come_while_they_are_said_and_the_program_when_one_lets_go(says, picture) -> None:
+    page = says("Go to the pharmacy and say hello.")
+    hold(page)
+    expect(page.locator("#partial")).to_contain_text("pharmacy", timeout=SOON)
+    picture(page, "microphone-held")
+    expect(page.locator("#partial")).to_contain_text("hello", timeout=SOON)
+    page.mouse.up()
+    expect(page.locator("#heard li")).to_have_count(1, timeout=SOON)
+    heard = json.loads(page.locator("#heard li").inner_text())
+    assert heard["text"] == "go to the pharmacy and say hello"
+    assert heard["translation"]["program"] == 'robot.goto("pharmacy")\nrobot.say("Hello!")\n'
+    expect(page.locator("#trouble")).to_be_empty()
+
+
+def test_a_pause_to_think_does_not_end_the_command(says) -> None:
+    page = says("Go to the pharmacy", "and say hello.")
+    hold(page)
+    expect(page.locator("#partial")).to_contain_text("hello", timeout=SOON)
+    page.mouse.up()
+    expect(page.locator("#heard li")).to_have_count(1, timeout=SOON)
+    heard = json.loads(page.locator("#heard li").inner_text())
+    assert "robot.goto" in heard["translation"]["program"]
+    assert "robot.say" in heard["translation"]["program"]
+
+
+def test_stop_cried_into_the_button_stops_the_program(says, listening) -> None:
+    page = says("Stop!")
+    with listening.robot() as robot:
+        operator = Operator(robot, "Nurse Kim")
+        run = operator.run(operator.approve(operator.check("robot.wait(100)\n")))
+        hold(page)
+        assert operator.wait(run).state == "stopped"
+        expect(button(page)).to_have_attribute("data-state", "listening")  # still held
+    trouble(page, "stopped")
