@@ -8,6 +8,7 @@ import io
 import json
 import re
 import sqlite3
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields
 from html import unescape
 from types import SimpleNamespace
@@ -68,7 +69,9 @@ class Client:
             ) as client:
                 return await client.get(address, headers=headers)
 
-        return asyncio.run(get())
+        # In a thread of its own: that of the tests may have the loop of a browser.
+        with ThreadPoolExecutor(1) as thread:
+            return thread.submit(lambda: asyncio.run(get())).result()
 
 
 @pytest.fixture
