@@ -322,7 +322,7 @@ def test_a_run_is_found_watched_and_run_again(look: Look, served: Served, pictur
     expect(page.locator(".run-calls tbody tr")).to_have_count(2)
 
     # It is watched again: time is drawn, the robot moves, what it says is told.
-    expect(page.locator("[data-ready]")).to_be_visible(timeout=SOON)
+    expect(page.locator(".run-replay[data-ready]")).to_be_visible(timeout=SOON)
     robot = page.locator(".run-floor .robot")
     began = robot.get_attribute("transform")
     slider = page.get_by_label("Time in the run")
