@@ -202,8 +202,8 @@ def test_on_a_phone_in_the_dark_everything_is_there(look: Look, picture: Picture
     page = look(width=390, height=844, dark=True)
     say(page, "go to the pharmacy and say hello")
     button = page.get_by_role("button", name="Approve and run")
-    button.scroll_into_view_if_needed()
     expect(button).to_be_enabled()
+    button.scroll_into_view_if_needed()
     expect(page.get_by_role("button", name="STOP")).to_be_in_viewport()
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     picture(page, "console-phone-dark")

@@ -476,21 +476,22 @@ def says(chromium: Browser, listening: Any, tmp_path: Path) -> Iterator[Callable
 
 
 def test_words_come_while_they_are_said_and_the_program_when_one_lets_go(says, picture) -> None:
-    page = says("Go to the pharmacy and say hello.")
+    page = says("Go to the pharmacy and say hello, please.")
     hold(page)
     expect(page.locator("#partial")).to_contain_text("pharmacy", timeout=SOON)
     picture(page, "microphone-held")
+    # The last word of all is told for certain only when one lets go.
     expect(page.locator("#partial")).to_contain_text("hello", timeout=SOON)
     page.mouse.up()
     expect(page.locator("#heard li")).to_have_count(1, timeout=SOON)
     heard = json.loads(page.locator("#heard li").inner_text())
-    assert heard["text"] == "go to the pharmacy and say hello"
+    assert heard["text"].startswith("go to the pharmacy and say hello")
     assert heard["translation"]["program"] == 'robot.goto("pharmacy")\nrobot.say("Hello!")\n'
     expect(page.locator("#trouble")).to_be_empty()
 
 
 def test_a_pause_to_think_does_not_end_the_command(says) -> None:
-    page = says("Go to the pharmacy", "and say hello.")
+    page = says("Go to the pharmacy", "and say hello, please.")
     hold(page)
     expect(page.locator("#partial")).to_contain_text("hello", timeout=SOON)
     page.mouse.up()
