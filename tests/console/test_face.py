@@ -411,6 +411,7 @@ def test_a_program_meets_somebody_at_the_tablet(
     expect(page.locator("#figure")).to_have_attribute("data-speaking", "yes")
     assert robot.request("program.wait", {"run": run, "timeout": AT_ONCE})["state"] == "done"
     expect(page.locator("body")).to_have_attribute("data-view", "face")
+    picture(page, "face")
     robot.close()
 
 

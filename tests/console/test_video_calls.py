@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
@@ -190,7 +190,9 @@ def operators_page(look: Look) -> Page:
     return page
 
 
-def test_a_call_between_two_browsers(look: Look, served: Served) -> None:
+def test_a_call_between_two_browsers(
+    look: Look, served: Served, picture: Callable[[Page, str], None]
+) -> None:
     face = look("/face", width=1024, height=768)
     face.evaluate(WATCH_TRACKS)
     expect(face.locator(".video-call.face[data-ready]")).to_be_attached()
@@ -204,6 +206,8 @@ def test_a_call_between_two_browsers(look: Look, served: Served) -> None:
         called.result(AT_ONCE)
         for page in (desk, face):
             page.wait_for_function(MOVES)
+        picture(desk, "video-call")
+        picture(face, "face-video-call")
         face.get_by_role("button", name="Hang up").click()
         for page in (desk, face):
             expect(page.get_by_text("The call is over.")).to_be_visible()

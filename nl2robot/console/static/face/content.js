@@ -11,6 +11,8 @@ import {element} from '/static/page.js';
 
 const AGENT_ANSWERS_WITHIN = 1500;
 const LONGEST_PAGE = 100_000;
+const MANY = 6; // options from which on their buttons are smaller
+const LONG_WORD = 12; // letters
 const PICTURE = /\.(png|jpe?g|gif|webp|svg|avif|bmp)$/i;
 const RULES =
   "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline' http: https:;" +
@@ -247,7 +249,10 @@ export class Content {
   }
 
   _choices(number, options, inert) {
-    const choices = element('div', {class: 'choices', 'data-many': options.length > 6 ? 'yes' : false});
+    const longest = Math.max(...options.join(' ').split(/\s+/).map((word) => word.length));
+    const choices = element('div', {
+      class: 'choices', 'data-many': options.length > MANY, 'data-long': longest > LONG_WORD,
+    });
     for (const option of options) {
       const choice = element('button', {type: 'button', class: 'choice', disabled: inert}, option);
       choice.addEventListener('click', () => this._answer(number, option, choice));
