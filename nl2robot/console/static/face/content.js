@@ -137,7 +137,7 @@ export class Content {
     else if (samePage && this._page.frame.isConnected) this._redraw(screen, mine);
     else if (screen.html !== undefined) this._showPage(screen);
     else if (screen.url !== undefined) this._showSite(screen.url);
-    else if (screen.text) this._showText(screen.text);
+    else if (screen.text?.trim()) this._showText(screen.text);
     else this._something = this._put();
     return this._something;
   }
