@@ -61,6 +61,7 @@ const ALIASES = {
 const SVG = 'http://www.w3.org/2000/svg';
 const QUICK = 0.085; // seconds in which a feature covers most of its way to a new look
 const SYLLABLE = 0.17;
+const SHORTEST_FRAME = 0.025; // seconds: thirty pictures a second on a screen that shows sixty
 const SOUND_LASTS = 0.25; // seconds after which a sound that is not told of any more is over
 
 /** The look of that name, or of its alias; neutral for one that nobody knows. */
@@ -130,9 +131,13 @@ class Face {
 
   _step() {
     const time = performance.now() / 1000;
+    const still = this._still.matches;
+    // A face that never moves by itself need not be drawn so often, and a tablet has its limits.
+    if (still) setTimeout(() => this._step(), 120);
+    else requestAnimationFrame(() => this._step());
+    if (time - this._time < SHORTEST_FRAME) return;
     const passed = Math.min(0.1, time - this._time);
     this._time = time;
-    const still = this._still.matches;
     const part = still ? 1 : 1 - Math.exp(-passed / QUICK);
     for (const name of Object.keys(NEUTRAL)) {
       this._now[name] += (this._aim[name] - this._now[name]) * part;
@@ -140,9 +145,6 @@ class Face {
     if (!still) this._live(time, part);
     if (!this.speaking && this._element.dataset.speaking) this._element.dataset.speaking = '';
     this._draw(still ? 0 : time, still ? 0 : this._blink(time));
-    // A face that nobody sees, or that never moves by itself, need not be drawn so often.
-    if (still) setTimeout(() => this._step(), 120);
-    else requestAnimationFrame(() => this._step());
   }
 
   /** The eyes wander, as eyes do. */
