@@ -78,8 +78,8 @@ class _Desk:
         visit.hand_over(
             {
                 "words": dict(visit.words),
-                "microphone": dict(texts("microphone", visit.language)),
                 "desk": self.dialogue.name,
+                "microphone": dict(texts("microphone", visit.language)),
                 "history": [line.text for line in self.dialogue.lines if line.by == "you"],
             }
         )

@@ -119,6 +119,9 @@ def movement_of(run: Run, log: RunLog) -> dict[str, Any] | None:
     if movement is None:
         return None
     data: dict[str, Any] = msgspec.to_builtins(movement)
+    if run.start is not None:  # a robot that has not moved yet has told nobody where it is
+        start = json.loads(run.start)
+        data["poses"] = [[0, start["x"], start["y"], start["theta"]], *data["poses"]]
     data["lines"] = [
         [round(call.started - run.started, 2), call.line] for call in log.calls(run.id)
     ]
