@@ -1,4 +1,4 @@
-"""A client's microphone over the wire: `voice.open`, `voice.push`, `voice.close`.
+"""A client's microphone over the wire: `voice.ready`, `voice.open`, `voice.push`, `voice.close`.
 
 A browser, or any other client, opens an ear, pushes blocks of sound as they come, and is told in
 the answer to each push what has happened by then: that somebody speaks, the words so far, and at
@@ -110,6 +110,11 @@ class Microphones:
             self._open[number] = opened
             self._close_forgotten()
         return number
+
+    def get_ready(self, language: str) -> None:
+        """Load what hears this language, so that the first command is heard as fast as the next.
+        Raises `UserError` without a speech model."""
+        self._ear(language).get_ready()
 
     def push(self, number: int, sound: str) -> list[dict[str, Any]]:
         """A block of sound, base64 of 16-bit samples, the lower byte first; returns what happened.
@@ -228,6 +233,11 @@ def voice_services(microphones: Microphones) -> dict[str, Service]:
                 "held": {"type": "boolean"},
             },
             "rate",
+        ),
+        "voice.ready": service(
+            lambda p: microphones.get_ready(p.get("language", "en")),
+            "Load what hears a language: somebody is about to speak.",
+            {"language": {"type": "string", "pattern": "^[a-z]{2}$"}},
         ),
         "voice.push": service(
             lambda p: microphones.push(p["microphone"], p["sound"]),

@@ -79,7 +79,6 @@ class _Desk:
             {
                 "words": dict(visit.words),
                 "desk": self.dialogue.name,
-                "microphone": dict(texts("microphone", visit.language)),
                 "history": [line.text for line in self.dialogue.lines if line.by == "you"],
             }
         )

@@ -48,8 +48,8 @@ window.wire = wire;
 REAL_WIRE = "import {wire} from '/static/wire.js';"
 TOLD_WIRE = """
 window.asked = [];
-window.answers = {'voice.open': () => 7, 'voice.push': () => [], 'voice.close': () => [],
-  'robot.stop': () => null};
+window.answers = {'voice.ready': () => null, 'voice.open': () => 7, 'voice.push': () => [],
+  'voice.close': () => [], 'robot.stop': () => null};
 const listeners = [];
 const wire = {
   connected: true,
@@ -131,7 +131,8 @@ def button(page: Page) -> Locator:
 
 
 def hold(page: Page) -> None:
-    """Press the mouse on the button and wait until it listens."""
+    """Press the mouse on the button, once it is one, and wait until it listens."""
+    expect(button(page)).to_have_attribute("data-state", re.compile("off|ready"), timeout=SOON)
     button(page).hover()
     page.mouse.down()
     becomes(page, "listening")
@@ -215,6 +216,15 @@ def test_the_space_and_enter_keys_hold_it_and_nothing_else_is_pressed(open_page)
         trouble(page, "nothing")
         becomes(page, "ready")
     assert len(asked(page, "voice.open")) == 2
+
+
+def test_who_comes_near_the_button_finds_the_recogniser_ready(open_page) -> None:
+    page = open_page()
+    button(page).hover()
+    button(page).focus()
+    assert asked(page, "voice.ready") == [{"language": "en"}]
+    becomes(page, "off")
+    assert page.evaluate("microphone._sound.open") is False, "nothing listens yet"
 
 
 def test_a_screen_reader_clicks_once_to_begin_and_once_to_end(open_page) -> None:

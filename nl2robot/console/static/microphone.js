@@ -284,6 +284,14 @@ class Microphone {
     this.options.onTrouble(filled(this.words[key], values));
   }
 
+  /** Who comes near the button is about to speak: what hears them is loaded, nothing is heard yet. */
+  _getReady() {
+    const language = this.options.language();
+    if (this._ready === language || !this.options.wire.connected) return;
+    this._ready = language;
+    this.options.wire.request('voice.ready', {language}).catch(() => {}); // it is told at the press
+  }
+
   // --- the button
 
   _dress() {
@@ -334,6 +342,7 @@ class Microphone {
         this.release();
       });
     }
+    for (const kind of ['pointerenter', 'focus']) on(button, kind, () => this._getReady());
     on(button, 'contextmenu', (event) => event.preventDefault()); // a long touch
     on(button, 'keydown', (event) => {
       if (event.key === 'Escape') this._abort('cancelled');
