@@ -22,7 +22,6 @@ from nl2robot.console.dialogue import Dialogues
 from nl2robot.console.outlook import outlook
 from nl2robot.console.part import Backstage, Part
 from nl2robot.console.run_view import run_view
-from nl2robot.console.visitor import texts
 from nl2robot.translation import Translation
 from nl2robot.wire import service
 
