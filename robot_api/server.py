@@ -18,28 +18,25 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final, Protocol
-from urllib.parse import urlencode
 
 import jsonschema
 import msgspec
 import uvicorn
 from starlette.applications import Starlette
-from starlette.requests import HTTPConnection, Request
+from starlette.requests import Request
 from starlette.responses import (
     HTMLResponse,
     JSONResponse,
-    PlainTextResponse,
-    RedirectResponse,
-    Response,
 )
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
-from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
 from robot_api import access, protocol
 from robot_api.dispatch import Dispatcher, Job
 from robot_api.driver import EVENTS, Driver, Event, StopFlag
 from robot_api.errors import AccessDenied, InvalidCall, RobotError, Stopped
+from robot_api.guard import OPEN_TO_ALL, Guard
 from robot_api.methods import METHODS
 from robot_api.openrpc import openrpc
 from robot_api.schema import read_arguments
@@ -328,11 +325,16 @@ class Server:
 
     def _app(self) -> ASGIApp:
         routes: list[BaseRoute] = [
-            Route("/healthz", self._health),
+            Route(OPEN_TO_ALL, self._health),
             WebSocketRoute("/", self._serve_client),
             Mount("/", self._pages) if self._pages else Route("/", self._page),
         ]
-        return self._guarded(Starlette(routes=routes, lifespan=self._lifespan))
+        return Guard(
+            Starlette(routes=routes, lifespan=self._lifespan),
+            tokens=self._tokens,
+            local=access.is_loopback(self._host),
+            pages=self._pages is not None,
+        )
 
     @contextlib.asynccontextmanager
     async def _lifespan(self, app: Starlette) -> Any:
@@ -343,56 +345,9 @@ class Server:
             self._started.set()
             yield
 
-    def _guarded(self, app: ASGIApp) -> ASGIApp:
-        """The application, reached only by who may (`access`); each scope says as what, in
-        `scope["state"]["role"]`."""
-
-        async def guarded(scope: Scope, receive: Receive, send: Send) -> None:
-            if scope["type"] == "lifespan":
-                await app(scope, receive, send)
-                return
-            request = HTTPConnection(scope)
-            role = self._role(request)
-            if not isinstance(role, access.Refusal):
-                scope.setdefault("state", {})["role"] = role
-                answer = self._without_token(request) if scope["type"] == "http" else None
-                await (answer or app)(scope, receive, send)
-                return
-            response = PlainTextResponse(role.sentence + "\n", role.status, HEADERS)
-            if scope["type"] == "websocket":
-                await WebSocket(scope, receive, send).send_denial_response(response)
-            else:
-                await response(scope, receive, send)
-
-        return guarded
-
-    def _role(self, request: HTTPConnection) -> access.Role | access.Refusal:
-        local = access.is_loopback(self._host)
-        role = access.admitted(
-            request.headers, request.query_params, local=local, tokens=self._tokens()
-        )
-        # Whether the server is alive is no secret.
-        open_to_all = request.url.path == "/healthz"
-        if open_to_all and isinstance(role, access.Refusal) and role.status == 401:
-            return "observer"
-        return role
-
     def _tokens(self) -> access.Tokens:
         # Cookies know no ports: another robot's server on this machine has its own.
         return access.Tokens(self.token, self.observer_token, f"robot-{self._port}")
-
-    def _without_token(self, request: HTTPConnection) -> Response | None:
-        """For a page whose link brought a token: keep it in a cookie, and out of the address that
-        others may see. An empty token makes an observer of this machine its operator again."""
-        query = dict(request.query_params)
-        if self._pages is None or request.scope["method"] != "GET" or "token" not in query:
-            return None
-        token = query.pop("token")
-        path = request.url.path + (f"?{urlencode(query)}" if query else "")
-        # No second slash, lest a browser take the path for another host.
-        response = RedirectResponse("/" + path.lstrip("/"), 303, HEADERS)
-        response.set_cookie(self._tokens().cookie, token, httponly=True, samesite="strict")
-        return response
 
     async def _health(self, request: Request) -> JSONResponse:
         return JSONResponse({"status": "ok"})

@@ -505,6 +505,7 @@ def test_pages_of_ones_own_share_the_port_with_the_wire(
     with Server(driver, port=0, pages=pages) as server:
         assert get(server.address, "/floor")[1] == "The floor, for an operator"
         assert get(server.address, "/floor", Host="evil.example")[0] == 403
+        assert get(server.address, "/floor")[2]["X-Frame-Options"] == "SAMEORIGIN"
         assert Wire(server.address).ask("robot.battery")["result"] == 100
 
 
