@@ -360,7 +360,9 @@ def _choice(
         said = _said(heard, sayings)
         return _only(said or _nearest(heard, sayings) if nearest else said)
 
-    return Expected((*spoken, *around), read, everyday=everyday)
+    # What is no answer is not listened for: its words would take the place of answers in noise.
+    phrases = (said for said, answer in spoken.items() if answer is not None)
+    return Expected((*phrases, *around), read, everyday=everyday)
 
 
 Words = tuple[str, ...]
