@@ -37,6 +37,7 @@ class Controls:
 
     def __init__(self, backstage: Backstage) -> None:
         self._driver = backstage.driver
+        self._stop = backstage.stop
         self._runner = backstage.runner
         self._simulation = backstage.simulation
         self.helm = Helm(lambda state: backstage.publish("helm", _plain(state)))
@@ -68,8 +69,8 @@ class Controls:
 
     def call(self, parameters: Mapping[str, Any], context: Context) -> Any:
         name, arguments = parameters["name"], dict(parameters.get("arguments", {}))
-        if name == "stop":  # anybody's, at any time
-            return self._driver.call(name, arguments, context.stop)
+        if name == "stop":  # any operator's, at any time
+            return self._stop("The robot was stopped.")
         if name == "drive":
             raise InvalidCall("Drive with helm.drive, which stops by itself.")
         with self.helm.calling(context.connection, context.stop):
@@ -196,7 +197,7 @@ def _services(controls: Controls) -> dict[str, Service]:
         "helm.call": _service(
             controls.call,
             "A robot method, by name, with its arguments, from whoever drives; returns its result."
-            " Ends with the connection. `stop` may be called by everybody.",
+            " Ends with the connection. `stop` may be called by every operator.",
             {
                 "name": {"type": "string", "maxLength": 100},
                 "arguments": {"type": "object"},
