@@ -41,6 +41,7 @@ def run(options: argparse.Namespace) -> int:
     spoken = _perform(terminal, log, heard, heard, folder / "spoken") if heard else ExitStatus.OK
     terminal.console.print(
         '\nNow in your own words: [bold].venv/bin/nl2robot run "bring the red cup to Alice"[/]'
+        "\nIn the browser:         [bold].venv/bin/nl2robot serve --open[/]"
     )
     return typed or spoken
 
