@@ -160,8 +160,9 @@ def watched(
     for happening in record.happenings:
         kind = _KIND_OF_HAPPENING.get(happening.kind)
         if kind is not None:
-            what = str(next(iter(happening.data.values()), ""))
-            course.append((happening.time, Event(kind, what)))
+            what = next(iter(happening.data.values()), "")
+            told = ", ".join(map(str, what)) if isinstance(what, list) else str(what)
+            course.append((happening.time, Event(kind, told)))
     events = tuple(event for _, event in sorted(course, key=lambda timed: timed[0]))
     dry_run = DryRun(
         status="unfinished" if cut_short.is_set() else outcome.status,

@@ -22,6 +22,7 @@ from nl2robot.console.dialogue import Dialogues
 from nl2robot.console.outlook import outlook
 from nl2robot.console.part import Backstage, Part
 from nl2robot.console.run_view import run_view
+from nl2robot.console.visitor import texts
 from nl2robot.translation import Translation
 from nl2robot.wire import service
 
@@ -77,6 +78,7 @@ class _Desk:
         visit.hand_over(
             {
                 "words": dict(visit.words),
+                "microphone": dict(texts("microphone", visit.language)),
                 "desk": self.dialogue.name,
                 "history": [line.text for line in self.dialogue.lines if line.by == "you"],
             }

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 from nl2robot.review import Review
 from nl2robot.terminal import duration, words_in
+
+MOST_PLACES: Final = 12
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,7 @@ def outlook(review: Review, words: Mapping[str, str], language: str) -> Outlook:
         time=duration(dry_run.seconds), metres=f"{dry_run.metres:g}", line=dry_run.line
     )
     facts = [
-        (words["way"], (" → ".join(dry_run.places),) if len(dry_run.places) > 1 else ()),
+        (words["way"], (_way(dry_run.places),) if len(dry_run.places) > 1 else ()),
         (words["says"], tuple(dict.fromkeys(dry_run.says))),
         (words["asks"], tuple(dict.fromkeys(dry_run.asks))),
         (words["shows"], tuple(dict.fromkeys(dry_run.shows))),
@@ -78,3 +80,10 @@ def outlook(review: Review, words: Mapping[str, str], language: str) -> Outlook:
         marks=tuple(marks),
         path=dry_run.path,
     )
+
+
+def _way(places: tuple[str, ...]) -> str:
+    """The places in order; of a long way, where it begins and where it ends."""
+    if len(places) > MOST_PLACES:
+        places = (*places[: MOST_PLACES // 2], "…", *places[-MOST_PLACES // 2 :])
+    return " → ".join(places)
