@@ -84,6 +84,7 @@ def _head(visitor: Visitor, words: Mapping[str, str]) -> str:
         "role": visitor.role,
         "who": visitor.name or words["somebody"],
         "call": texts("call", visitor.language),
+        "microphone": texts("microphone", visitor.language),
     }
     return (
         f"{_data('frame-data', about)}"
@@ -118,6 +119,13 @@ def _header(page: str, name: str, visitor: Visitor, words: Mapping[str, str]) ->
     )
     hint = f'title="{said("observer_hint")}"'
     observer = "" if visitor.operates else f'<span class="chip" {hint}>{said("observer")}</span>'
+    # The desk has a microphone of its own, beside the line to type in.
+    microphone = (
+        f'<button type="button" id="frame-microphone" class="icon-button"'
+        f' aria-label="{said("hold_to_talk")}" title="{said("hold_to_talk")}"></button>'
+        if visitor.operates and page != "desk"
+        else ""
+    )
     return f"""
 <a class="skip" href="#main">{said("skip")}</a>
 <header class="frame">
@@ -126,6 +134,7 @@ def _header(page: str, name: str, visitor: Visitor, words: Mapping[str, str]) ->
   <nav aria-label="{said("pages")}">{links}</nav>
   <span class="frame-tools">
     {observer}
+    {microphone}
     <span id="connection" role="status" data-state="waiting"><span class="sr">…</span></span>
     <button type="button" id="settings-button" class="icon-button" aria-haspopup="dialog"
       aria-label="{said("settings")}" title="{said("settings")}">{_icon(_GEAR)}</button>

@@ -8,6 +8,7 @@ import urllib.request
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import MISSING, fields
+from http.server import HTTPServer, SimpleHTTPRequestHandler
 from typing import Any
 
 import pytest
@@ -360,13 +361,16 @@ def test_who_looks_on_touches_nothing(ward: Ward, front: Tablet) -> None:
 
 
 def test_a_web_page_that_cannot_be_framed_is_found_out(ward: Ward, front: Tablet) -> None:
-    for url, answer in (
-        (f"http://{ward.server.address}/face", "refuses"),
-        (f"http://{ward.server.address}/healthz", "yes"),
-        ("http://127.0.0.1:1/", "away"),
-    ):
-        ward.driver.call("show", {"url": url}, StopFlag())
-        assert front.request("site") == answer
+    with HTTPServer(("127.0.0.1", 0), SimpleHTTPRequestHandler) as another_site:
+        threading.Thread(target=another_site.serve_forever, daemon=True).start()
+        for url, answer in (
+            (f"http://{ward.server.address}/face", "refuses"),
+            (f"http://127.0.0.1:{another_site.server_port}/", "yes"),
+            ("http://127.0.0.1:1/", "away"),
+        ):
+            ward.driver.call("show", {"url": url}, StopFlag())
+            assert front.request("site") == answer
+        another_site.shutdown()
 
 
 # --- in a browser

@@ -520,12 +520,23 @@ def test_a_pause_to_think_does_not_end_the_command(says) -> None:
     assert "robot.say" in heard["translation"]["program"]
 
 
-def test_stop_cried_into_the_button_stops_the_program(says, listening) -> None:
-    page = with_button(says("Stop!"))
+def test_stop_cried_on_any_page_stops_the_program(says, listening) -> None:
+    page = says("Stop!")
+    page.goto(f"{listening.url}/map")
     with listening.robot() as robot:
         operator = Operator(robot, "Nurse Kim")
         run = operator.run(operator.approve(operator.check("robot.wait(100)\n")))
         hold(page)
         assert operator.wait(run).state == "stopped"
         expect(button(page)).to_have_attribute("data-state", "listening")  # still held
-    trouble(page, "stopped")
+    expect(page.get_by_role("alert")).to_contain_text(WORDS["stopped"].split("{")[0])
+
+
+def test_a_command_said_on_another_page_is_taken_to_the_desk(says, listening) -> None:
+    page = says("Go to the pharmacy.")
+    page.goto(f"{listening.url}/map")
+    hold(page)
+    expect(page.get_by_role("alert")).to_contain_text("pharmacy")
+    page.mouse.up()
+    page.get_by_role("button", name="Open in Talk").click()
+    expect(page.locator(".cm-content")).to_have_text('robot.goto("pharmacy")')

@@ -23,7 +23,7 @@ from nl2robot.voice import Cried, Hears, OwnVoice, Said, Slept, SpokenLines, Voi
 from nl2robot.voice_services import MOST_OPEN, Microphones
 from robot_api.errors import InvalidCall
 from sim.world import load_world
-from tests.speech.conftest import SHOWN
+from tests.speech.conftest import RECORDED, SHOWN
 
 FRAME = 512
 QUIET, VOICE = np.zeros(FRAME, np.int16), np.full(FRAME, 9000, np.int16)
@@ -279,12 +279,13 @@ class TestOverTheWire:
 
     def test_while_a_button_is_held_all_is_one_command(self, microphones) -> None:
         quiet = np.zeros(RATE, np.int16)
-        sound = [spoken("Go to the pharmacy"), quiet, spoken("then say hello."), quiet]
+        first, then = read(SHOWN / "pharmacy.wav"), read(RECORDED / "x-ray-room.wav")
+        sound = [first.samples, quiet, then.samples, quiet]
         number = microphones.open(RATE, 1, "en", None, held=True)
         told = [*pushes(microphones, number, np.concatenate(sound)), *microphones.close(number)]
         [heard] = [event for event in told if event["what"] == "heard"]
-        assert "robot.goto" in heard["translation"]["program"]
-        assert "robot.say" in heard["translation"]["program"]
+        assert heard["text"].startswith("go to the pharmacy and say good morning")
+        assert heard["text"].endswith("take the patient to the x ray room")
         assert not any(event["what"] == "stop" or event.get("stop") for event in told)
 
     def test_stop_is_told_while_it_is_still_said(self, microphones) -> None:

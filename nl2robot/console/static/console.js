@@ -1,17 +1,22 @@
 /** What every page of the console does: STOP, the sign of the connection, the settings. */
 
-import {keep} from '/static/page.js';
+import {element, filled, keep} from '/static/page.js';
 import {wire} from '/static/wire.js';
 
-const {words, role, who, call} = JSON.parse(document.getElementById('frame-data').textContent);
+const {words, role, who, language, call, microphone} = JSON.parse(document.getElementById('frame-data').textContent);
 const NOTICE_FOR = 6000;
 
 let fading = 0;
 
-/** Say something at the top of the page; what is an alarm stays. */
-export function notice(sentence, {alarm = false} = {}) {
+/** Say something at the top of the page; what is an alarm stays. `action` {text, act}: a button. */
+export function notice(sentence, {alarm = false, action = null} = {}) {
   const told = document.getElementById('notice');
-  told.textContent = sentence;
+  told.replaceChildren(sentence);
+  if (action) {
+    const button = element('button', {type: 'button', class: 'button small'}, action.text);
+    button.addEventListener('click', action.act);
+    told.append(' ', button);
+  }
   told.classList.toggle('alarm', alarm);
   told.hidden = false;
   clearTimeout(fading);
@@ -83,6 +88,24 @@ async function openCalls() {
   document.addEventListener('call-robot', () => calls.start());
 }
 
+/** Off the desk, too, one can say "stop"; another command is taken to the desk. */
+async function openMicrophone(button) {
+  const {mountMicrophone} = await import('/static/microphone.js');
+  mountMicrophone(button, {
+    wire,
+    words: microphone,
+    language: () => language,
+    onPartial: (text) => text && notice(text),
+    onHeard: ({text}) => notice(filled(words.heard, {text}), {action: {text: words.to_desk, act: () => toDesk(text)}}),
+    onTrouble: (sentence) => notice(sentence),
+  });
+}
+
+function toDesk(text) {
+  sessionStorage.setItem('say', text);
+  location.assign('/');
+}
+
 document.getElementById('stop').addEventListener('click', stop);
 document.getElementById('settings-button').addEventListener('click', openSettings);
 document.getElementById('settings').addEventListener('click', (event) => {
@@ -90,4 +113,8 @@ document.getElementById('settings').addEventListener('click', (event) => {
 });
 document.addEventListener('keydown', onKey, {capture: true});
 wire.onChange(showConnection);
-if (role === 'operator') openCalls();
+if (role === 'operator') {
+  openCalls();
+  const button = document.getElementById('frame-microphone');
+  if (button) openMicrophone(button);
+}

@@ -58,6 +58,9 @@ function openComposer(form) {
     box.checked = localStorage.getItem(name) === 'yes';
     box.addEventListener('change', () => localStorage.setItem(name, box.checked ? 'yes' : 'no'));
   }
+  const heard = sessionStorage.getItem('say'); // on another page
+  sessionStorage.removeItem('say');
+  if (heard) say(heard);
   if (matchMedia('(pointer: fine)').matches) line.focus({preventScroll: true});
   openMicrophone(form);
 }
