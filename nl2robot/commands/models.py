@@ -27,7 +27,8 @@ def run(options: argparse.Namespace) -> int:
             path = models.get(options.language, progress, again=options.again)
         print(f"The speech model is in {path}.")
         for model in models.list_models():
-            if model.beside == options.language and model.state == "installed":
+            second = options.language in model.beside and path != model.path
+            if second and model.state == "installed":
                 print(f"The second one is in {model.path}.")
         return ExitStatus.OK
     with shown() as progress:
@@ -42,7 +43,9 @@ def _list(as_json: bool) -> int:
         print(json.dumps([models.as_json(model) for model in listed], ensure_ascii=False))
         return ExitStatus.OK
     for model in listed:
-        print(f"{model.code:<12}  {model.language:<8} {model.state:<10} {model.megabytes:>5.0f} MB")
+        print(
+            f"{model.code:<12}  {model.language:<18} {model.state:<10} {model.megabytes:>5.0f} MB"
+        )
         if model.state != "installed":
             print(f"    nl2robot models get {model.code}")
     return ExitStatus.OK

@@ -28,11 +28,18 @@ LogProbabilities = NDArray[np.float32]
 class Expectation:
     """For any number of threads."""
 
-    def __init__(self, sentences: Iterable[Sequence[int]], vocabulary: int) -> None:
-        """`sentences` as subwords without begin and end; `vocabulary`: how many there are."""
+    def __init__(
+        self,
+        sentences: Iterable[Sequence[int]],
+        vocabulary: int,
+        begin: int = BEGIN,
+        end: int = END,
+    ) -> None:
+        """`sentences` as subwords without `begin` and `end`; `vocabulary`: how many there are."""
+        self._begin, self._end = begin, end
         follow: defaultdict[tuple[int, ...], Counter[int]] = defaultdict(Counter)
         for sentence in sentences:
-            numbers = (BEGIN, *sentence, END)
+            numbers = (begin, *sentence, end)
             for at in range(1, len(numbers)):
                 for length in range(min(LENGTH, at + 1)):
                     follow[numbers[at - length : at]][numbers[at]] += 1
@@ -66,7 +73,7 @@ class Expectation:
 
     def of(self, numbers: Sequence[int]) -> float:
         """Log probability of a whole sentence of these subwords."""
-        whole = [BEGIN, *numbers, END]
+        whole = [self._begin, *numbers, self._end]
         return sum(float(self.after(whole[:at])[whole[at]]) for at in range(1, len(whole)))
 
 

@@ -1,11 +1,7 @@
-"""Moonshine, a small neural recogniser of English (Jeffries et al. 2024): sound -> texts with their
-likelihood, and how likely given texts are.
+"""Moonshine, a small neural recogniser of English (Jeffries et al. 2024); a `search.Network`.
 
     moonshine = Moonshine(folder)
-    sound = moonshine.listen(audio.samples)
-    sound.texts()                                # what is said, the likeliest first
-    sound.texts(expectation)                     # the same, where some things are likely to be said
-    sound.likelihoods(["go to the pharmacy"])    # of these words, with any punctuation
+    moonshine.listen(audio.samples).texts()    # what is said, the likeliest first
 
 It hears all of an utterance at once, after its end, and writes it as people write: "Go to the
 pharmacy, then say hello."
@@ -26,28 +22,16 @@ from numpy.typing import NDArray
 from nl2robot.models import ModelError, find
 from nl2robot.speech.audio import RATE, Samples
 from nl2robot.speech.expectation import Expectation
-from nl2robot.speech.subwords import BEGIN, END, Subwords
+from nl2robot.speech.search import Sound
+from nl2robot.speech.subwords import Subwords
 
 _log = logging.getLogger(__name__)
 
-WIDTH: Final = 6  # texts that are followed side by side
-EXPECTED: Final = 0.25  # weight of what is likely to be said next to the sound
-HOPELESS: Final = 2.0  # a text that is so far behind a finished one (log likelihood) will not win
 QUICKEST: Final = 6.5  # subwords in a second: who writes more repeats themselves
 _MORE: Final = 8  # than that, whatever the length
-_LONGEST_ROUND: Final = 8  # subwords
 _SHORTEST: Final = RATE // 4  # samples the encoder needs
 _HEADS, _PER_HEAD = 8, 36
 _OF_SOUND: Final = ".encoder."  # in the names of what is remembered
-_PUNCTUATION: Final = ".?!,"
-
-
-@dataclass(frozen=True)
-class Text:
-    """One way to write down a sound."""
-
-    text: str
-    likelihood: float  # log, of the text given the sound
 
 
 class Moonshine:
@@ -71,7 +55,6 @@ class Moonshine:
             ) from error
         self._outputs = [output.name for output in self._decoder.get_outputs()]
         self._memory = [i.name for i in self._decoder.get_inputs() if i.name.startswith("past_")]
-        self._ends = [END, *(self.subwords.of("a" + mark)[-1] for mark in _PUNCTUATION)]
 
     def expectation(self, sentences: Sequence[str]) -> Expectation:
         """What is likely to be said, from sentences as they are written."""
@@ -85,13 +68,12 @@ class Moonshine:
         (states,) = self._encoder.run(None, {"input_values": values, "attention_mask": mask})
         return Sound(self, states, int(len(samples) / RATE * QUICKEST) + _MORE)
 
-    def _decode(
-        self, states: NDArray[np.float32], numbers: NDArray[np.int64], memory: Memory | None
-    ) -> tuple[NDArray[np.float32], Memory]:
-        """Log probabilities of what follows each of these subwords, and what to remember."""
+    def decode(
+        self, states: NDArray[np.float32], numbers: NDArray[np.int64], memory: _Memory | None
+    ) -> tuple[NDArray[np.float32], _Memory]:
         states = np.repeat(states, len(numbers), 0)
         empty = np.zeros((len(numbers), _HEADS, 0, _PER_HEAD), np.float32)
-        before = memory or dict.fromkeys(self._memory, empty)
+        before = memory.values if memory else dict.fromkeys(self._memory, empty)
         given = {
             # One for all of the sound: the decoder itself thins out a mask of samples.
             "encoder_attention_mask": np.ones((len(numbers), 1), np.int64),
@@ -113,74 +95,24 @@ class Moonshine:
         scores = found["logits"]
         scores -= scores.max(-1, keepdims=True)
         scores -= np.log(np.exp(scores).sum(-1, keepdims=True))
-        return scores, after
+        return scores, _Memory(after)
 
 
-Memory = dict[str, Any]
+@dataclass(frozen=True)
+class _Memory:
+    """By the names of the decoder's inputs."""
+
+    values: dict[str, Any]
+
+    def rows(self, kept: Sequence[int]) -> _Memory:
+        return _Memory({name: _rows(name, values, kept) for name, values in self.values.items()})
 
 
-class Sound:
-    """An utterance that was listened to."""
-
-    def __init__(self, model: Moonshine, states: NDArray[np.float32], longest: int) -> None:
-        self._model = model
-        self._states = states
-        self._longest = longest  # in subwords
-
-    def texts(self, expectation: Expectation | None = None, width: int = WIDTH) -> list[Text]:
-        """The likeliest texts, of sound and expectation together; at least one."""
-        open_ = [_Path((BEGIN,), 0.0, 0.0)]
-        done: list[_Path] = []
-        memory: Memory | None = None
-        for _ in range(self._longest):
-            last = np.array([[path.numbers[-1]] for path in open_], np.int64)
-            sounds, memory = self._model._decode(self._states, last, memory)
-            ways = [
-                (
-                    path.score + float(score),
-                    at,
-                    number,
-                    path.likelihood + float(sounds[at, 0, number]),
-                )
-                for at, path in enumerate(open_)
-                for number, score in _best(sounds[at, 0], expectation, path.numbers, width)
-            ]
-            going_on: list[tuple[int, _Path]] = []
-            for score, at, number, likelihood in sorted(ways, key=lambda way: -way[0]):
-                path = _Path((*open_[at].numbers, number), score, likelihood)
-                if number == END:
-                    done.append(path)
-                    continue
-                if _goes_round(path.numbers):
-                    continue
-                going_on.append((at, path))
-                if len(going_on) == width:
-                    break  # ends that are less likely than all these are not worth keeping
-            done.sort(key=lambda path: -path.score)
-            if not going_on:
-                break
-            if done and going_on[0][1].score < done[: max(1, width // 2)][-1].score - HOPELESS:
-                break
-            open_ = [path for _, path in going_on]
-            kept = [at for at, _ in going_on]
-            memory = {name: _rows(name, values, kept) for name, values in memory.items()}
-        write = self._model.subwords.text
-        return [Text(write(path.numbers), path.likelihood) for path in (done or open_)[: 2 * width]]
-
-    def likelihoods(self, texts: Sequence[str]) -> list[float]:
-        """The log likelihood of each text, whatever punctuation it ends with."""
-        written = [[BEGIN, *self._model.subwords.of(text.rstrip(_PUNCTUATION))] for text in texts]
-        if not written:
-            return []
-        numbers = np.full((len(written), max(map(len, written))), END, np.int64)
-        for row, text in zip(numbers, written, strict=True):
-            row[: len(text)] = text
-        sounds, _ = self._model._decode(self._states, numbers, None)
-        return [
-            float(rows[np.arange(len(text) - 1), text[1:]].sum())
-            + float(np.logaddexp.reduce(rows[len(text) - 1, self._model._ends]))
-            for rows, text in zip(sounds, written, strict=True)
-        ]
+def _rows(name: str, values: NDArray[np.float32], kept: Sequence[int]) -> NDArray[np.float32]:
+    """What is remembered of these texts. Of the sound it is the same for all of them."""
+    if _OF_SOUND in name and len(values) == len(kept):
+        return values
+    return values[list(kept)]
 
 
 def load(language: str) -> Moonshine | None:
@@ -196,42 +128,3 @@ def _loaded(folder: Path) -> Moonshine | None:
     except ModelError as error:  # without it one hears less well, but one hears
         _log.warning("%s", error)
         return None
-
-
-@dataclass(frozen=True)
-class _Path:
-    """A text that is being written."""
-
-    numbers: tuple[int, ...]
-    score: float  # of sound and expectation together
-    likelihood: float  # of the sound alone
-
-
-def _rows(name: str, values: NDArray[np.float32], kept: Sequence[int]) -> NDArray[np.float32]:
-    """What is remembered of these paths. Of the sound it is the same for all of them."""
-    if _OF_SOUND in name and len(values) == len(kept):
-        return values
-    return values[list(kept)]
-
-
-def _goes_round(numbers: tuple[int, ...]) -> bool:
-    """Whether a text says the same again and again, as the model does of mere noise."""
-    return any(
-        numbers[-length:] == numbers[-2 * length : -length] == numbers[-3 * length : -2 * length]
-        for length in range(1, _LONGEST_ROUND + 1)
-        if len(numbers) >= 3 * length
-    )
-
-
-def _best(
-    sounds: NDArray[np.float32],
-    expectation: Expectation | None,
-    numbers: tuple[int, ...],
-    width: int,
-) -> list[tuple[int, float]]:
-    """The subwords that may follow these, with their scores."""
-    scores = sounds
-    if expectation is not None:
-        scores = sounds + EXPECTED * expectation.after(numbers)
-    best = np.argpartition(-scores, width + 1)[: width + 1]
-    return [(int(number), float(scores[number])) for number in best]

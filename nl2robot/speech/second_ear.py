@@ -1,7 +1,7 @@
 """The second ear: a neural recogniser that judges whole utterances, beside the one that hears them
 word by word.
 
-    ear = SecondEar(Moonshine(folder))
+    ear = second_ear("en")
     opinion = ear.hear(samples, phrases, candidates=["go to the pharmacy"])
     opinion.readings[0].text, opinion.readings[0].evidence.belief, opinion.free
 
@@ -24,11 +24,11 @@ from typing import Final
 
 import numpy as np
 
-from nl2robot.speech import moonshine
+from nl2robot.speech import moonshine, whisper
 from nl2robot.speech.audio import RATE, Samples
 from nl2robot.speech.expectation import Expectation
 from nl2robot.speech.levels import gain_for
-from nl2robot.speech.moonshine import Moonshine, Sound
+from nl2robot.speech.search import Network, Sound
 from nl2robot.speech.vocabulary import spell_numbers
 
 CANDIDATES: Final = 6  # of its own that are judged
@@ -83,7 +83,7 @@ class Opinion:
 class SecondEar:
     """May be used from several threads at once."""
 
-    def __init__(self, model: Moonshine, language: str = "en") -> None:
+    def __init__(self, model: Network, language: str = "en") -> None:
         self._model = model
         self._language = language
         self._expected = lru_cache(maxsize=_LISTS)(self._expected_of)
@@ -148,12 +148,12 @@ class _Expected:
 
 def second_ear(language: str) -> SecondEar | None:
     """The one of this language, loaded once; None if none is installed."""
-    model = moonshine.load(language)
+    model = moonshine.load(language) or whisper.load(language)
     return _ear(model, language) if model else None
 
 
 @cache
-def _ear(model: Moonshine, language: str) -> SecondEar:
+def _ear(model: Network, language: str) -> SecondEar:
     return SecondEar(model, language)
 
 

@@ -23,7 +23,10 @@ _BLANK: Final = "▁"  # begins a word
 
 
 class Subwords:
-    """The vocabulary of one model."""
+    """The vocabulary of one model; a `search.Tokenizer`."""
+
+    begin: Final = (BEGIN,)
+    end: Final = END
 
     def __init__(self, subwords: Sequence[bytes]) -> None:
         self._subwords = tuple(subwords)

@@ -12,6 +12,7 @@ from __future__ import annotations
 import ctypes
 import importlib.resources
 import importlib.util
+import re
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -36,6 +37,8 @@ _PAUSE: Final = 0.2
 _INITIALISE_FAILED: Final = -1
 _RETRIEVAL: Final = 1  # AUDIO_OUTPUT_RETRIEVAL: samples come to the callback
 _UTF8: Final = 1  # and neither espeakSSML nor espeakPHONEMES: text is text
+_IPA: Final = 2  # in the mode of phonemes
+_MARKED: Final = re.compile(r"([^,.;:!?…]+)([,.;:!?…]*\s*)")  # what espeak-ng leaves out of them
 _RATE, _PITCH = 1, 3  # espeak_PARAMETER
 _SLOWEST, _FASTEST = 80, 450  # words a minute that espeak-ng takes
 
@@ -121,7 +124,7 @@ def joined(sounds: Iterable[Sound]) -> Sound:
     return Sound(np.concatenate([piece.samples for piece in heard]), heard[0].rate)
 
 
-def _piecewise(
+def piecewise(
     text: str, sound_of: Callable[[str], Sound], stopped: Callable[[], bool]
 ) -> Iterator[Sound]:
     """The pieces of a text one after the other; what was made while it was stopped is dropped."""
@@ -159,7 +162,7 @@ class _Espeak:
         pitch: float = 1.0,
         stopped: Callable[[], bool] = never,
     ) -> Iterator[Sound]:
-        return _piecewise(text, lambda piece: self._sound(piece, speed, pitch, stopped), stopped)
+        return piecewise(text, lambda piece: self._sound(piece, speed, pitch, stopped), stopped)
 
     def _sound(self, text: str, speed: float, pitch: float, stopped: Callable[[], bool]) -> Sound:
         library, rate = _espeak_library()
@@ -201,6 +204,23 @@ def espeak(language: str, variant: str = "") -> Voice:
     return _Espeak(language, variant)
 
 
+def phonemes(text: str, language: str) -> str:
+    """How a text is spoken, in the letters of the IPA, with its punctuation. Raises
+    `VoiceError`."""
+    library, _ = _espeak_library()
+    spoken: list[str] = []
+    with _Espeak._lock:
+        if library.espeak_SetVoiceByName(language.encode()) != 0:
+            raise VoiceError(f"espeak-ng does not speak {language!r}. Choose another language.")
+        for words, marks in _MARKED.findall(text):
+            left = ctypes.c_char_p(words.encode())
+            while left.value:  # a clause each time; it moves the pointer on
+                clause = library.espeak_TextToPhonemes(ctypes.byref(left), _UTF8, _IPA)
+                spoken.append(clause.decode())
+            spoken.append(marks)
+    return "".join(spoken).replace("\u200d", "")
+
+
 @cache
 def _espeak_library() -> tuple[Any, int]:
     import espeakng_loader
@@ -216,6 +236,8 @@ def _espeak_library() -> tuple[Any, int]:
             "espeak-ng cannot be started."
             " Install it again: pip install --force-reinstall espeakng-loader"
         )
+    library.espeak_TextToPhonemes.restype = ctypes.c_char_p
+    library.espeak_TextToPhonemes.argtypes = (ctypes.c_void_p, ctypes.c_int, ctypes.c_int)
     return library, int(rate)
 
 
@@ -247,7 +269,7 @@ class _Piper:
         from piper import SynthesisConfig
 
         config = SynthesisConfig(length_scale=1 / speed)
-        return _piecewise(text, lambda piece: self._sound(piece, config), stopped)
+        return piecewise(text, lambda piece: self._sound(piece, config), stopped)
 
     def _sound(self, text: str, config: Any) -> Sound:
         with self._lock:

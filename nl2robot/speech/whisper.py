@@ -1,0 +1,262 @@
+"""Whisper, a neural recogniser of many languages (Radford et al. 2022), of 74 million weights; a
+`search.Network`.
+
+    whisper = Whisper(folder, "de")
+    whisper.listen(audio.samples).texts()    # what is said, the likeliest first
+
+The encoder is run by CTranslate2, which takes a tenth of the time that numpy would. Its decoder,
+though, cannot be told what is likely to be said, so the one here reads the same file.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nl2robot.model_sources import load_registry
+from nl2robot.models import ModelError, find
+from nl2robot.speech.audio import RATE, Samples
+from nl2robot.speech.byte_pairs import BytePairs
+from nl2robot.speech.ct2_file import read
+from nl2robot.speech.expectation import Expectation
+from nl2robot.speech.log_mel import log_mel
+from nl2robot.speech.search import Sound
+
+_log = logging.getLogger(__name__)
+
+QUICKEST: Final = 9.0  # subwords in a second: who writes more repeats themselves
+_MORE: Final = 8  # than that, whatever the length
+SHORTEST: Final = 8.0
+"""Seconds of sound, or silence, that it is given at least. It was trained on half a minute always;
+of much less it writes what was not said, and a whole one takes four times as long."""
+
+Floats = NDArray[np.float32]
+
+
+class Whisper:
+    """A loaded model. May be used from several threads at once."""
+
+    def __init__(self, folder: Path, language: str) -> None:
+        """`folder` holds a model that CTranslate2 has converted. Raises ModelError if it is no
+        good."""
+        import ctranslate2
+
+        try:
+            self.subwords = BytePairs.load(folder / "tokenizer.json", language)
+            described = json.loads((folder / "config.json").read_text("utf-8"))
+            self._encoder = ctranslate2.models.Whisper(
+                str(folder), device="cpu", compute_type="int8"
+            )
+            self._decoder = _Decoder(read(folder / "model.bin"))
+        except Exception as error:  # CTranslate2 raises RuntimeError only, json and numpy others
+            raise ModelError(
+                f"The speech model in {folder} cannot be used. "
+                f"Run `nl2robot models get {folder.name} --again` to fetch it again."
+            ) from error
+        never = np.zeros(self._decoder.size, np.float32)
+        never[described["suppress_ids"]] = -np.inf  # music, brackets and the like
+        never[self.subwords.end + 1 :] = -np.inf  # times, languages, tasks
+        never[self.subwords.end] = 0.0
+        self._never = never
+
+    def expectation(self, sentences: Sequence[str]) -> Expectation:
+        """What is likely to be said, from sentences as they are written."""
+        subwords = self.subwords
+        return Expectation(
+            map(subwords.of, sentences), self._decoder.size, subwords.begin[-1], subwords.end
+        )
+
+    def listen(self, samples: Samples) -> Sound:
+        """One utterance, at most half a minute."""
+        import ctranslate2
+
+        seconds = max(SHORTEST, len(samples) / RATE)
+        mel = log_mel(samples, seconds)[np.newaxis]
+        encoded = self._encoder.encode(ctranslate2.StorageView.from_array(mel))
+        states = self._decoder.of_sound(np.array(encoded)[0])
+        return Sound(self, states, int(len(samples) / RATE * QUICKEST) + _MORE)
+
+    def decode(
+        self, states: _OfSound, numbers: NDArray[np.int64], memory: _Memory | None
+    ) -> tuple[Floats, _Memory]:
+        scores, after = self._decoder.scores(states, numbers, memory)
+        scores += self._never
+        scores -= scores.max(-1, keepdims=True)
+        scores -= np.log(np.exp(scores).sum(-1, keepdims=True))
+        return scores, after
+
+
+def load(language: str) -> Whisper | None:
+    """That of a language, loaded once; None where there is none that can be used."""
+    registry = load_registry()
+    folder = find("whisper", registry) if language in registry["whisper"].beside else None
+    return _loaded(folder, language) if folder else None
+
+
+@cache
+def _loaded(folder: Path, language: str) -> Whisper | None:
+    try:
+        return Whisper(folder, language)
+    except ModelError as error:  # without it one hears less well, but one hears
+        _log.warning("%s", error)
+        return None
+
+
+# ── the decoder ──────────────────────────────────────────────────────────────────────────────
+
+_OfSound = list[tuple[Floats, Floats]]
+"""Keys and values of the sound, for each layer: heads x size x moments, heads x moments x size."""
+
+
+@dataclass(frozen=True)
+class _Memory:
+    """Keys and values of the subwords so far, for each layer: texts x heads x subwords x size."""
+
+    layers: list[tuple[Floats, Floats]]
+
+    @property
+    def length(self) -> int:
+        return int(self.layers[0][0].shape[2])
+
+    def rows(self, kept: Sequence[int]) -> _Memory:
+        rows = list(kept)
+        return _Memory([(keys[rows], values[rows]) for keys, values in self.layers])
+
+
+class _Decoder:
+    """A transformer (Vaswani et al. 2017) with the normalisation before each step."""
+
+    def __init__(self, values: Mapping[str, NDArray[Any]]) -> None:
+        own = {
+            name.removeprefix("decoder/"): np.ascontiguousarray(value, np.float32)
+            for name, value in values.items()
+            if name.startswith("decoder/") and value.ndim
+        }
+        self._heads = int(values["decoder/num_heads"])
+        self._embeddings = own["embeddings/weight"]
+        self._positions = own["position_encodings/encodings"]
+        self._norm = _Norm(own, "layer_norm")
+        count = len({name.split("/")[0] for name in own if name.startswith("layer_")})
+        count -= "layer_norm" in {name.split("/")[0] for name in own}
+        self._layers = [_Layer(own, f"layer_{n}", self._heads) for n in range(count)]
+
+    @property
+    def size(self) -> int:
+        """How many subwords there are."""
+        return len(self._embeddings)
+
+    def of_sound(self, encoded: Floats) -> _OfSound:
+        return [layer.of_sound(encoded) for layer in self._layers]
+
+    def scores(
+        self, sound: _OfSound, numbers: NDArray[np.int64], memory: _Memory | None
+    ) -> tuple[Floats, _Memory]:
+        """Of every subword after each of these, before they are made probabilities."""
+        start = memory.length if memory else 0
+        count = numbers.shape[1]
+        x = self._embeddings[numbers] + self._positions[start : start + count]
+        unseen = np.triu(np.full((count, count), -np.inf, np.float32), 1) if count > 1 else None
+        after = []
+        for n, layer in enumerate(self._layers):
+            x, kept = layer(x, sound[n], memory.layers[n] if memory else None, unseen)
+            after.append(kept)
+        rows = self._norm(x).reshape(-1, x.shape[-1])
+        # This way round numpy needs half the time.
+        scores = (self._embeddings @ rows.T).T.reshape(*numbers.shape, -1)
+        return scores, _Memory(after)
+
+
+class _Norm:
+    def __init__(self, own: Mapping[str, Floats], name: str) -> None:
+        self._gamma, self._beta = own[f"{name}/gamma"], own[f"{name}/beta"]
+
+    def __call__(self, x: Floats) -> Floats:
+        x = x - x.mean(-1, keepdims=True)
+        spread = np.sqrt(np.square(x).mean(-1, keepdims=True) + np.float32(1e-5))
+        return np.asarray(x / spread * self._gamma + self._beta, np.float32)
+
+
+class _Linear:
+    def __init__(self, own: Mapping[str, Floats], name: str) -> None:
+        self._weight = own[f"{name}/weight"].T
+        self._bias = own[f"{name}/bias"]
+
+    def __call__(self, x: Floats) -> Floats:
+        return x @ self._weight + self._bias
+
+
+class _Layer:
+    def __init__(self, own: Mapping[str, Floats], name: str, heads: int) -> None:
+        self._heads = heads
+        self._own_norm = _Norm(own, f"{name}/self_attention/layer_norm")
+        self._own_in = _Linear(own, f"{name}/self_attention/linear_0")
+        self._own_out = _Linear(own, f"{name}/self_attention/linear_1")
+        self._sound_norm = _Norm(own, f"{name}/attention/layer_norm")
+        self._asked = _Linear(own, f"{name}/attention/linear_0")
+        self._offered = _Linear(own, f"{name}/attention/linear_1")
+        self._sound_out = _Linear(own, f"{name}/attention/linear_2")
+        self._last_norm = _Norm(own, f"{name}/ffn/layer_norm")
+        self._wide = _Linear(own, f"{name}/ffn/linear_0")
+        self._narrow = _Linear(own, f"{name}/ffn/linear_1")
+
+    def of_sound(self, encoded: Floats) -> tuple[Floats, Floats]:
+        keys, values = np.split(self._offered(encoded), 2, axis=-1)
+        keys, values = (
+            each.reshape(len(encoded), self._heads, -1).swapaxes(0, 1) for each in (keys, values)
+        )
+        return np.ascontiguousarray(keys.swapaxes(1, 2)), np.ascontiguousarray(values)
+
+    def __call__(
+        self,
+        x: Floats,
+        sound: tuple[Floats, Floats],
+        before: tuple[Floats, Floats] | None,
+        unseen: Floats | None,
+    ) -> tuple[Floats, tuple[Floats, Floats]]:
+        asked, keys, values = np.split(self._own_in(self._own_norm(x)), 3, axis=-1)
+        asked, keys, values = (self._apart(each) for each in (asked, keys, values))
+        if before is not None:
+            keys = np.concatenate([before[0], keys], axis=2)
+            values = np.concatenate([before[1], values], axis=2)
+        x = x + self._own_out(
+            self._together(self._attend(asked, keys.swapaxes(2, 3), values, unseen))
+        )
+        # All texts ask the same sound: in one row, as if they were one long text.
+        texts, count, size = x.shape
+        asked = self._apart(self._asked(self._sound_norm(x)).reshape(1, texts * count, size))
+        found = self._together(self._attend(asked, *sound))
+        x = x + self._sound_out(found.reshape(texts, count, size))
+        return x + self._narrow(_gelu(self._wide(self._last_norm(x)))), (keys, values)
+
+    def _attend(
+        self, asked: Floats, keys: Floats, values: Floats, unseen: Floats | None = None
+    ) -> Floats:
+        scores = (asked @ keys) * np.float32(asked.shape[-1] ** -0.5)
+        if unseen is not None:
+            scores = scores + unseen
+        scores -= scores.max(-1, keepdims=True)
+        np.exp(scores, out=scores)
+        scores /= scores.sum(-1, keepdims=True)
+        return np.asarray(scores @ values, np.float32)
+
+    def _apart(self, x: Floats) -> Floats:
+        """By heads: texts x heads x subwords x size."""
+        return x.reshape(*x.shape[:2], self._heads, -1).swapaxes(1, 2)
+
+    def _together(self, x: Floats) -> Floats:
+        return x.swapaxes(1, 2).reshape(x.shape[0], x.shape[2], -1)
+
+
+def _gelu(x: Floats) -> Floats:
+    from scipy.special import erf
+
+    half = erf(x * np.float32(0.5**0.5)) + np.float32(1)
+    return np.asarray(x * half * np.float32(0.5), np.float32)
