@@ -179,7 +179,7 @@ def main(arguments: Sequence[str]) -> None:
     from rich.progress import track
     from rich.table import Table
 
-    ear = Ear(need("en"), Knowledge(load_world(DEFAULT_WORLD)))
+    ear = Ear(Knowledge(load_world(DEFAULT_WORLD)))
     whole = 3 * EACH + NOBODY
     seed = int(arguments[0]) if arguments else 1
     heard = list(track(cases(ear, seed), "Hearing", total=whole))

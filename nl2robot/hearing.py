@@ -16,8 +16,7 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.speech.audio import RATE, Audio, read
 from nl2robot.speech.hotword_words import WORDS
 from nl2robot.speech.listening import COMMANDS, Listener, Manner, has_speech
-from nl2robot.speech.recogniser import Decoding, Heard, Recogniser, choose
-from nl2robot.speech.second_ear import second_ear
+from nl2robot.speech.recogniser import Decoding, Heard, choose, load
 from nl2robot.speech.streaming import Streaming
 from nl2robot.speech.vocabulary import Missing, missing_words
 from nl2robot.translation import Planner, Talk, Translation, translate
@@ -30,11 +29,12 @@ class Ear:
     """Hears commands: whole sample sentences teach it which word follows which, the grammar's and
     the world's words are what it can hear at all."""
 
-    def __init__(self, model: Path, knowledge: Knowledge, language: str = "en") -> None:
+    def __init__(self, knowledge: Knowledge, language: str = "en") -> None:
+        """Raises ModelError if the language has no speech model here."""
         lexicon = knowledge.lexicon(language)
         self.knowledge = knowledge
         self.language = language
-        self.recogniser = Recogniser(model, language, second_ear(language))
+        self.recogniser = load(language)
         self.phrases = [
             *all_samples(lexicon, language),
             *vocabulary(lexicon, language),

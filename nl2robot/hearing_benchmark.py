@@ -18,12 +18,12 @@ import numpy as np
 from grammar.samples import samples
 from nl2robot.hearing import Ear
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
-from nl2robot.models import need
 from nl2robot.speech.answers import expect, hear_answer
 from nl2robot.speech.levels import gain_for
-from nl2robot.speech.recogniser import BLOCK, PUNCTUATION
+from nl2robot.speech.recogniser import PUNCTUATION
 from nl2robot.speech.trials import LEVELS, Stage, Trial, spoken
 from nl2robot.speech.vocabulary import number_words, spell_numbers
+from nl2robot.speech.vosk_decoder import BLOCK
 from sim.world import load_world
 
 CONDITIONS = ("quiet", *(f"{level:g} dB" for level in LEVELS))
@@ -102,7 +102,7 @@ class _Bench:
     def __init__(self, language: str, seed: int) -> None:
         self._language = language
         knowledge = Knowledge(load_world(DEFAULT_WORLD))
-        self._ear = Ear(need(language), knowledge, language)
+        self._ear = Ear(knowledge, language)
         self._stage = Stage(language, seed)
         lexicon = knowledge.lexicon(language)
         known = [

@@ -168,10 +168,10 @@ class Microphones:
     def _ear(self, language: str) -> Ear:
         from nl2robot.hearing import Ear
 
-        model = need(language)
+        need(language)
         with self._lock:
             if language not in self._ears:  # its phrases are those of the world
-                self._ears[language] = Ear(model, self._knowledge(), language)
+                self._ears[language] = Ear(self._knowledge(), language)
             return self._ears[language]
 
     def _told(self, opened: _Open, event: Event) -> dict[str, Any]:

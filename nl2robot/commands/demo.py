@@ -71,10 +71,10 @@ def _hear(terminal: Terminal) -> str | None:
 
     try:
         with shown() as progress:
-            model = get("en", progress)
+            get("en", progress)
     except UserError as error:
         terminal.console.print(f"\nThe spoken command is left out. {error}", markup=False)
         return None
-    ear = Ear(model, Knowledge(load_world(DEFAULT_WORLD)), "en")
+    ear = Ear(Knowledge(load_world(DEFAULT_WORLD)), "en")
     terminal.console.print(f"\nListening to {RECORDING.name} ...")
     return ear.hear(RECORDING).text

@@ -8,7 +8,6 @@ import shutil
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Final, Protocol, TextIO
 
 import msgspec
@@ -52,15 +51,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     if options.device is not None and not options.mic:
         raise UserError("--device chooses a microphone. Add --mic, or leave --device out.")
-    model = need(options.lang)
+    need(options.lang)
     for sentence in lacking_beside(options.lang):
         print(sentence, file=sys.stderr)
     if not options.mic:
-        return recordings(options.wav, _hearing(options, model))
+        return recordings(options.wav, _hearing(options))
     from nl2robot.speech.microphone import Microphone
 
     microphone = Microphone(options.device)  # before the model is loaded, for it may be missing
-    hearing = _hearing(options, model)
+    hearing = _hearing(options)
     with microphone:
         blocks, quiet = microphone.blocks(), options.json
         return live(blocks, hearing, sys.stdout, quiet=quiet, language=options.lang)
@@ -76,18 +75,18 @@ class Hearing(Protocol):
     def spoken(self, speech: SpeechEnded) -> None: ...
 
 
-def _hearing(options: argparse.Namespace, model: Path) -> Hearing:
-    return _Answers(options) if options.expect else _Commands(options, model)
+def _hearing(options: argparse.Namespace) -> Hearing:
+    return _Answers(options) if options.expect else _Commands(options)
 
 
 class _Commands:
-    def __init__(self, options: argparse.Namespace, model: Path) -> None:
+    def __init__(self, options: argparse.Namespace) -> None:
         from nl2robot.hearing import Ear
 
         self._options = options
         self._words = words_in(options.lang)
         knowledge = Knowledge(names_of(options), routines=open_routines())
-        self._ear = Ear(model, knowledge, options.lang)
+        self._ear = Ear(knowledge, options.lang)
         for missing in self._ear.deaf_to():
             print(missing.message, file=sys.stderr)
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from nl2robot.commands.options import names_of
 from nl2robot.hearing import Ear
 from nl2robot.knowledge import Knowledge
-from nl2robot.models import lacking_beside, need
+from nl2robot.models import lacking_beside
 from nl2robot.routines import open_routines
 from nl2robot.speech.audio import RATE, Audio, Samples, read
 from nl2robot.speech.full_duplex import FullDuplex
@@ -70,7 +70,7 @@ def voice_input(
     says_itself: Callable[[str], bool] = lambda word: False,
 ) -> VoiceInput:
     """What hears commands and answers about them in a language, after the hot `word`."""
-    ear = Ear(need(language), knowledge, language)
+    ear = Ear(knowledge, language)
     hot_word = HotWord(language, word)
     said = answers(language)
     also = [*said, hot_word.word]

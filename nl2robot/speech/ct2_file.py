@@ -27,8 +27,12 @@ def read(path: Path) -> dict[str, NDArray[Any]]:
         file.text()
         file.number("I")
         return {file.text(): file.array() for _ in range(file.number("I"))}
-    except (struct.error, IndexError, UnicodeDecodeError) as error:
+    except (struct.error, IndexError, _TooShort) as error:
         raise ValueError(f"{path} ends early or is damaged") from error
+
+
+class _TooShort(Exception):
+    """The file ends within an array."""
 
 
 class _File:
@@ -49,6 +53,8 @@ class _File:
         shape = [self.number("I") for _ in range(self.number("B"))]
         kind = np.dtype(_KINDS[self.number("B")])
         count = self.number("I") // kind.itemsize
+        if self._at + count * kind.itemsize > len(self._data):
+            raise _TooShort
         values = np.frombuffer(self._data, kind, count, self._at).reshape(shape)
         self._at += count * kind.itemsize
         return values

@@ -20,7 +20,6 @@ import numpy as np
 
 from nl2robot.hearing import Ear
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
-from nl2robot.models import need
 from nl2robot.speech.audio import RATE, Audio, Samples, read
 from nl2robot.speech.listening import COMMANDS, FRAME, Listener, SpeechEnded, voice_detector
 from sim.world import load_world
@@ -91,11 +90,7 @@ def main(files: Sequence[str]) -> None:
     shown = Path(__file__).parents[1] / "data" / "recordings"
     recordings = [read(file) for file in files or sorted(map(str, shown.glob("*.wav")))]
     Listener()  # loads the detector
-    print(
-        json.dumps(
-            measure(recordings, Ear(need("en"), Knowledge(load_world(DEFAULT_WORLD)))), indent=2
-        )
-    )
+    print(json.dumps(measure(recordings, Ear(Knowledge(load_world(DEFAULT_WORLD)))), indent=2))
 
 
 if __name__ == "__main__":

@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from nl2robot.hearing import Ear
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
-from nl2robot.models import need
 from nl2robot.speech import scenes
 from nl2robot.speech.audio import RATE, Audio, Samples
 from nl2robot.speech.echo_cancelling import EchoCanceller, Played
@@ -169,7 +168,7 @@ class Bench:
 
     def __init__(self, seed: int = 1) -> None:
         self._rng = np.random.default_rng(seed)
-        self._ear = Ear(need("en"), Knowledge(load_world(DEFAULT_WORLD)))
+        self._ear = Ear(Knowledge(load_world(DEFAULT_WORLD)))
         self._said = spoken("en")["commands"]
         neural, robotic = Speaker(voice("en", "piper")), Speaker(voice("en", "espeak"))
         man, woman = Speaker(espeak("en-us", "m3"), 0.95), Speaker(espeak("en-us", "f4"), 1.05)

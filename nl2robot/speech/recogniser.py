@@ -17,31 +17,28 @@ The figures in docs/voice.md were measured with the constants in this file.
 from __future__ import annotations
 
 import json
-import os
 import threading
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache
+from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import vosk
 
 from nl2robot.errors import UserError
-from nl2robot.models import ModelError, need
+from nl2robot.models import ModelError, find, need
 from nl2robot.speech.audio import RATE, Audio, Samples
 from nl2robot.speech.levels import Silence, gain_for
 from nl2robot.speech.second_ear import Evidence, SecondEar, second_ear
 from nl2robot.speech.vocabulary import spell_numbers
+from nl2robot.speech.vosk_decoder import READINGS, Decoder, Scored, helpers, scored
 
 vosk.SetLogLevel(-1)  # its C++ log goes to standard error
 
 # Before and after the speech, silence: without it the model loses the first and last sounds.
 PADDING = 0.3  # seconds
-BLOCK = RATE // 4  # samples handed over at a time
 MOST_LISTS = 16  # of phrases that are kept ready to be decoded with
 MOST_IDLE = 2  # decoders kept for each: as many as there are sounds at a time
 PUNCTUATION = '-–.,;:!?…"“”„«»()'
@@ -52,12 +49,12 @@ ALIKE = 0.9  # texts this similar are the same words
 WORST_FIT = -0.08  # how much of its score a text may be behind free decoding, where ...
 DISAGREEMENT = 0.2  # ... as much counts as behind if it has nothing in common with the free text,
 UNSURENESS = 0.1  # ... and as much if the limited decoder had no confidence in its words at all
-READINGS = 10  # of each decoder
 
 # With a second ear.
 LEAST_BELIEF = 0.45  # of what is not doubtful
 CANDIDATES = 6  # of the limited decoder that it judges
 LONGEST = 30.0  # seconds that it can hear at once; nothing that long is a command
+NEWS = 0.8  # seconds of sound after which it tells anew what was said so far, where it hears alone
 
 
 class SpeechError(UserError):
@@ -144,35 +141,30 @@ class _Grammar:
         return " ".join(self.as_written.get(word, word) for word in text.split())
 
 
-@dataclass(frozen=True)
-class _Scored:
-    text: str
-    score: float  # log likelihood of sound and words together; only differences mean anything
-
-
 class Recogniser:
     """A loaded speech model. May be used from several threads at once."""
 
-    def __init__(self, model: Path, language: str, second: SecondEar | None = None) -> None:
-        """`model` is the folder of a vosk model, `second` judges what is heard with it. Raises
-        ModelError if the model cannot be used."""
+    def __init__(self, model: Path | None, language: str, second: SecondEar | None = None) -> None:
+        """`model` is the folder of a vosk model, `second` judges what is heard with it, or hears
+        alone where there is none. Raises ModelError if the model cannot be used."""
+        assert model or second
         self.language = language
         self.second = second
         self._grammars: dict[tuple[str, ...], _Grammar] = {}
-        self._idle: dict[tuple[_Grammar | None, int], list[_Decoder]] = {}
+        self._idle: dict[tuple[_Grammar | None, int], list[Decoder]] = {}
         self._lock = threading.Lock()
         self._unusable = ModelError(
             f"The speech model in {model} cannot be used. "
             f"Run `nl2robot models get {language} --again` to fetch it again."
         )
         try:
-            self._model = vosk.Model(str(model))
+            self._model = vosk.Model(str(model)) if model else None
         except Exception as error:  # vosk raises nothing more precise
             raise self._unusable from error
 
     def knows(self, word: str) -> bool:
-        """Whether the model can hear this word at all."""
-        return bool(self._model.vosk_model_find_word(word) >= 0)
+        """Whether the model can hear this word at all; a second ear alone writes any."""
+        return self._model is None or bool(self._model.vosk_model_find_word(word) >= 0)
 
     def spelling(self, word: str) -> tuple[str, ...] | None:
         """The words of the model that stand for `word` as people write it; None if there are none.
@@ -227,7 +219,10 @@ class Recogniser:
         `gain` is what to multiply the sound with: how loud it will be is not known yet. `gain_for`
         tells it from sound of the same speaker. Raises SpeechError as `recognise` does.
         """
-        return Decoding(self, None if phrases is None else self._grammar(phrases), worst_fit, gain)
+        grammar = None if phrases is None else self._grammar(phrases)
+        if self._model is None:
+            return _Unaided(self, grammar, worst_fit)
+        return Decoding(self, grammar, worst_fit, gain)
 
     def _grammar(self, phrases: Sequence[str]) -> _Grammar:
         key = tuple(phrases)
@@ -267,7 +262,7 @@ class Recogniser:
         limits = json.dumps(list(spoken), ensure_ascii=False)
         return _Grammar(limits, tuple(phrases), as_written)
 
-    def _decoder(self, grammar: _Grammar | None, alternatives: int) -> _Decoder:
+    def _decoder(self, grammar: _Grammar | None, alternatives: int) -> Decoder:
         """One that is done, or a new one. A used one is several times as fast: it keeps the parts
         of the search graph that it has unfolded."""
         key = (grammar, alternatives)
@@ -281,9 +276,9 @@ class Recogniser:
             raise self._unusable from error
         kaldi.SetWords(True)
         kaldi.SetMaxAlternatives(alternatives)
-        return _Decoder(kaldi)
+        return Decoder(kaldi)
 
-    def _take_back(self, decoder: _Decoder, grammar: _Grammar | None, alternatives: int) -> None:
+    def _take_back(self, decoder: Decoder, grammar: _Grammar | None, alternatives: int) -> None:
         key = (grammar, alternatives)
         with self._lock:
             idle = self._idle.pop(key, [])  # the least used stand first
@@ -345,14 +340,14 @@ class Decoding:
         if self._silent:
             return _heard((), seconds)
         self._feed(np.zeros(int(PADDING * RATE), np.int16))
-        self._each(_Decoder.finish)
-        sure, *scored = self._decoders.values()
+        self._each(Decoder.finish)
+        sure, *others = self._decoders.values()
         heard = _heard(self._words(sure), seconds)
         if self._second is not None:
             heard = self._judged(heard, self._second)
-        elif scored:
-            limited, free = (_scored(decoder.results) for decoder in scored)
-            limited = [_Scored(self._written(text.text), text.score) for text in limited]
+        elif others:
+            limited, free = (scored(decoder.results) for decoder in others)
+            limited = [Scored(self._written(text.text), text.score) for text in limited]
             trusted = _Trust(free[0], heard.confidence, self._worst_fit)
             heard = replace(
                 heard,
@@ -373,9 +368,7 @@ class Decoding:
         if self._grammar is None:
             free = ear.free(sound)
             return replace(heard, text=free, words=heard.words if free == heard.text else ())
-        _, limited = self._decoders.values()
-        candidates = [self._written(text.text) for text in _scored(limited.results)]
-        opinion = ear.hear(sound, self._grammar.phrases, candidates[:CANDIDATES])
+        opinion = ear.hear(sound, self._grammar.phrases, self._candidates()[:CANDIDATES])
         readings = tuple(
             Reading(
                 each.text,
@@ -399,14 +392,19 @@ class Decoding:
             readings=readings,
         )
 
+    def _candidates(self) -> list[str]:
+        """What the limited decoder heard, the likeliest first."""
+        _, limited = self._decoders.values()
+        return [self._written(text.text) for text in scored(limited.results)]
+
     def _feed(self, samples: Samples) -> None:
         sound = samples.tobytes()
         self._each(lambda decoder: decoder.feed(sound))
 
-    def _each(self, work: Callable[[_Decoder], None]) -> None:
+    def _each(self, work: Callable[[Decoder], None]) -> None:
         """The last, slowest one beside the others: libvosk does not hold the interpreter's lock."""
         *others, last = self._decoders.values()
-        beside = _helpers().submit(work, last) if others else None
+        beside = helpers().submit(work, last) if others else None
         for decoder in others or [last]:
             work(decoder)
         if beside is not None:
@@ -415,7 +413,7 @@ class Decoding:
     def _written(self, text: str) -> str:
         return self._grammar.written(text) if self._grammar else text
 
-    def _words(self, decoder: _Decoder) -> tuple[Word, ...]:
+    def _words(self, decoder: Decoder) -> tuple[Word, ...]:
         """The words with their times and confidences."""
         before = decoder.started + PADDING
         return tuple(
@@ -430,71 +428,60 @@ class Decoding:
         )
 
 
-class _Decoder:
-    """A decoder of libvosk with what it has found. After `finish` the next sound may follow."""
+class _Unaided(Decoding):
+    """With a second ear only. It hears whole utterances; what was said so far it tells anew now and
+    then."""
 
-    def __init__(self, kaldi: Any) -> None:
-        self._kaldi = kaldi
-        self._waiting = b""
-        self._bytes = 0
-        self.started = 0.0
-        """Seconds of all sounds before this one: libvosk goes on counting."""
-        self.results: list[dict[str, Any]] = []
+    def __init__(
+        self, recogniser: Recogniser, grammar: _Grammar | None, worst_fit: float | None
+    ) -> None:
+        assert recogniser.second is not None
+        self._ear = recogniser.second
+        self._grammar = grammar
+        self._worst_fit = worst_fit
+        self._samples = 0
+        self._silent = Silence()
+        self._sound: list[Samples] = []
+        self._so_far = ""
+        self._told = 0  # samples of which `_so_far` tells
 
-    def feed(self, sound: bytes) -> None:
-        self._waiting += sound
-        whole = len(self._waiting) // (BLOCK * 2) * (BLOCK * 2)
-        for start in range(0, whole, BLOCK * 2):
-            self._decode(self._waiting[start : start + BLOCK * 2])
-        self._waiting = self._waiting[whole:]
+    def feed(self, samples: Samples) -> None:
+        self._samples += len(samples)
+        self._silent.feed(samples)
+        self._sound.append(samples)
 
     @property
     def so_far(self) -> str:
-        texts = [result.get("text", "") for result in self.results]
-        texts.append(json.loads(self._kaldi.PartialResult()).get("partial", ""))
-        return " ".join(filter(None, texts))
+        anew = self._samples - self._told >= NEWS * RATE and not self._silent
+        if anew and self._samples <= LONGEST * RATE:
+            self._told = self._samples
+            self._so_far = self._ear.quickly(np.concatenate(self._sound))
+        return self._so_far
 
-    def finish(self) -> None:
-        if self._waiting:  # libvosk refuses an empty buffer
-            self._decode(self._waiting)
-        self._waiting = b""
-        self.results.append(json.loads(self._kaldi.FinalResult()))
+    def finish(self) -> Heard:
+        started = time.perf_counter()
+        heard = _heard((), self._samples / RATE)
+        if self._silent:
+            return heard
+        if self._worst_fit is None:
+            heard = self._judged(heard, self._ear)
+        elif heard.seconds_of_audio <= LONGEST:  # whoever sets it judges by themselves
+            heard = replace(heard, text=self._ear.free(np.concatenate(self._sound)))
+        return replace(heard, seconds_taken=time.perf_counter() - started)
 
-    def anew(self) -> _Decoder:
-        self.results = []
-        self.started = self._bytes / 2 / RATE
-        return self
-
-    def _decode(self, block: bytes) -> None:
-        self._bytes += len(block)
-        # After a pause in the speech a result is complete, and the next begins.
-        if self._kaldi.AcceptWaveform(block):
-            self.results.append(json.loads(self._kaldi.Result()))
-
-
-@cache
-def _helpers() -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(os.cpu_count(), "second opinion")
+    def _candidates(self) -> list[str]:
+        return []
 
 
-@lru_cache(maxsize=3)
 def load(code: str) -> Recogniser:
     """The recogniser of an installed language, loaded once. Raises ModelError if not installed."""
-    return Recogniser(need(code), code, second_ear(code))
+    need(code)
+    return _loaded(find(code), code, second_ear(code))
 
 
-def _scored(results: Sequence[Mapping[str, Any]]) -> list[_Scored]:
-    """The likeliest texts with their scores, at least one."""
-    texts = [_Scored("", 0.0)]
-    for result in results:
-        # A pause divides the speech: every text so far goes on in each of these ways.
-        texts = [
-            _Scored(f"{text.text} {way['text']}".strip(), text.score + way["confidence"])
-            for text in texts
-            for way in result.get("alternatives") or [{"text": "", "confidence": 0.0}]
-        ]
-        texts = sorted(texts, key=lambda text: -text.score)[:READINGS]
-    return texts
+@lru_cache(maxsize=4)
+def _loaded(model: Path | None, code: str, second: SecondEar | None) -> Recogniser:
+    return Recogniser(model, code, second)
 
 
 def _heard(words: tuple[Word, ...], seconds: float) -> Heard:
@@ -514,11 +501,11 @@ def _heard(words: tuple[Word, ...], seconds: float) -> Heard:
 class _Trust:
     """What is believed of a text beside the best free one."""
 
-    free: _Scored
+    free: Scored
     confidence: float  # of the limited decoder in its words
     worst_fit: float | None
 
-    def reading(self, text: _Scored) -> Reading:
+    def reading(self, text: Scored) -> Reading:
         from rapidfuzz import fuzz
 
         fit = (text.score - self.free.score) / max(1.0, abs(self.free.score))
@@ -533,7 +520,7 @@ class _Trust:
 
 
 def _readings(
-    limited: Sequence[_Scored], free: Sequence[_Scored], trusted: _Trust
+    limited: Sequence[Scored], free: Sequence[Scored], trusted: _Trust
 ) -> tuple[Reading, ...]:
     best: dict[str, Reading] = {}
     for decoder in (limited, free):

@@ -4,8 +4,8 @@
     whisper = Whisper(folder, "de")
     whisper.listen(audio.samples).texts()    # what is said, the likeliest first
 
-The encoder is run by CTranslate2, which takes a tenth of the time that numpy would. Its decoder,
-though, cannot be told what is likely to be said, so the one here reads the same file.
+CTranslate2 runs it. But its search cannot be told what is likely to be said, and so there is a
+decoder of our own, which reads the same file.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from nl2robot.speech.byte_pairs import BytePairs
 from nl2robot.speech.ct2_file import read
 from nl2robot.speech.expectation import Expectation
 from nl2robot.speech.log_mel import log_mel
-from nl2robot.speech.search import Sound
+from nl2robot.speech.search import WIDTH, Sound, Text
 
 _log = logging.getLogger(__name__)
 
@@ -52,9 +52,7 @@ class Whisper:
         try:
             self.subwords = BytePairs.load(folder / "tokenizer.json", language)
             described = json.loads((folder / "config.json").read_text("utf-8"))
-            self._encoder = ctranslate2.models.Whisper(
-                str(folder), device="cpu", compute_type="int8"
-            )
+            self._model = ctranslate2.models.Whisper(str(folder), device="cpu", compute_type="int8")
             self._decoder = _Decoder(read(folder / "model.bin"))
         except Exception as error:  # CTranslate2 raises RuntimeError only, json and numpy others
             raise ModelError(
@@ -80,9 +78,27 @@ class Whisper:
 
         seconds = max(SHORTEST, len(samples) / RATE)
         mel = log_mel(samples, seconds)[np.newaxis]
-        encoded = self._encoder.encode(ctranslate2.StorageView.from_array(mel))
-        states = self._decoder.of_sound(np.array(encoded)[0])
-        return Sound(self, states, int(len(samples) / RATE * QUICKEST) + _MORE)
+        encoded = self._model.encode(ctranslate2.StorageView.from_array(mel))
+        return _Listened(self, encoded, int(len(samples) / RATE * QUICKEST) + _MORE)
+
+    def freely(self, encoded: Any, longest: int, width: int) -> list[Text]:
+        """The likeliest texts where anything may be said."""
+        (found,) = self._model.generate(
+            encoded,
+            [list(self.subwords.begin)],
+            beam_size=width,
+            num_hypotheses=width,
+            max_length=longest,
+            length_penalty=0,
+            return_scores=True,
+        )
+        return [
+            Text(self.subwords.text(numbers), float(likelihood))
+            for numbers, likelihood in zip(found.sequences_ids, found.scores, strict=True)
+        ]
+
+    def of_sound(self, encoded: Any) -> _OfSound:
+        return self._decoder.of_sound(np.array(encoded)[0])
 
     def decode(
         self, states: _OfSound, numbers: NDArray[np.int64], memory: _Memory | None
@@ -92,6 +108,28 @@ class Whisper:
         scores -= scores.max(-1, keepdims=True)
         scores -= np.log(np.exp(scores).sum(-1, keepdims=True))
         return scores, after
+
+
+class _Listened(Sound):
+    """What is said freely CTranslate2 finds sooner; the rest is prepared if it is asked for."""
+
+    def __init__(self, whisper: Whisper, encoded: Any, longest: int) -> None:
+        super().__init__(whisper, None, longest)
+        self._whisper, self._encoded = whisper, encoded
+
+    def texts(self, expectation: Expectation | None = None, width: int = WIDTH) -> list[Text]:
+        if expectation is None:
+            return self._whisper.freely(self._encoded, self._longest, width)
+        self._prepare()
+        return super().texts(expectation, width)
+
+    def likelihoods(self, texts: Sequence[str]) -> list[float]:
+        self._prepare()
+        return super().likelihoods(texts)
+
+    def _prepare(self) -> None:
+        if self._states is None:
+            self._states = self._whisper.of_sound(self._encoded)
 
 
 def load(language: str) -> Whisper | None:

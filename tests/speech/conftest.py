@@ -27,6 +27,12 @@ def second_model() -> Path:
     return _fetched("en-moonshine")
 
 
+@pytest.fixture(scope="session")
+def whisper_model() -> Path:
+    """The folder of the model that hears German and French."""
+    return _fetched("whisper")
+
+
 def _fetched(code: str) -> Path:
     """The model, fetched if need be; where that fails the test is skipped, in CI failed."""
     try:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from nl2robot import cli, models
+from nl2robot import cli
 from nl2robot.commands.talk import voice_input
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.hearing import Ear
@@ -273,7 +273,10 @@ class TestOverTheWire:
             with pytest.raises(InvalidCall, match="is not open"):
                 microphones.push(number, "")
 
-    def test_a_language_without_a_model_is_a_sentence(self, microphones) -> None:
+    def test_a_language_without_a_model_is_a_sentence(
+        self, microphones, tmp_path, monkeypatch
+    ) -> None:
+        monkeypatch.setenv("NL2ROBOT_MODELS", str(tmp_path))
         with pytest.raises(UserError, match="German speech model is not installed"):
             microphones.open(RATE, 1, "de", None)
 
@@ -297,7 +300,7 @@ class TestOverTheWire:
     def test_what_says_stop_is_told_from_what_only_has_the_word(
         self, recogniser, knowledge
     ) -> None:
-        ear = Ear(models.need("en"), knowledge)
+        ear = Ear(knowledge)
         assert all(ear.is_stop(text) for text in ("stop", "please stop", "no stop", "stop moving"))
         assert not any(ear.is_stop(text) for text in ("", "go to the bus stop", "start", "go on"))
 
