@@ -90,7 +90,10 @@ class Ear:
         return translation.program is not None or translation.request is not None
 
     def deaf_to(self) -> list[Missing]:
-        """The words in names of this world that the model can never hear, each with a way round."""
+        """The words in names of this world that the model can never hear, each with a way round. A
+        second ear hears any."""
+        if self.recogniser.second is not None:
+            return []
         world = self.knowledge.world
         names = [item.name for items in (world.places, world.people) for item in items]
         return missing_words(self.recogniser, names)

@@ -5,6 +5,10 @@ Hearing
     microphone   samples as they come
     listening    when somebody speaks; streaming: their words while they do
     recogniser   samples and what may be said -> the words, and whether to believe them
+                 vosk_decoder: word by word; second_ear: utterances as a whole, and what to believe
+    moonshine    English, whisper German and French: the networks of the second ear
+                 search: the texts that one may write; subwords, byte_pairs: what it writes them in;
+                 expectation: what is likely to be said; log_mel, ct2_file: what Whisper looks at
     answers      what may be answered to a question, and which answer was given
     replies      what somebody replied to the robot, at a microphone
     vocabulary   words that the speech model can never hear, and what to call them instead
@@ -14,6 +18,7 @@ Hearing
 
 Speaking
     voices       text -> sound; sentences: what is spoken at a time; kept: what was spoken before
+    kokoro       many voices, for trainings and benchmarks
     speaking     one text after the other, silent at once; loudspeaker: where the sound goes
     echo_cancelling  the robot's own voice, taken out of what is heard
     full_duplex  who speaks over the robot is let speak; open_microphone: and answers its question

@@ -162,6 +162,11 @@ class Recogniser:
         except Exception as error:  # vosk raises nothing more precise
             raise self._unusable from error
 
+    @property
+    def word_by_word(self) -> bool:
+        """Whether it hears words while they are said: there is a vosk model."""
+        return self._model is not None
+
     def knows(self, word: str) -> bool:
         """Whether the model can hear this word at all; a second ear alone writes any."""
         return self._model is None or bool(self._model.vosk_model_find_word(word) >= 0)

@@ -49,9 +49,15 @@ class Spotter:
         self.word, self._recogniser, self._worst_fit = word, recogniser, worst_fit
         self._second_stage = second_stage
         unknown = recogniser.unknown_words([word])
+        train = f'--lang {recogniser.language} --word "{word}"'
+        if not recogniser.word_by_word:
+            raise UserError(
+                f"The speech model that is here hears whole utterances, and no hot word in them."
+                f" Run `nl2robot models get {recogniser.language}` where there is internet, or"
+                f" train the word: python -m nl2robot.speech.hotword_training {train}"
+            )
         if unknown or not word.strip(PUNCTUATION + " "):
             what = f"the word “{unknown[0]}”" if unknown else "an empty hot word"
-            train = f'--lang {recogniser.language} --word "{word}"'
             raise UserError(
                 f"The speech model does not know {what} and will never hear it. Choose another hot"
                 f" word, or train one: python -m nl2robot.speech.hotword_training {train}"

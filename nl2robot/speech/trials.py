@@ -18,7 +18,7 @@ from typing import Any, Final
 import numpy as np
 import yaml
 
-from nl2robot.speech import scenes
+from nl2robot.speech import kokoro, scenes
 from nl2robot.speech.audio import RATE, Audio, from_float
 from nl2robot.speech.scenes import Signal
 from nl2robot.speech.voices import Voice, espeak, joined, voices
@@ -36,6 +36,13 @@ _PACE: Final = ((0.95, 1.0), (0.85, 1.1), (1.05, 0.9), (0.9, 1.2))
 """Speed and pitch of each of these."""
 _NEURAL_PACE: Final = (1.0, 0.88, 1.12)
 """Speeds of a neural voice, each counted as a voice of its own."""
+_KOKORO: Final = {
+    "en": ("af_bella", "am_adam", "bf_emma", "bm_george", "am_eric", "hf_beta", "zm_yunjian"),
+    "fr": ("ff_siwis",),
+}
+"""Its speakers, by language: of French there is one. It speaks no German that Germans would."""
+_DIALECT: Final = {"a": "en-us", "b": "en-gb-x-rp", "h": "en-us", "z": "en-us", "f": "fr"}
+"""What each speaks, by where they are from."""
 _SCENE: Final = 40.0  # seconds of each noise
 _QUIET: Final = 0.25  # seconds before and after what is said
 
@@ -156,11 +163,16 @@ def _data() -> dict[str, Any]:
 
 
 def _speakers(language: str) -> list[Speaker]:
-    neural = [voice for voice in voices(language) if voice.name.startswith("piper")]
+    piper = [voice for voice in voices(language) if voice.name.startswith("piper")]
+    neural = [Speaker(voice, pace) for voice in piper for pace in _NEURAL_PACE]
+    if kokoro.speakers():
+        neural += [
+            Speaker(kokoro.Kokoro(name, _DIALECT[name[0]])) for name in _KOKORO.get(language, ())
+        ]
     robotic = [
         Speaker(espeak(dialect, variant), speed, pitch)
         for (dialect, variant), (speed, pitch) in zip(
             _VARIANTS.get(language, ((language, ""),)), _PACE, strict=False
         )
     ]
-    return [Speaker(voice, pace) for voice in neural for pace in _NEURAL_PACE] + robotic
+    return neural + robotic

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nl2robot.errors import UserError
 from nl2robot.hearing import Ear
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.models import ModelError
@@ -21,6 +22,7 @@ from nl2robot.speech.byte_pairs import BytePairs
 from nl2robot.speech.log_mel import BANDS, log_mel
 from nl2robot.speech.recogniser import LEAST_BELIEF, Recogniser
 from nl2robot.speech.second_ear import SecondEar
+from nl2robot.speech.spotting import Spotter
 from nl2robot.speech.whisper import Whisper
 from sim.world import load_world
 from tests.speech.conftest import RECORDED
@@ -175,6 +177,11 @@ def test_words_come_while_they_are_spoken(unaided: Recogniser) -> None:
     assert any("apotheke" in text for text in said)
     assert len(set(said)) <= 2 + len(sound) / RATE / 0.8  # it tells anew now and then only
     assert decoding.finish().text == "fahr zur apotheke und sag guten morgen"
+
+
+def test_it_cannot_listen_for_a_hot_word(unaided: Recogniser) -> None:
+    with pytest.raises(UserError, match="train the word"):
+        Spotter(unaided, "guten Morgen Doktor")
 
 
 def test_an_answer_is_heard(unaided: Recogniser) -> None:
