@@ -143,18 +143,23 @@ class Sound:
     def likelihoods(self, texts: Sequence[str]) -> list[float]:
         """The log likelihood of each text, whatever punctuation it ends with."""
         subwords = self._network.subwords
-        begin = len(subwords.begin)
-        written = [[*subwords.begin, *subwords.of(text.rstrip(PUNCTUATION))] for text in texts]
+        written = [subwords.of(text.rstrip(PUNCTUATION)) for text in texts]
         if not written:
             return []
-        numbers = np.full((len(written), max(map(len, written))), subwords.end, np.int64)
+        numbers = np.full((len(written), max(1, *map(len, written))), subwords.end, np.int64)
         for row, text in zip(numbers, written, strict=True):
             row[: len(text)] = text
-        sounds, _ = self._network.decode(self._states, numbers, None)
+        # What all texts begin with is the same for all of them.
+        first, memory = self._network.decode(self._states, np.array([subwords.begin]), None)
+        memory = memory.rows([0] * len(written))
+        rest, _ = self._network.decode(self._states, numbers, memory)
         return [
-            float(rows[np.arange(begin - 1, len(text) - 1), text[begin:]].sum())
-            + float(np.logaddexp.reduce(rows[len(text) - 1, self._ends]))
-            for rows, text in zip(sounds, written, strict=True)
+            float(sum(first[0, -1, text[:1]]))
+            + float(rows[np.arange(len(text) - 1), text[1:]].sum())
+            + float(
+                np.logaddexp.reduce((rows[len(text) - 1] if text else first[0, -1])[self._ends])
+            )
+            for rows, text in zip(rest, written, strict=True)
         ]
 
 

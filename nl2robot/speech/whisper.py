@@ -201,7 +201,7 @@ class _Decoder:
         start = memory.length if memory else 0
         count = numbers.shape[1]
         x = self._embeddings[numbers] + self._positions[start : start + count]
-        unseen = np.triu(np.full((count, count), -np.inf, np.float32), 1) if count > 1 else None
+        unseen = np.triu(np.full((count, start + count), -np.inf, np.float32), start + 1)
         after = []
         for n, layer in enumerate(self._layers):
             x, kept = layer(x, sound[n], memory.layers[n] if memory else None, unseen)
@@ -257,7 +257,7 @@ class _Layer:
         x: Floats,
         sound: tuple[Floats, Floats],
         before: tuple[Floats, Floats] | None,
-        unseen: Floats | None,
+        unseen: Floats,
     ) -> tuple[Floats, tuple[Floats, Floats]]:
         asked, keys, values = np.split(self._own_in(self._own_norm(x)), 3, axis=-1)
         asked, keys, values = (self._apart(each) for each in (asked, keys, values))
