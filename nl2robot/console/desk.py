@@ -18,11 +18,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
-from nl2robot.console.dialogue import Dialogues
+from nl2robot.console.dialogues import Dialogues
 from nl2robot.console.outlook import outlook
 from nl2robot.console.part import Backstage, Part
 from nl2robot.console.run_view import run_view
 from nl2robot.console.visitor import texts
+from nl2robot.paths import data_folder
 from nl2robot.translation import Translation
 from nl2robot.wire import service
 
@@ -37,7 +38,7 @@ EDITED_AFTER: Final = 0.35
 
 
 def part(backstage: Backstage) -> Part:
-    dialogues = Dialogues(backstage)
+    dialogues = Dialogues(backstage, data_folder() / "console" / "conversations")
     unsubscribe = backstage.subscribe(dialogues.on_event)
 
     def pages() -> None:
@@ -72,6 +73,7 @@ class _Desk:
 
         request = ui.context.client.request
         assert request is not None
+        self.backstage = backstage
         self.visit = visit
         self.words = visit.words
         self.dialogue = dialogues.of(_name(request.cookies.get("desk", "")), visit.language)
@@ -98,6 +100,9 @@ class _Desk:
             if program:
                 propose = self.dialogue.propose
                 ui.timer(0, lambda: self._do(propose, program, visit.language), once=True)
+            elif self.dialogue.draft and self.dialogue.draft.review is None:
+                review = self.dialogue.review
+                ui.timer(0, lambda: self._do(review, visit.language), once=True)
         self._follow()
         self._draw()
 
@@ -155,7 +160,8 @@ class _Desk:
         )
         draft = dialogue.draft
         review = draft.review if draft else None
-        seen = outlook(review, self.words, self.visit.language) if review else None
+        language, knowledge = self.visit.language, self.backstage.runner.knowledge
+        seen = outlook(review, self.words, language, knowledge) if review else None
         about = {
             "draft": draft,
             "review": review,

@@ -8,15 +8,15 @@ Its methods block as long as translation and dry run take, and may be called fro
 from __future__ import annotations
 
 import threading
-from collections import OrderedDict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 import msgspec
 
 from nl2robot.console.harmless import is_harmless
 from nl2robot.console.part import Backstage
+from nl2robot.console.trouble import told
 from nl2robot.console.visitor import texts
 from nl2robot.errors import UserError
 from nl2robot.review import Review, digest
@@ -26,7 +26,6 @@ from robot_api.errors import RobotError
 from sandbox.limits import MAX_PROGRAM
 
 LINES_KEPT: Final = 200
-DIALOGUES_KEPT: Final = 50
 
 Tone = Literal["plain", "question", "trouble", "done"]
 
@@ -76,9 +75,9 @@ class Dialogue:
         self.draft: Draft | None = None
         self.busy = False
         """While words are being understood."""
+        self.runs: set[int] = set()
+        """Runs that were started here and are not over."""
         self._backstage = backstage
-        self._runs: set[int] = set()
-        """Runs that were started here."""
         self._watchers: list[Callable[[], None]] = []
         self._turn = threading.RLock()
         """One thing is said or decided at a time."""
@@ -135,7 +134,10 @@ class Dialogue:
                 self.draft = None
             tone: Tone = {"ok": "plain", "clarify": "question"}.get(translation.status, "trouble")  # type: ignore[assignment]
             text = translation.message or ""
-            self._tell(Line("robot", text, tone, tuple(translation.suggestions)))
+            near = tuple(translation.suggestions)
+            if tone == "trouble" and not near:
+                near = (_said("what_can_i_say", language),)
+            self._tell(Line("robot", text, tone, near))
 
     def topics(self, language: str) -> dict[str, list[str]]:
         """What can be said here, by topic."""
@@ -168,6 +170,13 @@ class Dialogue:
             if draft is None:
                 return
             self._review(Draft(program, draft.translation, draft.heard), language)
+
+    def review(self, language: str) -> None:
+        """Review the program that waits, where that was never finished."""
+        with self._turn:
+            draft = self.draft
+            if draft is not None and draft.review is None:
+                self._review(draft, language)
 
     def _review(self, draft: Draft, language: str) -> None:
         self.draft = draft
@@ -210,7 +219,7 @@ class Dialogue:
                     language=language,
                     plan=msgspec.json.encode(plan).decode() if plan is not None else None,
                 )
-                self._runs.add(runner.run(approval.id))
+                self.runs.add(runner.run(approval.id))
             except (RobotError, UserError) as error:
                 self._tell(Line("robot", str(error), "trouble"))
                 return
@@ -228,9 +237,12 @@ class Dialogue:
 
     def ended(self, run: int, state: str, message: str | None, language: str) -> None:
         """A run is over; told if it was started here."""
-        if run in self._runs:
-            self._runs.discard(run)
-            text = " ".join(filter(None, (_said(f"ended_{state}", language), message)))
+        if run in self.runs:
+            self.runs.discard(run)
+            status = self._backstage.runner.state()
+            error = status.error if status and status.run == run else None
+            why = told(error, message, language) if message else None
+            text = " ".join(filter(None, (_said(f"ended_{state}", language), why)))
             self._tell(Line("robot", text, "done" if state == "done" else "trouble", run=run))
 
     def _tell(self, line: Line, busy: bool = False) -> None:
@@ -241,34 +253,6 @@ class Dialogue:
     def _changed(self) -> None:
         for watcher in tuple(self._watchers):
             watcher()
-
-
-class Dialogues:
-    """Those of all browsers; the one unused longest is forgotten first."""
-
-    def __init__(self, backstage: Backstage) -> None:
-        self._backstage = backstage
-        self._dialogues: OrderedDict[str, Dialogue] = OrderedDict()
-        self._languages: dict[str, str] = {}
-
-    def of(self, name: str, language: str) -> Dialogue:
-        """The one of this name, begun if there is none."""
-        if name not in self._dialogues:
-            self._dialogues[name] = Dialogue(self._backstage, name)
-        self._dialogues.move_to_end(name)
-        self._languages[name] = language
-        while len(self._dialogues) > DIALOGUES_KEPT:
-            forgotten, _ = self._dialogues.popitem(last=False)
-            self._languages.pop(forgotten, None)
-        return self._dialogues[name]
-
-    def on_event(self, kind: str, data: Mapping[str, Any]) -> None:
-        """Tell whoever started a run that it is over."""
-        if kind != "program" or data["what"] != "state" or data["state"] in ("running", "paused"):
-            return
-        for name, dialogue in tuple(self._dialogues.items()):
-            language = self._languages.get(name, "en")
-            dialogue.ended(data["run"], data["state"], data["message"], language)
 
 
 def _said(key: str, language: str) -> str:

@@ -66,14 +66,23 @@ def frame(backstage: Backstage, page: str) -> Iterator[Visit]:
     visitor = visitor_of(request)
     visit = Visit(visitor, texts(page, visitor.language))
     words = texts("frame", visitor.language)
-    capabilities = backstage.runner.knowledge.capabilities
-    name = capabilities.name if capabilities else "nl2robot"
+    name = _name(backstage, words)
     ui.page_title(f"{words[page]} · {name}")
     ui.dark_mode({"auto": None, "light": False, "dark": True}[visitor.look])
     ui.add_head_html(_head(visitor, words))
     ui.add_body_html(_header(page, name, visitor, words))
     with ui.element("div").props('id="main" tabindex="-1"').classes(f"page page-{page}"):
+        if page != "runs":  # whose pages have headings of their own
+            ui.html(f'<h1 class="sr">{escape(words[page])}</h1>', sanitize=False)
         yield visit
+
+
+def _name(backstage: Backstage, words: Mapping[str, str]) -> str:
+    """What the robot is called."""
+    if backstage.simulation is not None:
+        return words["simulated"]
+    capabilities = backstage.runner.knowledge.capabilities
+    return capabilities.name if capabilities else "nl2robot"
 
 
 def _head(visitor: Visitor, words: Mapping[str, str]) -> str:
@@ -129,7 +138,8 @@ def _header(page: str, name: str, visitor: Visitor, words: Mapping[str, str]) ->
     return f"""
 <a class="skip" href="#main">{said("skip")}</a>
 <header class="frame">
-  <a class="brand" href="/"><img src="/static/icon.svg" alt="" width="28" height="28">
+  <a class="brand" href="/" aria-label="{escape(name, quote=True)}">
+    <img src="/static/icon.svg" alt="" width="28" height="28">
     <span>{escape(name)}</span></a>
   <nav aria-label="{said("pages")}">{links}</nav>
   <span class="frame-tools">

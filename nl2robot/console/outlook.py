@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
+from grammar.language import load_language
+from grammar.naming import naming
+from nl2robot.console.trouble import told
+from nl2robot.knowledge import Knowledge
 from nl2robot.review import Review
 from nl2robot.terminal import duration, words_in
 
@@ -43,12 +47,21 @@ class Outlook:
         ]
 
 
-def outlook(review: Review, words: Mapping[str, str], language: str) -> Outlook:
+def outlook(
+    review: Review, words: Mapping[str, str], language: str, knowledge: Knowledge
+) -> Outlook:
     """What this review says, in a language."""
+    endless = {(risk.line, "endless-loop") for risk in review.risks if risk.kind == "endless"}
     marks = [
         *(
-            Mark(found.line, "error" if found.severity == "error" else "note", found.message)
+            Mark(
+                found.line,
+                "error" if found.severity == "error" else "note",
+                told(found.code, found.message, language),
+            )
             for found in review.findings
+            # That it is endless is a risk as well, and said once.
+            if (found.line, found.code) not in endless
         ),
         *(Mark(risk.line, "risk", risk.text) for risk in review.risks),
     ]
@@ -65,16 +78,19 @@ def outlook(review: Review, words: Mapping[str, str], language: str) -> Outlook:
         "unfinished": "would_go_on",
     }[dry_run.status]
     sentence = said[template].format(
-        time=duration(dry_run.seconds), metres=f"{dry_run.metres:g}", line=dry_run.line
+        time=duration(dry_run.seconds), metres=_number(dry_run.metres, language), line=dry_run.line
     )
+    why = told(dry_run.error, dry_run.message, language) if dry_run.message else None
+    way = _way(dry_run.places, knowledge, language)
+    asks = tuple(dict.fromkeys(dry_run.asks))
     facts = [
-        (words["way"], (_way(dry_run.places),) if len(dry_run.places) > 1 else ()),
-        (words["says"], tuple(dict.fromkeys(dry_run.says))),
-        (words["asks"], tuple(dict.fromkeys(dry_run.asks))),
+        (words["way"], (way,) if way else ()),
+        (words["says"], tuple(text for text in dict.fromkeys(dry_run.says) if text not in asks)),
+        (words["asks"], asks),
         (words["shows"], tuple(dict.fromkeys(dry_run.shows))),
     ]
     return Outlook(
-        sentence=" ".join(filter(None, (sentence, dry_run.message))),
+        sentence=" ".join(filter(None, (sentence, why))),
         good=dry_run.status in ("done", "unfinished"),
         facts=tuple((heading, items) for heading, items in facts if items),
         marks=tuple(marks),
@@ -82,8 +98,16 @@ def outlook(review: Review, words: Mapping[str, str], language: str) -> Outlook:
     )
 
 
-def _way(places: tuple[str, ...]) -> str:
-    """The places in order; of a long way, where it begins and where it ends."""
+def _number(number: float, language: str) -> str:
+    written = f"{number:g}"
+    return written if language == "en" else written.replace(".", ",")
+
+
+def _way(places: Sequence[str], knowledge: Knowledge, language: str) -> str:
+    """The places in order; of a long way, where it begins and where it ends; empty if it stays."""
+    if len(places) < 2:
+        return ""
+    called = naming(knowledge.lexicon(language), load_language(language)).called
     if len(places) > MOST_PLACES:
-        places = (*places[: MOST_PLACES // 2], "…", *places[-MOST_PLACES // 2 :])
-    return " → ".join(places)
+        places = [*places[: MOST_PLACES // 2], "…", *places[-MOST_PLACES // 2 :]]
+    return " → ".join(map(called, places))

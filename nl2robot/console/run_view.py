@@ -8,6 +8,7 @@ import msgspec
 
 from nl2robot.console.highlight import highlighted
 from nl2robot.console.part import Backstage
+from nl2robot.console.trouble import told
 from nl2robot.review import reading
 
 
@@ -19,14 +20,15 @@ def run_view(backstage: Backstage, language: str) -> dict[str, Any] | None:
     if status is None:
         return None
     logged = runner.log.run(status.run)
-    told = {each.line: each for each in reading(status.program, runner.knowledge, language)}
+    read = {each.line: each for each in reading(status.program, runner.knowledge, language)}
     return {
         **msgspec.to_builtins(status),
+        "message": told(status.error, status.message, language) if status.message else None,
         "utterance": logged.utterance if logged else None,
         "by": logged.approved_by if logged else None,
         "started": logged.started if logged else None,
         "lines": [
-            {"code": str(code), "reading": told[number].text if number in told else ""}
+            {"code": str(code), "reading": read[number].text if number in read else ""}
             for number, code in enumerate(highlighted(status.program), 1)
         ],
         "calls": [

@@ -125,7 +125,9 @@ def test_a_typed_stop_needs_no_approval(page: Page) -> None:
 def test_what_is_not_understood_is_asked_back_and_help_is_by_topic(page: Page) -> None:
     say(page, "bring")
     expect(page.locator(".said.by-robot").last).to_contain_text("stops after “bring”")
-    page.locator(".composer").get_by_role("button", name="What can I say?").click()
+    say(page, "gobbledygook the wuzzle")
+    expect(page.locator(".said.by-robot").last).to_contain_text("I did not understand")
+    page.locator(".said").last.get_by_role("button", name="What can I say?").click()
     topics = page.locator(".topics summary")
     expect(topics.first).to_be_visible()
     assert topics.count() > 3
@@ -197,6 +199,25 @@ def test_it_speaks_german_and_french(look: Look, language: str, words: str, butt
     page.locator("#words").fill(words)
     page.keyboard.press("Enter")
     expect(page.get_by_role("button", name=button)).to_be_enabled()
+
+
+def test_what_goes_wrong_and_where_it_goes_is_told_in_german_too(look: Look) -> None:
+    page = look("/?program=robot.goto(%22pharmacy%22)%0Arobot.grab(%22unicorn%22)", language="de")
+    outlook = page.locator(".outlook")
+    expect(outlook).to_contain_text("Der Roboter findet es hier nicht. (")
+    expect(page.locator(".facts")).to_contain_text("Hauptflur → Apotheke")
+    page.get_by_role("button", name="Freigeben und starten").click()
+    expect(page.locator("#run-panel li.current")).to_contain_text("pharmacy")
+    page.get_by_role("button", name="STOPP").click()
+    expect(page.locator(".run-message")).to_have_text("Der Roboter wurde angehalten.")
+    expect(page.locator(".said").last).to_contain_text("Der Roboter wurde angehalten.")
+
+
+def test_what_is_said_of_a_line_is_said_once(look: Look) -> None:
+    page = look("/?program=while True:%0A    robot.ask(%22Tea%3F%22, [%22yes%22, %22no%22])")
+    expect(page.locator(".mark")).to_have_count(1)
+    expect(page.locator(".mark")).to_contain_text("until somebody stops it")
+    expect(page.locator(".facts").get_by_text("Tea?", exact=True)).to_have_count(1)
 
 
 def test_on_a_phone_in_the_dark_everything_is_there(look: Look, picture: Picture) -> None:

@@ -459,6 +459,17 @@ def test_language_and_stop_by_touch(look: Look, served: Served) -> None:
     robot.close()
 
 
+def test_escape_stops_from_within_a_page_as_well(look: Look, served: Served) -> None:
+    page = look("/face", width=1024, height=768)
+    robot = served.robot()
+    robot.show(html=FORM)
+    run = start(robot, "robot.wait(60)")
+    page.frame_locator(".shown-page").locator("#name").press("Escape")
+    assert robot.request("program.wait", {"run": run, "timeout": AT_ONCE})["state"] == "stopped"
+    robot.show(text="")
+    robot.close()
+
+
 def test_who_looks_on_is_told_so(look: Look, served: Served) -> None:
     face_of_others = look("/face", width=1024, height=768)
     page = look(f"/face?token={served.observer_url.rpartition('=')[2]}", width=1024, height=768)

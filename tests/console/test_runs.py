@@ -351,10 +351,11 @@ def test_a_run_is_found_watched_and_run_again(look: Look, served: Served, pictur
 def test_the_pages_fit_phone_and_tablet(
     look: Look, served: Served, width, dark, language, picture
 ) -> None:
+    run = run_by(served, "say hello")
     page = look("/runs", width=width, dark=dark, language=language)
     expect(page.locator("[data-part=found]")).to_be_visible()
     assert fits(page)
-    page.goto(f"{served.url}/runs/1")
+    page.goto(f"{served.url}/runs/{run}")
     expect(page.locator("[data-part=calls]")).to_be_visible()
     assert fits(page)
     picture(page, f"runs-{width}")

@@ -8,6 +8,7 @@ from playwright.sync_api import Page, expect
 
 from nl2robot.console.reference import reference
 from tests.console.conftest import Look, Served, serving
+from tests.console.test_desk import approve, say
 
 
 def test_stop_is_on_the_page_and_reaches_the_robot(page: Page, served: Served) -> None:
@@ -50,6 +51,28 @@ def test_a_page_outlives_its_server(look: Look, tmp_path: Path) -> None:
         line.press_sequentially(" morning")
         line.press("Enter")
         expect(page.locator(".cm-content")).to_have_text('robot.say("Good morning.")')
+
+
+def test_a_conversation_outlives_the_server_and_says_what_became_of_its_run(
+    look: Look, tmp_path: Path
+) -> None:
+    with serving(tmp_path) as first:
+        page = look(url=first.url)
+        say(page, "go to radiology and then to the pharmacy")
+        approve(page)
+        expect(page.locator("#run-panel li.current")).to_contain_text("radiology")
+        say(page, "say good morning")
+        expect(page.get_by_role("button", name="Approve and run")).to_be_enabled()
+        first.process.kill()
+        first.process.wait()
+    with serving(tmp_path, "--port", first.address.partition(":")[2]) as second:
+        page.goto(second.url)
+        expect(page.locator(".said.by-you").first).to_contain_text("go to radiology")
+        expect(page.locator(".said.trouble")).to_contain_text("the program ended there. See run 1")
+        approve(page)
+        expect(page.locator("#run-panel [role=status]")).to_have_text("Done")
+        with second.robot() as robot:
+            assert robot.request("runs.show", {"run": 2})["utterance"] == "say good morning"
 
 
 def test_others_need_the_token_that_the_start_up_line_prints(look: Look, tmp_path: Path) -> None:

@@ -133,7 +133,9 @@ if (role === 'operator') {
   appears('#composer').then(openComposer);
   openDecisions();
   const tellShade = () => tell('desk-shade', {dark: document.documentElement.dataset.look === 'dark'});
-  appears('.desk-editor').then(() => {
+  appears('.desk-editor').then((editor) => {
+    // Tab leads on to the decision, as everywhere; the editor would indent, and hold who has no mouse.
+    editor.addEventListener('keydown', (event) => event.key === 'Tab' && event.stopPropagation(), {capture: true});
     tellShade();
     new MutationObserver(tellShade).observe(document.documentElement, {attributeFilter: ['data-look']});
   });

@@ -111,8 +111,16 @@ export class RunPanel {
       case 'call': return this._call(event);
       case 'result': return this._result(event);
       case 'print': return this._row(null, event.text.trimEnd(), 'print');
-      default: return this._state(event.state, event.message);
+      default:
+        this._state(event.state, event.message);
+        if (event.message && this.language !== 'en') this._explain();
     }
+  }
+
+  /** Events have their sentences in English. */
+  async _explain() {
+    const view = await this.wire.request('desk.run', {language: this.language}).catch(() => null);
+    if (view?.run === this.run) this._tell(view.message);
   }
 
   _line(number) {

@@ -95,6 +95,10 @@ function agent() {
     changed();
   }, true);
   addEventListener('submit', (event) => event.preventDefault());
+  // Keys pressed in the page never reach the face, whose Escape stops the robot.
+  addEventListener('keydown', ({key, repeat, isTrusted}) => {
+    if (key === 'Escape' && !repeat && isTrusted) tell({stop: true});
+  }, true);
   addEventListener('DOMContentLoaded', () => {
     tell({ready: true});
     new MutationObserver(() => changed(200)).observe(document.documentElement, {
@@ -111,14 +115,16 @@ const HEAD =
 /**
  * Shows contents in an element. `answered(number, answer)` is called when somebody answers a question,
  * and resolves to what is to be said if that was too late; `paged(page, html)` when they have done
- * something to the page; `site()` resolves to whether the web page lets itself be shown.
+ * something to the page; `site()` resolves to whether the web page lets itself be shown; `stop()` is
+ * called when they press Escape in the page.
  */
 export class Content {
-  constructor(root, {answered, paged, site}) {
+  constructor(root, {answered, paged, site, stop}) {
     this._root = root;
     this._answered = answered;
     this._paged = paged;
     this._site = site;
+    this._stop = stop;
     this._page = null;
     this._orders = new Map();
     addEventListener('message', (event) => this._fromPage(event));
@@ -195,6 +201,7 @@ export class Content {
     const page = this._page;
     if (!page || source !== page.frame.contentWindow || data?.face !== 'page') return;
     if (data.ready) page.tellReady();
+    else if (data.stop) this._stop();
     else if (data.number) this._done(data.number, data.html);
     else if (data.html !== page.html && data.html.length <= LONGEST_PAGE) {
       page.html = data.html;

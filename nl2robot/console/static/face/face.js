@@ -48,6 +48,7 @@ const content = new Content(at.content, {
     if (!telling) tellPage();
   },
   site: () => wire.request('face.site'),
+  stop,
 });
 const calls = operates ? mountCall(at.call, {wire, words, role: 'face'}) : null;
 

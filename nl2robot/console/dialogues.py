@@ -1,0 +1,126 @@
+"""The dialogues of all browsers. They are kept in files, so that a server that is started anew goes
+on with them: what was said, and the program that waited for a decision."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections import OrderedDict
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any, Final
+
+import msgspec
+
+from nl2robot.archive import state_of
+from nl2robot.console.dialogue import Dialogue, Draft, Line
+from nl2robot.console.part import Backstage
+from nl2robot.translation import Translation
+
+IN_MEMORY: Final = 50
+IN_FILES: Final = 200
+
+_log = logging.getLogger(__name__)
+
+
+class _Waiting(msgspec.Struct):
+    """A draft, without its review, which is made anew."""
+
+    program: str
+    translation: Translation | None
+    heard: str | None
+
+
+class _Kept(msgspec.Struct):
+    lines: list[Line]
+    runs: list[int]
+    draft: _Waiting | None
+
+
+class Dialogues:
+    """Those of all browsers; the one unused longest is forgotten first."""
+
+    def __init__(self, backstage: Backstage, folder: Path) -> None:
+        self._backstage = backstage
+        self._folder = folder
+        self._dialogues: OrderedDict[str, Dialogue] = OrderedDict()
+        self._languages: dict[str, str] = {}
+        self._written: dict[str, bytes] = {}
+        self._writing = threading.Lock()
+        self._forget_old_files()
+
+    def of(self, name: str, language: str) -> Dialogue:
+        """The one of this name, begun if there is none."""
+        if name not in self._dialogues:
+            dialogue = Dialogue(self._backstage, name)
+            self._recall(dialogue, language)
+            dialogue.watch(partial(self._keep, dialogue))
+            self._dialogues[name] = dialogue
+        self._dialogues.move_to_end(name)
+        self._languages[name] = language
+        while len(self._dialogues) > IN_MEMORY:
+            forgotten, _ = self._dialogues.popitem(last=False)
+            self._languages.pop(forgotten, None)
+            self._written.pop(forgotten, None)
+        return self._dialogues[name]
+
+    def on_event(self, kind: str, data: Mapping[str, Any]) -> None:
+        """Tell whoever started a run that it is over."""
+        if kind != "program" or data["what"] != "state" or data["state"] in ("running", "paused"):
+            return
+        for name, dialogue in tuple(self._dialogues.items()):
+            language = self._languages.get(name, "en")
+            dialogue.ended(data["run"], data["state"], data["message"], language)
+
+    # --- files
+
+    def _keep(self, dialogue: Dialogue) -> None:
+        draft = dialogue.draft
+        waiting = _Waiting(draft.program, draft.translation, draft.heard) if draft else None
+        kept = msgspec.json.encode(_Kept(dialogue.lines, sorted(dialogue.runs), waiting))
+        with self._writing:
+            if self._written.get(dialogue.name) == kept:
+                return
+            file = self._file(dialogue.name)
+            new = file.with_suffix(".new")
+            try:
+                self._folder.mkdir(parents=True, exist_ok=True)
+                new.write_bytes(kept)
+                new.replace(file)
+            except OSError as error:  # it goes on without being kept
+                _log.warning("A conversation could not be kept: %s", error)
+            self._written[dialogue.name] = kept
+
+    def _recall(self, dialogue: Dialogue, language: str) -> None:
+        try:
+            kept = msgspec.json.decode(self._file(dialogue.name).read_bytes(), type=_Kept)
+        except FileNotFoundError:
+            return
+        except (OSError, msgspec.DecodeError) as error:  # such as one of another version
+            _log.warning("A conversation could not be read: %s", error)
+            return
+        dialogue.lines = kept.lines
+        if kept.draft:
+            dialogue.draft = Draft(kept.draft.program, kept.draft.translation, kept.draft.heard)
+        dialogue.runs = set(kept.runs)
+        for run in kept.runs:
+            self._tell_end(dialogue, run, language)
+
+    def _tell_end(self, dialogue: Dialogue, run: int, language: str) -> None:
+        """Say how a run ended while its dialogue was not in memory."""
+        logged = self._backstage.runner.log.run(run)
+        if logged is None:
+            dialogue.runs.discard(run)
+            return
+        state = state_of(logged.status, logged.process)
+        if state != "running":
+            dialogue.ended(run, state, logged.message, language)
+
+    def _file(self, name: str) -> Path:
+        return self._folder / f"{name}.json"
+
+    def _forget_old_files(self) -> None:
+        files = sorted(self._folder.glob("*.json"), key=lambda file: file.stat().st_mtime)
+        for old in files[:-IN_FILES]:
+            old.unlink(missing_ok=True)

@@ -1,0 +1,98 @@
+"""Every page for everybody: on phone, tablet and desktop, in light and dark, in other languages,
+for those who see little and those who use no mouse."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.console.conftest import Look, Served
+from tests.console.test_desk import say
+
+CONTRAST = (Path(__file__).parent / "contrast.js").read_text(encoding="utf-8")
+STICKS_OUT = """() => [document.documentElement, ...document.querySelectorAll('.card, header, nav')]
+    .filter((each) => each.checkVisibility() && each.scrollWidth > each.clientWidth + 1)
+    .map((each) => each.tagName + '.' + each.className)"""
+NAMED = {
+    *("button", "link", "textbox", "searchbox", "checkbox", "radio", "combobox", "slider"),
+    *("switch", "img", "image", "application", "dialog"),
+}
+"""Roles of what somebody who does not see it has to be told the name of."""
+READY = {
+    "/": "#desk-map .floor-told",
+    "/map": ".floor-told",
+    "/drive": "#drive .floor-told",
+    "/runs": "[data-part=found]",
+}
+
+
+def nameless(page: Page) -> list[Any]:
+    """What a screen reader could tell no name of."""
+    tree = page.context.new_cdp_session(page).send("Accessibility.getFullAXTree")["nodes"]
+    return [
+        node["role"]["value"]
+        for node in tree
+        if not node["ignored"]
+        and node["role"]["value"] in NAMED
+        and not node.get("name", {}).get("value", "").strip()
+    ]
+
+
+@pytest.mark.parametrize("path", READY)
+@pytest.mark.parametrize(
+    ("width", "height", "dark", "language"),
+    [
+        (390, 844, True, "de"),
+        (844, 390, False, "fr"),
+        (768, 1024, False, "de"),
+        (1440, 900, True, "fr"),
+    ],
+)
+def test_a_page_fits_is_read_and_is_told(
+    look: Look, path: str, width: int, height: int, dark: bool, language: str
+) -> None:
+    page = look(path, width=width, height=height, dark=dark, language=language)
+    expect(page.locator(READY[path]).first).to_be_visible()
+    expect(page.locator("#connection")).to_have_attribute("data-state", "connected")
+    assert page.evaluate(STICKS_OUT) == []
+    assert page.evaluate(CONTRAST) == []
+    assert nameless(page) == []
+    expect(page.get_by_role("heading", level=1)).to_have_count(1)
+    expect(page.locator("#stop")).to_be_in_viewport(ratio=1)
+    for link in page.locator("header nav a").all():
+        expect(link).to_be_in_viewport(ratio=1)
+
+
+def test_from_the_words_to_the_run_without_a_mouse(page: Page) -> None:
+    say(page, "say hello")
+    approve = page.get_by_role("button", name="Approve and run")
+    expect(approve).to_be_enabled()
+    for _ in range(30):
+        page.keyboard.press("Tab")
+        if page.evaluate("document.activeElement.id") == "approve":
+            break
+    expect(approve).to_be_focused()
+    page.keyboard.press("Enter")
+    expect(page.locator("#run-panel [role=status]")).to_have_text("Done")
+
+
+def test_nothing_that_people_write_becomes_part_of_a_page(look: Look, served: Served) -> None:
+    evil = '<img src=x onerror="window.caught = true"><b>'
+    page = look("/?program=" + f"print('{evil}')%0Arobot.say('{evil}')".replace(" ", "%20"))
+    page.get_by_role("button", name="Approve and run").click()
+    expect(page.locator("#run-panel [role=status]")).to_have_text("Done")
+    say(page, evil)
+    expect(page.locator(".said.by-you").last).to_contain_text(evil)
+    with served.robot() as robot:
+        robot.request("zones.set", {"name": evil, "polygon": [[1, 1], [2, 1], [2, 2]]})
+        robot.show(text=evil)
+        for path in ("/map", "/drive", "/runs", "/face"):
+            page.goto(served.url + path)
+            expect(page.locator("body")).to_contain_text("STOP")
+            page.wait_for_load_state("networkidle")
+            assert page.locator("img[src=x]").count() == 0, path
+            assert page.evaluate("window.caught") is None, path
+        robot.request("zones.remove", {"name": evil})
