@@ -67,7 +67,8 @@ class Ear:
     def understood(self, heard: Heard, also: Container[str] = ()) -> Heard:
         """The reading that is understood, or is one of `also`."""
         return choose(
-            heard, lambda text: text.replace(",", "") in also or self._is_understood(text)
+            heard,
+            lambda text: text.lower().replace(",", "") in also or self._is_understood(text),
         )
 
     def program(self, text: str) -> str | None:

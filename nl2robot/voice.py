@@ -178,12 +178,12 @@ class VoiceInput:
         perhaps = self._without_hot_word(chosen.free_text or "")
         # Where both decoders hear the same, it is for the conversation to make sense of it: "no,
         # the pharmacy" is no command by itself.
-        return Said(text, chosen.doubtful and perhaps != text, perhaps)
+        return Said(text, chosen.doubtful and perhaps.lower() != text.lower(), perhaps)
 
     def _without_hot_word(self, text: str) -> str:
         """Without what is left of the hot word at the beginning: all of it, or its last words."""
         words = text.split()
-        plain = tuple(word.strip(PUNCTUATION) for word in words)
+        plain = tuple(word.strip(PUNCTUATION).lower() for word in words)
         for called in self._called:
             for first in range(len(called)):
                 if plain[: len(called) - first] == called[first:]:

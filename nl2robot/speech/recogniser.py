@@ -376,7 +376,7 @@ class Decoding:
         opinion = ear.hear(sound, self._grammar.phrases, self._candidates()[:CANDIDATES])
         readings = tuple(
             Reading(
-                each.text,
+                each.written or each.text,
                 fit=0.0,
                 doubtful=each.evidence.belief < LEAST_BELIEF,
                 score=each.likelihood,
@@ -391,7 +391,7 @@ class Decoding:
             heard,
             text=best.text,
             confidence=best.confidence,
-            words=heard.words if best.text == heard.text else (),
+            words=heard.words if best.text.lower() == heard.text else (),
             doubtful=best.doubtful,
             free_text=opinion.free,
             readings=readings,

@@ -33,7 +33,10 @@ from nl2robot.speech.vocabulary import spell_numbers
 
 CANDIDATES: Final = 6  # of its own that are judged
 PADDING: Final = 0.15  # seconds; of digits 196 of 200 were heard with 0.15 and 0.3, 179 with none
+CAPITALS: Final = ("de",)
+"""Languages that write nouns with capitals: what the robot is to say is shown so."""
 _LISTS: Final = 16  # of phrases whose expectation is kept
+_PERCENT: Final = {"en": " percent", "de": " Prozent", "fr": " pour cent"}
 _QUOTES_AND_END: Final = re.compile(r'["“”„«»…]|[.,?!;:\s]+$')
 
 
@@ -58,8 +61,9 @@ class Evidence:
 
 
 WEIGHTS: Final = (3.36, -0.378, 0.144, -0.553, 3.49)
-"""Of a logistic regression, fitted in the way of `nl2robot.belief_benchmark` to trials of seeds 1
-and 2; on trials of seed 5 they do no worse than weights fitted to these (docs/voice.md)."""
+"""Of a logistic regression, fitted in the way of `nl2robot.belief_benchmark` to English trials of
+seeds 1 and 2; on trials of seed 5 they do no worse than weights fitted to these, and they hold for
+Whisper as well (docs/voice.md)."""
 _LEAST_ODDS: Final = 700.0  # their logarithm against; more would be too much for a float
 
 
@@ -70,6 +74,7 @@ class Judged:
     text: str
     likelihood: float  # log, of the text given the sound
     evidence: Evidence
+    written: str = ""  # the same with the capitals that the language wants, if it wants any
 
 
 @dataclass(frozen=True)
@@ -86,6 +91,7 @@ class SecondEar:
     def __init__(self, model: Network, language: str = "en") -> None:
         self._model = model
         self._language = language
+        self._nouns = language in CAPITALS
         self._expected = lru_cache(maxsize=_LISTS)(self._expected_of)
         self._lock = threading.Lock()
 
@@ -112,7 +118,8 @@ class SecondEar:
                 unexpected=-expected.sentences.of(numbers) / (len(numbers) + 1),
                 agreed=plain in agreed,
             )
-            each = Judged(plain, likelihood, evidence)
+            written = self._plain(text, expected.words, lower=False) if self._nouns else ""
+            each = Judged(plain, likelihood, evidence, written)
             if plain and (plain not in judged or evidence.belief > judged[plain].evidence.belief):
                 judged[plain] = each
         best = sorted(judged.values(), key=lambda each: -each.evidence.belief)
@@ -136,9 +143,10 @@ class SecondEar:
         sentences = [f"{words.written(phrase)}{end}" for phrase in phrases for end in ".?"]
         return _Expected(words, self._model.expectation(sentences))
 
-    def _plain(self, text: str, words: _Words) -> str:
+    def _plain(self, text: str, words: _Words, *, lower: bool = True) -> str:
         """As the other recogniser writes, but for the commas: they divide orders."""
-        plain = words.joined(_QUOTES_AND_END.sub("", text.lower()).replace("%", " percent"))
+        text = text.lower() if lower else text
+        plain = words.joined(_QUOTES_AND_END.sub("", text).replace("%", _PERCENT[self._language]))
         return " ".join(spell_numbers(plain, self._language).split())
 
 
@@ -179,5 +187,6 @@ class _Words:
     def joined(self, text: str) -> str:
         """With hyphens only in words that have them here."""
         return " ".join(
-            word if word in self._joined else word.replace("-", " ") for word in text.split()
+            word if word.lower() in self._joined else word.replace("-", " ")
+            for word in text.split()
         )
