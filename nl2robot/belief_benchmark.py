@@ -1,4 +1,4 @@
-"""When to believe what was heard: `python -m nl2robot.belief_benchmark`.
+"""When to believe what was heard: `python -m nl2robot.belief_benchmark [SEED [LANGUAGE]]`.
 
 Commands, remarks and noise are heard in several voices and noises, and each way to tell what to
 believe gives the likeliest program of each and how sure it is. How sure it must be is settled with
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from grammar.samples import samples
 from nl2robot.hearing import Ear
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
-from nl2robot.models import need
+from nl2robot.models import find
 from nl2robot.speech.listening import has_speech
 from nl2robot.speech.recogniser import Heard, Recogniser
 from nl2robot.speech.second_ear import WEIGHTS, Evidence
@@ -58,7 +58,8 @@ def cases(ear: Ear, seed: int) -> Iterator[Case]:
     stage, said = Stage(ear.language, seed), spoken(ear.language)
     lexicon = ear.knowledge.lexicon(ear.language)
     known = [text for topic in samples(lexicon, ear.language).values() for text in topic]
-    alone = Recogniser(need(ear.language), ear.language)
+    folder = find(ear.language)  # of vosk's model, which some languages lack here
+    alone = Recogniser(folder, ear.language) if folder else None
     for kind, sayings in (
         ("command", [text for text in said["commands"] if text not in known]),
         ("command", [text for text in known if ear.program(text) is not None]),
@@ -70,12 +71,12 @@ def cases(ear: Ear, seed: int) -> Iterator[Case]:
         yield _case(ear, alone, trial)
 
 
-def _case(ear: Ear, alone: Recogniser, trial: Trial) -> Case:
+def _case(ear: Ear, alone: Recogniser | None, trial: Trial) -> Case:
     wanted = ear.program(trial.said) if trial.kind == "command" else None
     if not has_speech(trial.audio):
         return Case(trial, wanted, (), ())
     both = ear.recogniser.recognise(trial.audio, ear.phrases)
-    heard = ear.understood(alone.recognise(trial.audio, ear.phrases))
+    heard = [ear.understood(alone.recognise(trial.audio, ear.phrases))] if alone else []
     return Case(
         trial,
         wanted,
@@ -84,7 +85,7 @@ def _case(ear: Ear, alone: Recogniser, trial: Trial) -> Case:
             for reading in both.readings
             if reading.evidence and (program := ear.program(reading.text))
         ),
-        tuple((heard, program) for program in [ear.program(heard.text)] if program),
+        tuple((each, program) for each in heard if (program := ear.program(each.text))),
     )
 
 
@@ -174,15 +175,15 @@ def _regression(rows: Row, right: Row, steps: int = 4000) -> Weights:
 
 
 def main(arguments: Sequence[str]) -> None:
-    """The argument is the seed of the trials; without one it is 1."""
+    """The seed of the trials (1), and the language (en)."""
     from rich.console import Console
     from rich.progress import track
     from rich.table import Table
 
-    ear = Ear(Knowledge(load_world(DEFAULT_WORLD)))
+    seed, language = [*arguments, *("1", "en")[len(arguments) :]][:2]
+    ear = Ear(Knowledge(load_world(DEFAULT_WORLD)), language)
     whole = 3 * EACH + NOBODY
-    seed = int(arguments[0]) if arguments else 1
-    heard = list(track(cases(ear, seed), "Hearing", total=whole))
+    heard = list(track(cases(ear, int(seed)), "Hearing", total=whole))
     voices = sorted({case.trial.speaker for case in heard})
     halves = [[case for case in heard if case.trial.speaker in voices[n::2]] for n in range(2)]
     table = Table("way", "right", "wrong", "remarks and noise acted on")

@@ -1,4 +1,5 @@
-"""How long after the last sound of a command its text is there: `python -m nl2robot.speech.delay`.
+"""How long after the last sound of a command its text is there: `python -m nl2robot.speech.delay`
+(`--lang de recording.wav ...`).
 
 Recordings are fed as a microphone would, in real time, so that the decoders have as long as they
 will have. The last sound is the last ten milliseconds that are not quiet; the pause that ends an
@@ -7,10 +8,10 @@ utterance is taken off, for it is chosen (`listening.COMMANDS`), not computed.
 
 from __future__ import annotations
 
+import argparse
 import json
 import resource
 import statistics
-import sys
 import time
 from collections.abc import Sequence
 from itertools import chain
@@ -85,13 +86,18 @@ def _detector(recordings: Sequence[Audio]) -> float:
     return taken / (frames * FRAME / RATE)
 
 
-def main(files: Sequence[str]) -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Of these files, or of the recordings of commands that come with nl2robot."""
-    shown = Path(__file__).parents[1] / "data" / "recordings"
-    recordings = [read(file) for file in files or sorted(map(str, shown.glob("*.wav")))]
+    shown = sorted((Path(__file__).parents[1] / "data" / "recordings").glob("*.wav"))
+    parser = argparse.ArgumentParser(description="How long after a command its text is there.")
+    parser.add_argument("files", nargs="*", type=Path, default=shown)
+    parser.add_argument("--lang", default="en")
+    options = parser.parse_args(arguments)
+    recordings = [read(file) for file in options.files]
     Listener()  # loads the detector
-    print(json.dumps(measure(recordings, Ear(Knowledge(load_world(DEFAULT_WORLD)))), indent=2))
+    ear = Ear(Knowledge(load_world(DEFAULT_WORLD)), options.lang)
+    print(json.dumps(measure(recordings, ear), indent=2))
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()
