@@ -98,12 +98,15 @@ class Whisper:
         ]
 
     def of_sound(self, encoded: Any) -> _OfSound:
-        return self._decoder.of_sound(np.array(encoded)[0])
+        with _blas().limit(limits=1, user_api="blas"):
+            return self._decoder.of_sound(np.array(encoded)[0])
 
     def decode(
         self, states: _OfSound, numbers: NDArray[np.int64], memory: _Memory | None
     ) -> tuple[Floats, _Memory]:
-        scores, after = self._decoder.scores(states, numbers, memory)
+        # On a busy machine threads that wait for each other take ten times as long.
+        with _blas().limit(limits=1, user_api="blas"):
+            scores, after = self._decoder.scores(states, numbers, memory)
         scores += self._never
         scores -= scores.max(-1, keepdims=True)
         scores -= np.log(np.exp(scores).sum(-1, keepdims=True))
@@ -146,6 +149,13 @@ def _loaded(folder: Path, language: str) -> Whisper | None:
     except ModelError as error:  # without it one hears less well, but one hears
         _log.warning("%s", error)
         return None
+
+
+@cache
+def _blas() -> Any:
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()
 
 
 # ── the decoder ──────────────────────────────────────────────────────────────────────────────
