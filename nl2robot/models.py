@@ -259,8 +259,7 @@ def _beside(code: str, registry: Registry) -> list[tuple[str, Model]]:
 
 
 def _without(model: Model) -> str:
-    are = "are" if len(model.beside) > 1 else "is"
-    return f"{model.language} {are} heard less well without it."
+    return f"{model.language.capitalize()} is heard less well without it."
 
 
 # ── fetching one ─────────────────────────────────────────────────────────────────────────────
