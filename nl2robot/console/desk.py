@@ -148,7 +148,9 @@ class _Desk:
                         )
                         self.editor.on_value_change(lambda event: self._edited(event.value or ""))
                     self.foot = ui.html("", sanitize=False)
-            ui.html('<section id="desk-map"></section>', sanitize=False).classes("desk-map")
+            ui.html(
+                '<section id="desk-map" class="floor-hugging"></section>', sanitize=False
+            ).classes("desk-map")
 
     def _draw(self) -> None:
         """Show the dialogue as it stands now."""
@@ -227,7 +229,7 @@ class _Desk:
             await self._do(dialogue.propose, program, language, who, at_once)
 
         async def approve(event: GenericEventArguments) -> None:
-            await self._do(dialogue.approve, self.editor.value or "", who, language)
+            await self._do(dialogue.approve, str(event.args["program"]), who, language)
 
         async def reject(event: GenericEventArguments) -> None:
             await self._do(dialogue.reject, language)

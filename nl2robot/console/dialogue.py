@@ -23,7 +23,6 @@ from nl2robot.review import Review, digest
 from nl2robot.session import STOP
 from nl2robot.translation import Translation, translate
 from robot_api.errors import RobotError
-from sandbox.limits import MAX_PROGRAM
 
 LINES_KEPT: Final = 200
 
@@ -181,11 +180,6 @@ class Dialogue:
     def _review(self, draft: Draft, language: str) -> None:
         self.draft = draft
         self._changed()
-        if len(draft.program.encode()) > MAX_PROGRAM:
-            self.draft = None
-            text = _said("too_long", language).format(kilobytes=MAX_PROGRAM // 1000)
-            self._tell(Line("robot", text, "trouble"))
-            return
         review = self._backstage.runner.check(draft.program, language)
         if self.draft is draft:
             self.draft = replace(draft, review=review)

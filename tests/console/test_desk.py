@@ -75,6 +75,46 @@ def test_an_edit_is_checked_at_once_and_voids_the_review(page: Page) -> None:
     expect(button).to_be_enabled()
 
 
+def test_what_is_approved_is_what_is_seen(page: Page, served: Served) -> None:
+    say(page, "say one")
+    button = page.get_by_role("button", name="Approve and run")
+    expect(button).to_be_enabled()
+    # What is typed gets lost on its way to the server, which still has the old program reviewed.
+    page.evaluate(
+        """() => {
+            const emit = socket.emit;
+            socket.emit = function (name, ...given) {
+              const told = JSON.stringify(given);
+              const edit = told.includes('two') && !told.includes('program');
+              if (!edit) return emit.call(socket, name, ...given);
+            };
+        }"""
+    )
+    page.locator(".cm-content").click()
+    page.keyboard.press("Control+End")
+    page.keyboard.insert_text('robot.say("two")')
+    button.click()
+    expect(page.locator(".said").last).to_contain_text("The program has changed since its review.")
+    with served.robot() as robot:
+        state = robot.request("program.state")
+        assert state is None or "One." not in state["program"]
+
+
+def test_what_is_too_long_to_be_sent_is_not_taken(page: Page) -> None:
+    say(page, "say one")
+    page.locator(".cm-content").click()
+    page.evaluate(
+        """() => {
+            const clipboardData = new DataTransfer();
+            clipboardData.setData('text/plain', 'robot.wait(1)\\n'.repeat(5000));
+            const paste = new ClipboardEvent('paste', {clipboardData, bubbles: true});
+            document.activeElement.dispatchEvent(paste);
+        }"""
+    )
+    expect(page.get_by_role("alert")).to_contain_text("longer than 64 kB")
+    expect(page.locator(".cm-content")).to_have_text('robot.say("One.")')
+
+
 def test_a_run_is_watched_paused_stepped_and_stopped_half_way(
     page: Page, look: Look, served: Served, picture: Picture
 ) -> None:

@@ -5,6 +5,7 @@ import {wire} from '/static/wire.js';
 import {RunPanel} from '/static/desk/run_panel.js';
 
 const {words, role, language} = pageData;
+const LONGEST_PROGRAM = 64_000; // as the sandbox has it
 const OPTIONS = {harmless: 'option-harmless', at_once: 'option-at-once'};
 
 /** Tell the server's side of this page. */
@@ -82,9 +83,32 @@ async function openMicrophone(form) {
   });
 }
 
+/** The text in the editor, which is NiceGUI's. */
+function editedProgram() {
+  const editor = document.querySelector('.desk-editor .nicegui-codemirror');
+  return window.getElement(Number(editor.id.slice(1))).editor.state.doc.toString();
+}
+
+/** In the editor, Tab leads on to the decision, as everywhere: it would indent, and hold who has no
+ * mouse. What is too long to be sent is not taken. */
+function openEditor(editor) {
+  editor.addEventListener('keydown', (event) => event.key === 'Tab' && event.stopPropagation(), {capture: true});
+  editor.addEventListener(
+    'paste',
+    (event) => {
+      if (event.clipboardData.getData('text').length <= LONGEST_PROGRAM) return;
+      event.preventDefault();
+      event.stopPropagation();
+      alertOf(Error(words.too_long));
+    },
+    {capture: true},
+  );
+}
+
 function openDecisions() {
   document.addEventListener('click', (event) => {
-    if (event.target.closest('#approve')) tell('desk-approve');
+    // What is approved is what stands before one's eyes, whatever of it has reached the server.
+    if (event.target.closest('#approve')) tell('desk-approve', {program: editedProgram()});
     if (event.target.closest('#reject')) tell('desk-reject');
   });
   if (new URLSearchParams(location.search).has('program')) history.replaceState(null, '', '/');
@@ -105,7 +129,8 @@ function keepNewestInView(conversation) {
 async function openMap(element) {
   const {mountFloorMap} = await import('/static/floor/floor_map.js');
   const operator = role === 'operator';
-  const map = await mountFloorMap(element, {wire, language, operator});
+  const places = matchMedia('(min-width: 1280px)').matches; // below it, there is room for its list
+  const map = await mountFloorMap(element, {wire, language, operator, places});
   document.addEventListener('dry-run', (event) => map.showPath(event.detail));
   if (waitingPath) map.showPath(waitingPath);
   element.addEventListener('go', ({detail: {x, y, place}}) => {
@@ -134,8 +159,7 @@ if (role === 'operator') {
   openDecisions();
   const tellShade = () => tell('desk-shade', {dark: document.documentElement.dataset.look === 'dark'});
   appears('.desk-editor').then((editor) => {
-    // Tab leads on to the decision, as everywhere; the editor would indent, and hold who has no mouse.
-    editor.addEventListener('keydown', (event) => event.key === 'Tab' && event.stopPropagation(), {capture: true});
+    openEditor(editor);
     tellShade();
     new MutationObserver(tellShade).observe(document.documentElement, {attributeFilter: ['data-look']});
   });

@@ -18,7 +18,7 @@ helm.start(pageData.who, operates);
 root.classList.toggle('looks-on', !operates);
 
 const go = has('goto') && operates ? goPanel(body) : null;
-const map = element('div', {id: 'drive-map'});
+const map = element('div', {id: 'drive-map', class: 'floor-hugging'});
 const columns = [
   [panel('map', map), go?.section, logPanel()],
   [

@@ -21,6 +21,12 @@ export class Camera {
     this.fit();
   }
 
+  /** Of all there is to see: its width by its height. */
+  get proportion() {
+    const [x1, y1, x2, y2] = this.bounds;
+    return (x2 - x1) / (y2 - y1);
+  }
+
   setSize(width, height) {
     this.width = Math.max(width, 1);
     this.height = Math.max(height, 1);

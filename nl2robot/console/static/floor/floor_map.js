@@ -226,6 +226,7 @@ export class FloorMap {
     this.#build();
     this.#measure();
     this.camera.setBounds(floor.bounds, floor.walls.length ? 0.5 : 1.5);
+    this.stage.style.setProperty('--floor-proportion', this.camera.proportion);
     this.mode = this.modes[0];
     this.motion.set(early ?? floor.now);
     this.#tellInWords();
