@@ -37,10 +37,11 @@ UNSURE: Final = 0.6
 NOT_LISTED: Final = -3.0
 """Log likelihood, next to the likeliest, of an answer that the recogniser does not even list; it
 lists what is up to 2 behind."""
-BY_SOUND: Final = 0.3
-"""Weight of the digits' sound next to the recogniser's opinion (0.25 to 0.5 do as well) ..."""
-BY_SOUND_BESIDE: Final = 1.0
-"""... and next to that and the second ear's (0.6 does as well)."""
+BY_WORDS: Final = 0.4
+"""Weight of what the recogniser hears next to what single digits sound like. The second ear's
+opinion of them adds nothing to that."""
+UNSURE_OF_SOUND: Final = 0.9
+"""As `UNSURE`, where the recogniser hears nothing and only the sound of a digit is known."""
 JUDGED: Final = 8
 """So many texts of the recogniser are judged by the second ear."""
 LARGEST: Final = 999
@@ -100,6 +101,8 @@ BOTH_HEARD: Final = _Limit(behind=12.0, least=-12.0)
 BOTH_HEARD_FIGURES: Final = _Limit(behind=8.0, least=-9.0)
 """The same for digits and numbers, of which some sounds like whatever is said."""
 ONE_HEARD: Final = _Limit(behind=2.0, least=-4.0)
+BY_SOUND: Final = _Limit(behind=12.0, least=-16.0)
+"""Of a digit by its sound: an ear that expects sentences may well find it unlikely."""
 NEVER_FREELY: Final = _Limit(behind=4.0, least=-7.0)
 """Where both hear one of everyday's words, but neither of them when anything may be said."""
 
@@ -163,24 +166,31 @@ def answer_in(
 ) -> Answer:
     """Which answer was given, of what was heard in `audio` with the expected phrases and
     `WORST_FIT`, and what the second ear makes of it."""
+    by_sound = _by_sound(heard, audio, expected)
     if second is not None and heard.text:
-        return _judged(heard, audio, expected, second)
+        return _judged(heard, audio, expected, second, by_sound)
     shares = _shares(heard, expected)
     answer = expected.read(heard.text)
-    said = heard.free_text if heard.doubtful else heard.text
-    by_sound = _by_sound(audio, expected) if answer is not None and len(answer) == 1 else None
+    said = (heard.doubtful and heard.free_text) or heard.text
+    unsure = UNSURE if heard.text else UNSURE_OF_SOUND
     if by_sound:
-        shares = _agreed(shares, by_sound)
+        shares = _sounding(shares, by_sound)
         answer = shares[0][0]
     if heard.doubtful or answer is None:
-        return Answer(said or heard.text, None, 0.0, shares[:2])
+        return Answer(said, None, 0.0, shares[:2])
     share = dict(shares).get(answer, 1.0)
-    if share < UNSURE:
-        return Answer(said or heard.text, None, 0.0, shares[:2])
-    return Answer(said or heard.text, answer, share, shares[:2])
+    if share < unsure:
+        return Answer(said, None, 0.0, shares[:2] if said else ())
+    return Answer(said or answer, answer, share, shares[:2])
 
 
-def _judged(heard: Heard, audio: Audio, expected: Expected, second: SecondEar) -> Answer:
+def _judged(
+    heard: Heard,
+    audio: Audio,
+    expected: Expected,
+    second: SecondEar,
+    by_sound: Mapping[str, float] | None,
+) -> Answer:
     """The likeliest answer of all opinions together, if the second ear hears it well enough."""
     limited = [reading.text for reading in heard.readings if not reading.free][:JUDGED]
     figures = [answer for text in limited if expected.figures and (answer := expected.read(text))]
@@ -200,23 +210,26 @@ def _judged(heard: Heard, audio: Audio, expected: Expected, second: SecondEar) -
             texts[answer] = judged
     if not texts:
         return Answer(opinion.free, None, 0.0)
-    by_words = {answer: log(max(share, 1e-9)) for answer, share in _shares(heard, expected)}
-    scores = {
-        answer: judged.likelihood + (by_words.get(answer, NOT_LISTED) if by_words else 0.0)
-        for answer, judged in texts.items()
-    }
-    by_sound = _by_sound(audio, expected)
+    listed = _shares(heard, expected)
+    by_words = {answer: log(max(share, 1e-9)) for answer, share in listed}
     if by_sound:
-        for answer in scores:
-            scores[answer] += BY_SOUND_BESIDE * log(max(by_sound.get(answer, 1.0), 1e-9))
-    shares = _normalised(scores)
+        shares = tuple(each for each in _sounding(listed, by_sound) if each[0] in texts)
+        if not shares:
+            return Answer(opinion.free, None, 0.0)
+    else:
+        shares = _normalised(
+            {
+                answer: judged.likelihood + (by_words.get(answer, NOT_LISTED) if by_words else 0.0)
+                for answer, judged in texts.items()
+            }
+        )
     answer, share = shares[0]
     # Of several readings the plain one may be no likelier than another that means something else:
     # either of them is what the recogniser hears.
     first = max(by_words, key=by_words.__getitem__, default=None)
     both = not heard.doubtful and answer in (first, expected.read(heard.text))
     freely = answer in (expected.read(text or "") for text in (heard.free_text, opinion.free))
-    limit = _limit(expected, both, freely)
+    limit = BY_SOUND if by_sound else _limit(expected, both, freely)
     likelihood = texts[answer].likelihood
     behind = no_answer.likelihood - likelihood if no_answer else 0.0
     if share < UNSURE or behind > limit.behind or likelihood < limit.least:
@@ -235,9 +248,12 @@ def _limit(expected: Expected, both: bool, freely: bool) -> _Limit:
     return BOTH_HEARD_FIGURES if expected.figures else BOTH_HEARD
 
 
-def _by_sound(audio: Audio, expected: Expected) -> Mapping[str, float] | None:
-    """How likely each digit is by its sound alone; None where that cannot be told."""
-    ear = digits.load(expected.digits_of) if expected.digits_of else None
+def _by_sound(heard: Heard, audio: Audio, expected: Expected) -> Mapping[str, float] | None:
+    """How likely each digit is by its sound alone; None where that cannot be told, and where the
+    recogniser hears several words."""
+    if expected.digits_of is None or len(heard.text.split()) > 1:
+        return None
+    ear = digits.load(expected.digits_of)
     return ear.shares(audio) if ear else None
 
 
@@ -254,17 +270,19 @@ def _shares(heard: Heard, expected: Expected) -> Shares:
     return _normalised(best)
 
 
-def _agreed(shares: Shares, by_sound: Mapping[str, float]) -> Shares:
-    """Both opinions together."""
+def _sounding(shares: Shares, by_sound: Mapping[str, float]) -> Shares:
+    """How likely each digit is by its sound and by the recogniser, the likeliest first. All of them
+    and what is none have a share of one together."""
     known = dict(shares)
-    most = max(known.values(), default=1.0)
-    return _normalised(
-        {
-            answer: (log(known[answer] / most) if answer in known else NOT_LISTED)
-            + BY_SOUND * log(max(share, 1e-9))
-            for answer, share in by_sound.items()
-        }
-    )
+
+    def by_words(digit: str) -> float:
+        return max(NOT_LISTED, log(max(known.get(digit, 0.0), 1e-9))) if known else 0.0
+
+    scores = {
+        digit: log(max(share, 1e-9)) + (BY_WORDS * by_words(digit) if digit else 0.0)
+        for digit, share in by_sound.items()
+    }
+    return tuple(each for each in _normalised(scores) if each[0] != digits.NONE)
 
 
 def _normalised(scores: Mapping[str, float]) -> Shares:

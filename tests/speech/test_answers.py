@@ -221,6 +221,54 @@ def test_their_sound_decides_between_digits_that_are_heard_alike(
     assert answer_in(heard(("eight", 32.0)), NOTHING, expected).answer == "8"
 
 
+class Sound:
+    """An ear that hears this digit, whatever it is given."""
+
+    def __init__(self, **shares: float) -> None:
+        self._shares = {name.strip("_"): share for name, share in shares.items()}
+
+    def shares(self, audio: Audio) -> dict[str, float] | None:
+        return self._shares
+
+
+def test_a_digit_without_its_edges_is_told_by_its_sound(monkeypatch: pytest.MonkeyPatch) -> None:
+    """ "Six" without its end is "a" to who expects sentences, and "eight" to who expects digits."""
+    monkeypatch.setattr(digits, "load", lambda language: Sound(_6=0.97, _8=0.02, _=0.01))
+    judge = Judge(a=-1.4, eight=-2.1, six=-8.0)
+    answer = answer_in(heard(("eight", 32.0)), NOTHING, expect("digits", "en"), judge)
+    assert (answer.heard, answer.answer) == ("six", "6")
+    nothing = heard(("", 0.0), doubtful=False)
+    assert answer_in(nothing, NOTHING, expect("digits", "en"), judge).answer == "6"
+
+
+def test_a_digit_that_sounds_like_another_is_asked_about(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(digits, "load", lambda language: Sound(_6=0.55, _8=0.44, _=0.01))
+    judge = Judge(a=-1.4, eight=-2.1, six=-8.0)
+    alike = heard(("six", 32.0), ("eight", 31.9))
+    answer = answer_in(alike, NOTHING, expect("digits", "en"), judge)
+    assert (answer.answer, [digit for digit, _ in answer.likely]) == (None, ["6", "8"])
+    nothing = answer_in(heard(("", 0.0)), NOTHING, expect("digits", "en"), judge)
+    assert (nothing.heard, nothing.answer, nothing.likely) == ("", None, ())
+
+
+@pytest.mark.parametrize("judged", [{}, {"hello": -0.2, "zero": -14.0}])
+def test_what_sounds_like_no_digit_is_none(
+    judged: dict[str, float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    share = 0.05 if not judged else 0.95
+    monkeypatch.setattr(digits, "load", lambda language: Sound(_0=share, _=1 - share))
+    judge = Judge(**judged) if judged else None
+    answer = answer_in(heard(("zero", 32.0)), NOTHING, expect("digits", "en"), judge)
+    assert answer.answer is None
+
+
+def test_several_digits_are_not_told_by_the_sound_of_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(digits, "load", lambda language: Sound(_4=1.0))
+    judge = Judge(four_seven=-0.5, four=-6.0)
+    answer = answer_in(heard(("four seven", 32.0)), NOTHING, expect("digits", "en"), judge)
+    assert answer.answer == "47"
+
+
 class Judge(SecondEar):
     """A second ear that thinks this of whatever it hears."""
 
