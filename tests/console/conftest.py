@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from PIL import Image
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 
 from robot_api.client import Robot
@@ -173,6 +174,10 @@ def picture() -> Picture:
     def keep(page: Page, name: str) -> None:
         folder = os.environ.get("NL2ROBOT_PICTURES")
         if folder:
-            page.screenshot(path=str(Path(folder) / f"{name}.png"))
+            kept = Path(folder) / f"{name}.png"
+            page.screenshot(path=str(kept))
+            with Image.open(kept) as shown:
+                few = shown.convert("RGB").quantize(256, Image.Quantize.FASTOCTREE)
+                few.save(kept, optimize=True)  # a third of the size
 
     return keep

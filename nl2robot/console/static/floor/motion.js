@@ -1,4 +1,4 @@
-/** From frames that come ten times a second to movement without jerks. */
+/** From frames that come some ten times a second to movement without jerks. */
 
 import {distance, wrap} from './shapes.js';
 
