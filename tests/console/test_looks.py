@@ -45,7 +45,7 @@ def nameless(page: Page) -> list[Any]:
 @pytest.mark.parametrize(
     ("width", "height", "dark", "language"),
     [
-        (390, 844, True, "de"),
+        (320, 640, True, "de"),
         (844, 390, False, "fr"),
         (768, 1024, False, "de"),
         (1440, 900, True, "fr"),
