@@ -80,7 +80,7 @@ _OTHERS: Final = {
     " soleil, vite, d'accord, pas du tout",
 }
 """What is no digit. Words that sound like one are left out: where one is expected, it was one."""
-_ROBOTIC_SHARE: Final = 0.5
+_ROBOTIC_SHARE: Final = 0.25
 _Item = TypeVar("_Item")
 
 
@@ -106,7 +106,7 @@ def neural(language: str, times: int) -> Iterator[Spoken]:
 
 
 def robotic(language: str, rng: np.random.Generator) -> Iterator[Spoken]:
-    """The speakers of espeak-ng, half of what they might say, and what is no digit."""
+    """The speakers of espeak-ng, a part of what they might say, and what is no digit."""
     sayings = [
         (digit, dialect, variant, word)
         for digit, words in enumerate(_WORDS[language].split())

@@ -25,12 +25,12 @@ from nl2robot.speech.digits_speakers import NONE, Spoken, neural, robotic
 from nl2robot.speech.embeddings import embed_windows
 from nl2robot.speech.scenes import Signal
 
-HIDDEN: Final = {digits.BY_EMBEDDING: 192, digits.BY_ENCODER: 96}
+HIDDEN: Final = {digits.BY_EMBEDDING: 256, digits.BY_ENCODER: 96}
+EPOCHS: Final = {digits.BY_EMBEDDING: 25, digits.BY_ENCODER: 12}
 NETWORKS: Final = 2  # of each kind, together
 TIMES: Final = {"en": 2}  # each neural speaker says each digit so often, or else once ...
-ROUNDS: Final = 3  # ... and each of these is treated so often
+ROUNDS: Final = 4  # ... and each of these is treated so often
 _NOISES: Final = 600  # pieces of noise in which nobody speaks
-_EPOCHS: Final = 25
 _SMOOTHING: Final = 0.05  # of the answers: none is quite sure
 _SECONDS: Final = 40.0  # of each noise
 
@@ -59,9 +59,7 @@ def train(language: str, seed: int = 0) -> dict[str, digits.Network]:
     if encoded:
         values[digits.BY_ENCODER] = np.array(encoded, np.float32)
     return {
-        kind: _together(
-            [_fitted(each, np.array(answers), HIDDEN[kind], rng) for _ in range(NETWORKS)]
-        )
+        kind: _together([_fitted(each, np.array(answers), kind, rng) for _ in range(NETWORKS)])
         for kind, each in values.items()
     }
 
@@ -140,12 +138,12 @@ def _together(networks: Sequence[digits.Network]) -> digits.Network:
 
 
 def _fitted(
-    values: Values, answers: NDArray[np.int64], hidden_size: int, rng: np.random.Generator
+    values: Values, answers: NDArray[np.int64], kind: str, rng: np.random.Generator
 ) -> digits.Network:
     """By Adam (Kingma and Ba 2015), with half of the hidden layer dropped out."""
     mean, scale = values.mean(axis=0), values.std(axis=0) + 1e-4
     inputs = (values - mean) / scale
-    kinds, size = NONE + 1, inputs.shape[1]
+    kinds, size, hidden_size = NONE + 1, inputs.shape[1], HIDDEN[kind]
     wanted = np.full((len(answers), kinds), _SMOOTHING / kinds, np.float32)
     wanted[np.arange(len(answers)), answers] += 1 - _SMOOTHING
     layers = [
@@ -155,7 +153,7 @@ def _fitted(
         np.zeros(kinds, np.float32),
     ]
     first, second = ([np.zeros_like(layer) for layer in layers] for _ in range(2))
-    for step, (batch, rate) in enumerate(_batches(len(inputs), rng), 1):
+    for step, (batch, rate) in enumerate(_batches(len(inputs), EPOCHS[kind], rng), 1):
         hidden = np.maximum(0, inputs[batch] @ layers[0] + layers[1])
         keep = 2 * (rng.random(hidden.shape) < 0.5).astype(np.float32)
         hidden *= keep
@@ -174,10 +172,10 @@ def _fitted(
 
 
 def _batches(
-    count: int, rng: np.random.Generator, size: int = 128
+    count: int, epochs: int, rng: np.random.Generator, size: int = 128
 ) -> Iterator[tuple[NDArray[np.int64], float]]:
     """Which to learn from, and how fast: slower towards the end."""
-    steps = _EPOCHS * (count // size)
+    steps = epochs * (count // size)
     for step in range(steps):
         if step % (count // size) == 0:
             order = rng.permutation(count)

@@ -16,7 +16,7 @@ def test_what_can_be_told_apart_is_learned() -> None:
     rng = np.random.default_rng(2)
     answers = rng.integers(0, digits_speakers.NONE + 1, 4000)
     values = (np.eye(digits_speakers.NONE + 1)[answers] + rng.normal(0, 0.1, (4000, 11))) * 5
-    network = digits_training._fitted(values.astype(np.float32), answers, 24, rng)
+    network = digits_training._fitted(values.astype(np.float32), answers, "encoder", rng)
     both = digits_training._together([network, network])
     assert (both.log_shares(values).argmax(axis=1) == answers).mean() > 0.97
     assert both.log_shares(values) == pytest.approx(network.log_shares(values))
