@@ -30,6 +30,8 @@ from nl2robot.speech.hotword_words import WORDS, Words
 
 SMOOTH: Final = 3
 """Steps of 80 ms over which the score of a hot word is averaged: surer, and so much later."""
+STOP_SMOOTH: Final = 2
+"""The same for stop, which has to be heard sooner."""
 HELD: Final = 1.2
 """Seconds for which a word that was heard is not heard again: nobody says it twice so fast."""
 
@@ -154,7 +156,7 @@ class StopWord:
         words = _words(language).stop
         heads = [head for word in words if (head := load_head(language, word))]
         self.words = tuple(head.word for head in heads)
-        self._detector = Heads(heads, judges(language, heads))
+        self._detector = Heads(heads, judges(language, heads), smooth=STOP_SMOOTH)
 
     def feed(self, samples: Samples) -> list[Detection]:
         """What was heard in these samples (one channel at 16 kHz, any number) and before."""

@@ -28,6 +28,7 @@ from nl2robot.speech.audio import RATE, Samples
 from nl2robot.speech.embeddings import STEP, Embeddings, embed
 from nl2robot.speech.hotword import (
     SMOOTH,
+    STOP_SMOOTH,
     Detection,
     Detector,
     Heads,
@@ -35,9 +36,10 @@ from nl2robot.speech.hotword import (
     StopWord,
     judges,
 )
-from nl2robot.speech.hotword_corpus import Half, Speech, seeded, silence, talk, words_of
+from nl2robot.speech.hotword_corpus import Speech, seeded, silence, talk, words_of
 from nl2robot.speech.hotword_head import Head, load_head
 from nl2robot.speech.hotword_judge import Judge
+from nl2robot.speech.hotword_voices import Clip, Half, Takes
 from nl2robot.speech.hotword_words import WORDS, Words
 from nl2robot.speech.recogniser import load
 from nl2robot.speech.scenes import Signal
@@ -64,6 +66,9 @@ KINDS: Final = {"babble": 0.7, "talk": 0.15, "corridor": 0.05, "corridor with ta
 STOP_SHARE: Final = 0.1
 """Of it also for stop: its false alarms are many, and soon counted."""
 SAYINGS: Final = 200  # of which the babble is mixed
+TAKES: Final = 50
+FEW_TAKES: Final = 25  # for a first impression: neural voices take long
+MARKS: Final = ("", "!", ".")  # with which a word is called
 IN_TIME: Final = (-0.35, 1.2)
 """Seconds from a word's end within which its detection counts."""
 
@@ -78,21 +83,23 @@ class Said(Sound):
 class Stage:
     """The people, words and noises of an evaluation."""
 
-    def __init__(self, words: Words, seed: int = 1, half: Half = Half.EVALUATION) -> None:
-        self.words = words
+    def __init__(
+        self, words: Words, seed: int = 1, half: Half = Half.EVALUATION, takes: int = TAKES
+    ) -> None:
+        """`takes`: how many remarks there are in neural voices, and callings of a word."""
+        self.words, self._takes = words, takes
         self._rng = seeded(seed, words.language, half.value)
         avoid = frozenset(w for word in (*words.stop, words.hot) for w in words_of(word))
-        self._speech = Speech(words.language, half, self._rng, avoid)
+        self._speech = Speech(words.language, half, self._rng, avoid, takes)
+        self._called: dict[tuple[str, bool], Takes] = {}
 
     @cached_property
     def _sayings(self) -> list[Signal]:
-        return [self._speech.say(self._speech.remark()) for _ in range(SAYINGS)]
+        return [self._speech.talked() for _ in range(SAYINGS)]
 
-    def said(
-        self, word: str, snr: float | None, noise: Signal, *, neural: bool | None = None
-    ) -> Said:
+    def said(self, word: str, snr: float | None, noise: Signal, *, neural: bool) -> Said:
         rng = self._rng
-        spoken = self._speech.say(word, neural=neural)
+        spoken = self._call(word, neural).heard(rng)
         sound = np.concatenate([silence(1.6), spoken, silence(1.2)])
         if rng.random() < 0.5:
             sound = scenes.echoing(sound, scenes.echo(rng, 0.4))[: len(sound)]
@@ -102,6 +109,14 @@ class Stage:
         sound = np.asarray(sound * (rng.uniform(0.1, 0.7) / peak), np.float32)
         return Said(scenes.audio(sound).samples, 1.6 + len(spoken) / RATE)
 
+    def _call(self, word: str, neural: bool) -> Clip:
+        def called() -> Clip:
+            return self._speech.cast.clip(word + self._rng.choice(list(MARKS)), neural=neural)
+
+        if (word, neural) not in self._called:
+            self._called[word, neural] = Takes(called, self._takes)
+        return self._called[word, neural].any(self._rng)
+
     def noise(self, kind: str, seconds: float) -> Signal:
         """In which nobody says the words."""
         if kind == "corridor":
@@ -109,7 +124,7 @@ class Stage:
         if kind == "babble":
             voices = self._rng.choice(SAYINGS, int(self._rng.integers(12, 33)), replace=False)
             return scenes.babble([self._sayings[i] for i in voices], seconds, self._rng)
-        spoken = np.concatenate(list(talk(self._speech, seconds, lambda: None)))
+        spoken = np.concatenate(list(talk(seconds, self._speech.talked, self._rng)))
         if kind == "corridor with talk":
             length = min(len(spoken), int(seconds * RATE))
             noise = scenes.corridor(length / RATE, self._rng)
@@ -118,8 +133,9 @@ class Stage:
         return spoken
 
     @property
-    def has_neural_voice(self) -> bool:
-        return self._speech.has_neural_voice
+    def neural(self) -> tuple[bool, ...]:
+        """Which kinds of voices there are, what is most like people first."""
+        return (True, False) if self._speech.cast.has_neural else (False,)
 
     def noises(self, kind: str, hours: float) -> Iterator[Sound]:
         """Minutes of it, loud and soft."""
@@ -131,9 +147,7 @@ class Stage:
             yield Sound(scenes.audio(sound * loudness).samples)
 
 
-def all_said(
-    stage: Stage, word: str, snr: float | None, count: int, *, neural: bool | None = None
-) -> list[Said]:
+def all_said(stage: Stage, word: str, snr: float | None, count: int, *, neural: bool) -> list[Said]:
     beds = [stage.noise(kind, 40) for kind in ("babble", "corridor")]
     return [stage.said(word, snr, beds[i % 2], neural=neural) for i in range(count)]
 
@@ -204,11 +218,11 @@ def measure(hours: float | None = None, language: str | None = None) -> Iterator
     language = language or os.environ.get("NL2ROBOT_BENCH_LANGUAGE")
     if language not in (None, *WORDS):
         raise UserError(f"NL2ROBOT_BENCH_LANGUAGE is {language!r}. There are: {', '.join(WORDS)}.")
-    count = 40 if hours else 10
+    count = 100 if hours else 10
     for code in [language] if language else WORDS if hours else ["en"]:
-        stage = Stage(WORDS[code])
+        stage = Stage(WORDS[code], takes=TAKES if hours else FEW_TAKES)
         hot, stop = WORDS[code].hot, WORDS[code].stop
-        hot_ways, stop_ways = ways(code, [hot], SMOOTH), ways(code, stop, 1)
+        hot_ways, stop_ways = ways(code, [hot], SMOOTH), ways(code, stop, STOP_SMOOTH)
         yield from _heard(stage, hot, hot_ways, count, hot, aim="3", soon="100")
         for word in stop:
             name = f"{word} ({code})"
@@ -218,7 +232,7 @@ def measure(hours: float | None = None, language: str | None = None) -> Iterator
         yield from _alarms(stage, f"stop ({code})", stop_ways, every * STOP_SHARE)
         if hours and find(code):
             yield from _spotted(stage, count, hours / 40)
-    yield from _cost(Stage(WORDS["en"]))
+    yield from _cost(Stage(WORDS["en"], takes=FEW_TAKES))
 
 
 def _heard(
@@ -232,11 +246,11 @@ def _heard(
     soon: str = "",
 ) -> Iterator[Measured]:
     delays: dict[str, list[float]] = {way: [] for way in ways}
-    for neural in (None, True) if stage.has_neural_voice else (None,):
-        for snr in (None, 10) if neural else SNRS:
+    for neural in stage.neural:
+        for snr in SNRS:
             said = all_said(stage, word, snr, count, neural=neural)
             where = "no noise" if snr is None else f"{snr} dB"
-            where += ", neural voice only" if neural else ""
+            where += ", neural voices" if neural else ", robotic voices"
             for way, hear in ways.items():
                 share, times = missed(hear, said)
                 delays[way] += times

@@ -17,11 +17,11 @@ from typing import Final
 import numpy as np
 
 from nl2robot.speech.audio import RATE, Samples
-from nl2robot.speech.hotword import SMOOTH, Heads
+from nl2robot.speech.hotword import SMOOTH, STOP_SMOOTH, Heads
 from nl2robot.speech.hotword_benchmark import Sound, Stage, all_said
-from nl2robot.speech.hotword_corpus import Half
 from nl2robot.speech.hotword_head import Head, load_head
 from nl2robot.speech.hotword_judge import Judge, judge_of
+from nl2robot.speech.hotword_voices import Half
 from nl2robot.speech.hotword_words import WORDS
 
 SEED: Final = 11  # that no head was trained with
@@ -61,7 +61,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
             stage = Stage(words, SEED, Half.TRAINING)
             noises = {kind: list(_pieces(stage, kind, options.hours)) for kind in KINDS}
             for word in words.judged:
-                smooth = SMOOTH if word == words.hot else 1
+                smooth = SMOOTH if word == words.hot else STOP_SMOOTH
                 _print_table(code, word, smooth, stage, noises, options.sayings)
 
 
@@ -84,11 +84,11 @@ def _print_table(
     if head is None or judge is None:
         raise SystemExit(f"“{word}” has no head or no second speech model here.")
     said = {
-        f"{'neural' if neural else 'any'} {snr}": [
+        f"{'neural' if neural else 'robotic'} {snr}": [
             strongest(head, judge, smooth, each)
             for each in all_said(stage, word, snr, sayings, neural=neural)
         ]
-        for neural in (None, True)
+        for neural in stage.neural
         for snr in SNRS
     }
     heard = {

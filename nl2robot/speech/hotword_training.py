@@ -11,7 +11,7 @@ numpy learns here: the embeddings are frozen, and a head is small.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from multiprocessing import get_context
@@ -26,7 +26,6 @@ from nl2robot.speech import scenes
 from nl2robot.speech.audio import RATE
 from nl2robot.speech.embeddings import SIZE, STEP_SECONDS, Embeddings, embed
 from nl2robot.speech.hotword_corpus import (
-    Half,
     Places,
     Speech,
     places,
@@ -37,31 +36,37 @@ from nl2robot.speech.hotword_corpus import (
     words_of,
 )
 from nl2robot.speech.hotword_head import SHIPPED, Head, forward, probability
+from nl2robot.speech.hotword_voices import Half
 from nl2robot.speech.hotword_words import WORDS
 from nl2robot.speech.scenes import Signal
 
-SCENES: Final = 1200  # in which a word is said
-SAYINGS: Final = 400  # of it; each is heard in several scenes
-TALK: Final = 20  # minutes without any of the words, in each language
+SCENES: Final = 1400  # in which a word is said
+SAYINGS: Final = 70  # of it in neural voices, each higher and lower in many scenes
+TALK: Final = 40  # minutes without any of the words, in each language
 BABBLE: Final = 40  # minutes, with the people of each language
-NEAR: Final = 8  # minutes, with what sounds like a word
+NEAR: Final = 16  # minutes, with what sounds like a word
+NEAR_SAID: Final = 40  # of it in neural voices
 HIDDEN: Final = 48
 EPOCHS: Final = 14
+FITS: Final = 3  # from other beginnings, joined to one head
 BATCH: Final = 1024
 RATE_OF_LEARNING: Final = 1.5e-3
 DECAY: Final = 1e-4
 
 # Embeddings a head looks at: 16 are 2 s, 6 are 1.2 s.
 HOT_STEPS: Final = 9
-STOP_STEPS: Final = 5
+STOP_STEPS: Final = 6
 # Seconds from a word's end within which it has to be heard, and what is too near to it to be
 # called its absence.
 HOT_WINDOW: Final = 0.32
 STOP_WINDOW: Final = 0.24
 HOT_THRESHOLD: Final = 0.8
-STOP_THRESHOLD: Final = 0.8
+STOP_THRESHOLD: Final = 0.5
 PROCESSES: Final = 2
-BLURRED: Final = (-0.14, 0.8)
+BLURRED: Final = (-0.3, 0.8)
+NARROW: Final = 0.12
+CLIPPED: Final = 0.06
+"""The shares of sounds from a narrow band, and from a microphone that was too near."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,25 +137,30 @@ def somewhere(sound: Signal, where: Places, rng: np.random.Generator) -> Signal:
     kind = str(rng.choice(["babble", "corridor", "noise", "none"], p=[0.45, 0.25, 0.15, 0.15]))
     if kind != "none":
         sound = scenes.at_snr(sound, where.noise(kind), float(rng.uniform(-1, 22)), rng)
+    return microphone(sound, rng)
+
+
+def microphone(sound: Signal, rng: np.random.Generator) -> Signal:
+    """As a microphone hears it: loud or from far away, sometimes too loud for it, sometimes no
+    more of it than a telephone carries."""
+    import soxr
+
+    if rng.random() < NARROW:
+        narrow = soxr.resample(sound, RATE, RATE // 2)
+        sound = np.resize(soxr.resample(narrow, RATE // 2, RATE), len(sound))
     peak = max(float(np.abs(sound).max()), 1e-6)
-    return np.asarray(sound * (10 ** (float(rng.uniform(-28, -0.5)) / 20) / peak), np.float32)
+    decibels = rng.uniform(1, 12) if rng.random() < CLIPPED else rng.uniform(-34, -0.5)
+    return np.asarray(np.clip(sound * (10 ** (float(decibels) / 20) / peak), -1, 1), np.float32)
 
 
-def without(
-    speech: Speech, where: Places, near: Sequence[str], minutes: float, rng: np.random.Generator
+def talking(
+    said: Callable[[], Signal], where: Places, minutes: float, rng: np.random.Generator
 ) -> Collector:
-    """Talk in which nobody says the words, but often something that sounds like them."""
-    collector, words = Collector(), shuffled(near, rng) if near else iter(())
-
-    def also() -> str | None:
-        if not near or rng.random() < 0.5:
-            return None
-        texts = [next(words), speech.remark()]
-        return " ".join(texts if rng.random() < 0.3 else texts[:1])
-
+    """People who talk on and on, somewhere, and do not say the words."""
+    collector = Collector()
     for _ in range(int(minutes * 2)):
         lead = silence(_LONGEST * STEP_SECONDS)
-        sound = np.concatenate([lead, *talk(speech, 30, also)])
+        sound = np.concatenate([lead, *talk(30, said, rng)])
         collector.add(somewhere(sound, where, rng))
     return collector
 
@@ -165,7 +175,7 @@ def noises(where: Places, minutes: int, rng: np.random.Generator) -> Collector:
         babble = where.babble(60)
         if rng.random() < 0.3:
             babble = scenes.echoing(babble, scenes.echo(rng, float(rng.uniform(0.15, 0.7))))
-        collector.add(babble * np.float32(10 ** rng.uniform(-1.4, 0)))
+        collector.add(microphone(babble, rng))
     collector.add(silence(10))
     return collector
 
@@ -239,7 +249,7 @@ def _corpus(code: str, seed: int) -> tuple[Places, Examples]:
     """What every head learns not to be its word, in one language."""
     speech = Speech(code, Half.TRAINING, seeded(seed, code, "corpus"), everything())
     where = places([speech], speech.rng)
-    talked = without(speech, where, (), TALK, speech.rng).examples()
+    talked = talking(speech.talked, where, TALK, speech.rng).examples()
     return where, both(talked, noises(where, BABBLE, speech.rng).examples())
 
 
@@ -262,24 +272,39 @@ class Task:
     near: tuple[str, ...]
     folder: Path
 
-    def done(self, seed: int) -> Head:
+    def examples(self, seed: int) -> Examples:
         rng = seeded(seed, self.language, self.word)
         avoid = everything() | set(words_of(self.word))
         speech = Speech(self.language, Half.TRAINING, rng, avoid)
         where, talked = _corpora[self.language]
         for code in sorted(_corpora.keys() - {self.language}):
             talked = both(talked, _corpora[code][1])
-        marks = ["", "!", ".", ",", "?"]
-        sayings = [speech.say(self.word + str(rng.choice(marks))) for _ in range(SAYINGS)]
+        called = speech.saying(lambda: _called(self.word, rng), SAYINGS)
         collector = Collector()
-        for i in range(SCENES):
-            sound, end = word_scene(sayings[i % len(sayings)], where, rng)
+        for _ in range(SCENES):
+            sound, end = word_scene(called(), where, rng)
             collector.add(sound, end, STOP_WINDOW if self.stop else HOT_WINDOW)
-        close = without(speech, where, self.near, NEAR, rng).examples()
-        examples = both(both(collector.examples(), close), talked)
-        weights = fit(examples, STOP_STEPS if self.stop else HOT_STEPS, rng)
+        texts = shuffled(self.near, rng) if self.near else None
+        alike = speech.saying(lambda: next(texts), NEAR_SAID) if texts else where.remark
+
+        def said() -> Signal:
+            return alike() if rng.random() < 0.7 else where.remark()
+
+        close = talking(said, where, NEAR, rng).examples()
+        return both(both(collector.examples(), close), talked)
+
+    def done(self, seed: int) -> Head:
+        examples, rng = self.examples(seed), seeded(seed, self.language, self.word, "fit")
+        steps = STOP_STEPS if self.stop else HOT_STEPS
         threshold = STOP_THRESHOLD if self.stop else HOT_THRESHOLD
-        return Head(self.word, threshold, weights)
+        return joined([Head(self.word, threshold, fit(examples, steps, rng)) for _ in range(FITS)])
+
+
+def _called(word: str, rng: np.random.Generator) -> str:
+    """The word as people call it: at once, or with a pause in it."""
+    if rng.random() < 0.2:
+        word = word.replace(" ", ", ", 1)
+    return word + str(rng.choice(["", "", "!", "!", ".", ",", "?"]))
 
 
 def tasks(code: str) -> list[Task]:

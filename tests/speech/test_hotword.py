@@ -16,9 +16,10 @@ from nl2robot.speech import scenes
 from nl2robot.speech.audio import RATE, Samples, read
 from nl2robot.speech.embeddings import STEP, EmbeddingStream, embed
 from nl2robot.speech.hotword import Heads, HotWord, StopWord
-from nl2robot.speech.hotword_corpus import seeded, silence, trimmed
+from nl2robot.speech.hotword_corpus import seeded, silence
 from nl2robot.speech.hotword_head import Head, load_head
 from nl2robot.speech.hotword_judge import Judge, judge_of
+from nl2robot.speech.hotword_voices import trimmed
 from nl2robot.speech.hotword_words import WORDS
 from nl2robot.speech.moonshine import Moonshine
 from nl2robot.speech.recogniser import Recogniser
