@@ -41,7 +41,7 @@ def test_say_hello_from_end_to_end(page: Page, served: Served, picture: Picture)
         expect(page.locator(".cm-content")).to_have_text('robot.say("Hello!")')
         assert not spoken, "nothing was approved"
         approve(page)
-        expect(page.locator("#run-panel [role=status]")).to_have_text("Done")
+        expect(page.locator("#run-panel .chip[role=status]")).to_have_text("Done")
         assert spoken == ["Hello!"]
     expect(page.locator(".said.by-robot").last).to_have_text(re.compile(r"Done\. See run \d+"))
 
@@ -128,14 +128,15 @@ def test_a_run_is_watched_paused_stepped_and_stopped_half_way(
     colleague = look("/")
     expect(colleague.locator("#run-panel li.current")).to_contain_text("pharmacy")
     page.get_by_role("button", name="Pause").click()
-    expect(page.locator("#run-panel [role=status]")).to_have_text("Paused")
-    expect(colleague.locator("#run-panel [role=status]")).to_have_text("Paused")
+    expect(page.locator("#run-panel .chip[role=status]")).to_have_text("Paused")
+    expect(page.locator("#run-panel")).to_contain_text("The robot finishes this call")
+    expect(colleague.locator("#run-panel .chip[role=status]")).to_have_text("Paused")
     page.get_by_role("button", name="Go on").click()
     page.reload()
     expect(current).to_contain_text("pharmacy")
     page.locator("body").press("Escape")
-    expect(page.locator("#run-panel [role=status]")).to_have_text("Stopped")
-    expect(colleague.locator("#run-panel [role=status]")).to_have_text("Stopped")
+    expect(page.locator("#run-panel .chip[role=status]")).to_have_text("Stopped")
+    expect(colleague.locator("#run-panel .chip[role=status]")).to_have_text("Stopped")
     expect(page.locator(".said.by-robot").last).to_contain_text("I stopped.")
     with served.robot() as robot:
         here = robot.location()
@@ -199,7 +200,7 @@ def test_harmless_commands_may_go_through_where_somebody_chose_so(page: Page) ->
     page.get_by_text("Options", exact=True).click()
     page.get_by_label(re.compile("Do harmless things at once")).check()
     say(page, "say good morning")
-    expect(page.locator("#run-panel [role=status]")).to_have_text("Done")
+    expect(page.locator("#run-panel .chip[role=status]")).to_have_text("Done")
     say(page, "go to the pharmacy")
     expect(page.get_by_role("button", name="Approve and run")).to_be_enabled()
 
@@ -224,7 +225,7 @@ def test_an_observer_sees_the_run_and_has_no_controls_but_stop(
     expect(observer.locator("#run-panel li.current")).to_contain_text("pharmacy")
     expect(observer.get_by_role("button", name="Pause")).to_have_count(0)
     observer.get_by_role("button", name="STOP").click()
-    expect(page.locator("#run-panel [role=status]")).to_have_text("Stopped")
+    expect(page.locator("#run-panel .chip[role=status]")).to_have_text("Stopped")
 
 
 @pytest.mark.parametrize(

@@ -76,14 +76,14 @@ def test_from_the_words_to_the_run_without_a_mouse(page: Page) -> None:
             break
     expect(approve).to_be_focused()
     page.keyboard.press("Enter")
-    expect(page.locator("#run-panel [role=status]")).to_have_text("Done")
+    expect(page.locator("#run-panel .chip[role=status]")).to_have_text("Done")
 
 
 def test_nothing_that_people_write_becomes_part_of_a_page(look: Look, served: Served) -> None:
     evil = '<img src=x onerror="window.caught = true"><b>'
     page = look("/?program=" + f"print('{evil}')%0Arobot.say('{evil}')".replace(" ", "%20"))
     page.get_by_role("button", name="Approve and run").click()
-    expect(page.locator("#run-panel [role=status]")).to_have_text("Done")
+    expect(page.locator("#run-panel .chip[role=status]")).to_have_text("Done")
     say(page, evil)
     expect(page.locator(".said.by-you").last).to_contain_text(evil)
     with served.robot() as robot:

@@ -70,7 +70,7 @@ def test_a_conversation_outlives_the_server_and_says_what_became_of_its_run(
         expect(page.locator(".said.by-you").first).to_contain_text("go to radiology")
         expect(page.locator(".said.trouble")).to_contain_text("the program ended there. See run 1")
         approve(page)
-        expect(page.locator("#run-panel [role=status]")).to_have_text("Done")
+        expect(page.locator("#run-panel .chip[role=status]")).to_have_text("Done")
         with second.robot() as robot:
             assert robot.request("runs.show", {"run": 2})["utterance"] == "say good morning"
 

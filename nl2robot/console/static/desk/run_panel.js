@@ -57,6 +57,7 @@ export class RunPanel {
     this.rows = new Map();
     this.chip = element('span', {class: 'chip', role: 'status'});
     this.message = element('p', {class: 'run-message', hidden: true});
+    this.finishing = element('p', {class: 'muted', role: 'status', hidden: true}, words.finishing);
     this.pause = this._button(words.pause, () => this._control(this.state === 'paused' ? 'resume' : 'pause'));
     this.step = this._button(words.step, () => this._control('step'));
     this.close = this._button(words.dismiss, () => this._dismiss());
@@ -76,7 +77,7 @@ export class RunPanel {
         element('h2', {}, view.utterance ?? words.program), this.chip,
         element('span', {class: 'muted'}, filled(words.approved_by, {who: view.by ?? '?'})),
       ),
-      this.message, this.list, this.calls,
+      this.finishing, this.message, this.list, this.calls,
       element('div', {class: 'row'}, ...(this.operator ? [this.pause, this.step] : []), this.see, this.close),
     );
     for (const call of view.calls) {
@@ -161,6 +162,7 @@ export class RunPanel {
     const row = this.rows.get(call.number);
     if (!row) return;
     row.className = call.error ? 'went-wrong' : 'went-well';
+    this._showFinishing();
     const told = call.error ?? (call.result == null ? '' : `→ ${short(call.result)}`);
     row.querySelector('.result').textContent = `${told} ${call.seconds.toFixed(1)} s`.trim();
   }
@@ -177,7 +179,14 @@ export class RunPanel {
     this.step.hidden = state !== 'paused';
     this.see.hidden = this.close.hidden = going;
     if (!going) this._line(state === 'done' ? null : Number(this.list.querySelector('.current')?.dataset.line));
+    this._showFinishing();
     this._tell(message);
+  }
+
+  /** A program pauses between two calls: until then, the robot may still drive. */
+  _showFinishing() {
+    const going = this.calls.lastElementChild?.classList.contains('going') ?? false;
+    this.finishing.hidden = !(this.state === 'paused' && going);
   }
 
   _tell(message) {
