@@ -259,7 +259,8 @@ def _beside(code: str, registry: Registry) -> list[tuple[str, Model]]:
 
 
 def _without(model: Model) -> str:
-    return f"{model.language.capitalize()} is heard less well without it."
+    are = "are" if len(model.beside) > 1 else "is"
+    return f"{model.language} {are} heard less well without it."
 
 
 # ── fetching one ─────────────────────────────────────────────────────────────────────────────

@@ -31,7 +31,7 @@ from nl2robot.errors import UserError
 from nl2robot.models import ModelError, find, need
 from nl2robot.speech.audio import RATE, Audio, Samples
 from nl2robot.speech.levels import Silence, gain_for
-from nl2robot.speech.second_ear import Evidence, SecondEar, larger_ear, second_ear
+from nl2robot.speech.second_ear import Evidence, SecondEar, second_ear
 from nl2robot.speech.vocabulary import spell_numbers
 from nl2robot.speech.vosk_decoder import READINGS, Decoder, Scored, helpers, scored
 
@@ -144,18 +144,10 @@ class _Grammar:
 class Recogniser:
     """A loaded speech model. May be used from several threads at once."""
 
-    def __init__(
-        self,
-        model: Path | None,
-        language: str,
-        second: SecondEar | None = None,
-        larger: SecondEar | None = None,
-    ) -> None:
+    def __init__(self, model: Path | None, language: str, second: SecondEar | None = None) -> None:
         """`model` is the folder of a vosk model, `second` judges what is heard with it, or hears
-        alone where there is none; `larger` hears what is in doubt then. Raises ModelError if the
-        model cannot be used."""
+        alone where there is none. Raises ModelError if the model cannot be used."""
         assert model or second
-        self.larger = larger
         self.language = language
         self.second = second
         self._grammars: dict[tuple[str, ...], _Grammar] = {}
@@ -381,11 +373,7 @@ class Decoding:
         if self._grammar is None:
             free = ear.free(sound)
             return replace(heard, text=free, words=heard.words if free == heard.text else ())
-        phrases, candidates = self._grammar.phrases, self._candidates()[:CANDIDATES]
-        opinion = ear.hear(sound, phrases, candidates)
-        if opinion.belief < LEAST_BELIEF and self._recogniser.larger is not None:
-            again = self._recogniser.larger.hear(sound, phrases, candidates)
-            opinion = max(opinion, again, key=lambda each: each.belief)
+        opinion = ear.hear(sound, self._grammar.phrases, self._candidates()[:CANDIDATES])
         readings = tuple(
             Reading(
                 each.written or each.text,
@@ -453,7 +441,6 @@ class _Unaided(Decoding):
         self, recogniser: Recogniser, grammar: _Grammar | None, worst_fit: float | None
     ) -> None:
         assert recogniser.second is not None
-        self._recogniser = recogniser
         self._ear = recogniser.second
         self._grammar = grammar
         self._worst_fit = worst_fit
@@ -494,14 +481,12 @@ class _Unaided(Decoding):
 def load(code: str) -> Recogniser:
     """The recogniser of an installed language, loaded once. Raises ModelError if not installed."""
     need(code)
-    return _loaded(find(code), code, second_ear(code), larger_ear(code))
+    return _loaded(find(code), code, second_ear(code))
 
 
 @lru_cache(maxsize=4)
-def _loaded(
-    model: Path | None, code: str, second: SecondEar | None, larger: SecondEar | None
-) -> Recogniser:
-    return Recogniser(model, code, second, larger)
+def _loaded(model: Path | None, code: str, second: SecondEar | None) -> Recogniser:
+    return Recogniser(model, code, second)
 
 
 def _heard(words: tuple[Word, ...], seconds: float) -> Heard:

@@ -84,11 +84,6 @@ class Opinion:
     free: str  # where anything may be said; empty for none
     readings: tuple[Judged, ...]  # the best first
 
-    @property
-    def belief(self) -> float:
-        """0..1, that the best one was said, if it makes sense."""
-        return self.readings[0].evidence.belief if self.readings else 0.0
-
 
 class SecondEar:
     """May be used from several threads at once."""
@@ -167,13 +162,6 @@ def second_ear(language: str) -> SecondEar | None:
     """The one of this language, loaded once; None if none is installed."""
     model = moonshine.load(language) or whisper.load(language)
     return _ear(model, language) if model else None
-
-
-def larger_ear(language: str) -> SecondEar | None:
-    """One that hears better than the second ear, and takes three times as long; None if there is
-    none, or the second ear is this one."""
-    larger = whisper.load(language) if moonshine.load(language) else None
-    return _ear(larger, language) if larger else None
 
 
 @cache

@@ -15,7 +15,6 @@ from nl2robot.speech import benchmark
 from nl2robot.speech.audio import RATE, Audio, read
 from nl2robot.speech.levels import gain_for
 from nl2robot.speech.recogniser import Heard, Reading, Recogniser, SpeechError, choose
-from nl2robot.speech.second_ear import Evidence, Judged, Opinion, SecondEar
 from tests.speech.conftest import RECORDED, SHOWN
 
 # A small ward's way of talking: more words than the recordings hold, and ones that sound alike.
@@ -47,33 +46,6 @@ def test_each_word_has_its_time_in_the_recording(recogniser: Recogniser) -> None
     assert starts == sorted(starts)
     assert all(0 <= word.start < word.end <= heard.seconds_of_audio for word in heard.words)
     assert heard.words[0].start == pytest.approx(0.3, abs=0.2)  # a quarter second of quiet first
-
-
-class Says(SecondEar):
-    """An ear that always hears the same, more or less surely."""
-
-    def __init__(self, text: str, unlikely: float) -> None:
-        evidence = Evidence(unlikely=unlikely, subwords=8, unexpected=1.0, agreed=False)
-        self.opinion = Opinion(text, (Judged(text, -unlikely, evidence),))
-        self.asked = 0
-
-    def hear(self, samples, phrases, candidates=()) -> Opinion:
-        self.asked += 1
-        return self.opinion
-
-
-def test_what_the_second_ear_doubts_is_heard_by_a_larger_one(recogniser: Recogniser) -> None:
-    sound = read(SHOWN / "pharmacy.wav")
-    sure, unsure = Says("go to the pharmacy", 1.0), Says("take two cups", 30.0)
-    heard = Recogniser(need("en"), "en", unsure, sure).recognise(sound, PHRASES)
-    assert (heard.text, heard.doubtful) == ("go to the pharmacy", False)
-    assert sure.asked == 1
-    heard = Recogniser(need("en"), "en", sure, unsure).recognise(sound, PHRASES)
-    assert heard.text == "go to the pharmacy"
-    assert unsure.asked == 1  # not again
-    worse = Says("take two cups too", 40.0)
-    heard = Recogniser(need("en"), "en", unsure, worse).recognise(sound, PHRASES)
-    assert (heard.text, heard.doubtful) == ("take two cups", True)
 
 
 def test_a_remark_to_a_colleague_is_doubtful_and_told_as_it_was(
