@@ -15,6 +15,7 @@ from typing import Any
 from nl2robot.knowledge import Knowledge
 from robot_api.driver import Capabilities
 from robot_api.methods import METHODS, Method
+from robot_api.schema import compiled, wrong_value
 from sandbox.check import Finding
 
 
@@ -112,17 +113,11 @@ the parameter, and the field of `Capabilities`."""
 
 
 def _values_out_of_range(method: Method, arguments: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    from jsonschema import Draft202012Validator
-
     for parameter in {p.name: p for form in method.forms for p in form}.values():
         if parameter.name in arguments:
-            validator = Draft202012Validator(parameter.kind.schema)
-            for error in validator.iter_errors(arguments[parameter.name]):
-                yield (
-                    "bad-value",
-                    f"{method.name} cannot take this {parameter.name}: {error.message}."
-                    f" It is {parameter.doc}.",
-                )
+            value = arguments[parameter.name]
+            if not compiled(parameter.kind.schema).is_valid(value):
+                yield "bad-value", wrong_value(method, parameter, value)
 
 
 def _joint_out_of_range(

@@ -129,9 +129,9 @@ def _read_value(method: Method, parameter: Parameter, value: Any) -> Any:
     if kind is PLACE_OR_LOCATION and not isinstance(value, str):
         return _read_location(method, parameter, value)
     if isinstance(value, float) and not math.isfinite(value):
-        raise InvalidCall(_wrong_value(method, parameter, value))
+        raise InvalidCall(wrong_value(method, parameter, value))
     if not _accepts(kind, value):
-        raise InvalidCall(_wrong_value(method, parameter, value))
+        raise InvalidCall(wrong_value(method, parameter, value))
     if isinstance(value, float) and kind.schema.get("type") == "integer":
         return int(value)
     return value
@@ -141,9 +141,9 @@ def _read_location(method: Method, parameter: Parameter, value: Any) -> Location
     try:
         location = msgspec.convert(value, Location, from_attributes=True)
     except msgspec.ValidationError:
-        raise InvalidCall(_wrong_value(method, parameter, value)) from None
+        raise InvalidCall(wrong_value(method, parameter, value)) from None
     if not all(math.isfinite(number) for number in (location.x, location.y, location.theta)):
-        raise InvalidCall(_wrong_value(method, parameter, value))
+        raise InvalidCall(wrong_value(method, parameter, value))
     return location
 
 
@@ -211,7 +211,8 @@ def _with_article(name: str) -> str:
     return f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
 
 
-def _wrong_value(method: Method, parameter: Parameter, value: Any) -> str:
+def wrong_value(method: Method, parameter: Parameter, value: Any) -> str:
+    """The sentence for a value that a parameter cannot have."""
     schema = parameter.kind.schema
     if isinstance(value, str) and len(value) > 200:
         got = f"a text of {len(value)} characters"
