@@ -62,6 +62,12 @@ def test_the_nearest_place_is_offered(world) -> None:
     assert "Did you mean pharmacy" in finding.message
 
 
+def test_a_value_that_cannot_be_is_told_with_what_can(world) -> None:
+    [finding] = violations("robot.goto(3)", Knowledge(world, ROBOT))
+    assert "must be a text of 1 to 200 characters or a location" in finding.message
+    assert "got 3" in finding.message
+
+
 def test_a_robot_without_arms_is_not_sent_to_fetch(world) -> None:
     armless = msgspec.structs.replace(
         ROBOT, methods=tuple(name for name in METHODS if name not in ("grab", "put", "give"))
