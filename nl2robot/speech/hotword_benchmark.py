@@ -139,10 +139,10 @@ class Stage:
 
     def noises(self, kind: str, hours: float) -> Iterator[Sound]:
         """Minutes of it, loud and soft."""
-        left = hours * 3600
+        left = int(hours * 3600)  # of a second's part there is no end: it has no whole samples
         while left > 0:
-            sound = self.noise(kind, min(60.0, left))
-            left -= len(sound) / RATE
+            sound = self.noise(kind, min(60, left))
+            left -= max(1, len(sound) // RATE)
             loudness = np.float32(self._rng.uniform(0.1, 1.0))
             yield Sound(scenes.audio(sound * loudness).samples)
 

@@ -80,6 +80,11 @@ def test_without_neural_voices_one_trains_and_measures_with_robotic_ones(
     assert 1.6 < said.end < len(said.samples) / RATE
 
 
+def test_noise_for_a_while_that_is_no_whole_number_of_samples_comes_to_an_end() -> None:
+    sounds = list(Stage(WORDS["en"], takes=1).noises("corridor", 2.00006 / 3600))
+    assert sum(len(sound.samples) for sound in sounds) == 2 * RATE
+
+
 @pytest.mark.parametrize("language", ["en", "de", "fr"])
 def test_nobody_says_the_words_by_chance(language: str) -> None:
     words = WORDS[language]
