@@ -12,8 +12,10 @@ Hearing
     answers      what may be answered to a question, and which answer was given
     replies      what somebody replied to the robot, at a microphone
     vocabulary   words that the speech model can never hear, and what to call them instead
-    digits       which digit a short sound is, by the sound alone; digits_training makes it
+    digits       which digit a short sound is, by the sound alone; digits_encoder: Moonshine's part
+                 in it; digits_training makes it, digits_speakers: who says them then
     hotword      "hey robot" and "stop", always; spotting: any other word; hotword_training
+                 makes them, of what hotword_voices and hotword_corpus say
                  hotword_judge: its second stage; hotword_limits: where that draws its line
 
 Speaking

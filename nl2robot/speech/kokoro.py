@@ -25,6 +25,7 @@ from nl2robot.speech.voices import Sound, VoiceError, never, phonemes, piecewise
 
 RATE: Final = 24_000
 _MOST: Final = 500  # sounds of a language that it takes at a time
+_NEAREST: Final = str.maketrans("ʏ", "y")  # for sounds that it does not know
 _SIZE: Final = 256  # numbers that tell how a speaker sounds, for each length of a text
 
 
@@ -56,7 +57,8 @@ class Kokoro:
         return piecewise(text, lambda piece: self._sound(piece, speed), stopped)
 
     def _sound(self, text: str, speed: float) -> Sound:
-        samples = self._model.spoken(phonemes(text, self._language), self._style, speed)
+        sounds = phonemes(text, self._language).translate(_NEAREST)
+        samples = self._model.spoken(sounds, self._style, speed)
         return Sound((np.clip(samples, -1, 1) * 32767).astype(np.int16), RATE)
 
 

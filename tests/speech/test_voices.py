@@ -13,9 +13,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nl2robot.speech import kokoro
 from nl2robot.speech import voices as module
 from nl2robot.speech.sentences import LONGEST, cleaned, pieces
-from nl2robot.speech.voices import VoiceError, espeak, joined, voice, voices
+from nl2robot.speech.voices import VoiceError, espeak, joined, phonemes, voice, voices
 
 LONG = "The night service is in the emergency room until six in the morning. " * 25
 
@@ -183,3 +184,17 @@ def test_a_stop_ends_the_work_within_a_tenth_of_a_second(monkeypatch) -> None:
 def test_who_stops_asking_stops_the_work() -> None:
     sounds = voice("en", "espeak").speak(LONG)
     assert next(sounds).seconds < 10
+
+
+def test_a_text_is_told_in_sounds_with_its_punctuation() -> None:
+    assert phonemes("Hey robot! Stop, please.", "en-us") == "hˈeɪ ɹˈoʊbɑːt! stˈɑːp, plˈiːz."
+    assert phonemes("", "de") == ""
+    with pytest.raises(VoiceError, match="does not speak 'elvish'"):
+        phonemes("mellon", "elvish")
+
+
+def test_without_kokoro_there_are_none_of_its_speakers() -> None:
+    kokoro._model.cache_clear()
+    assert kokoro.speakers() == []
+    with pytest.raises(VoiceError, match="nl2robot models get kokoro"):
+        kokoro.Kokoro("af_heart", "en-us")
