@@ -28,6 +28,7 @@ MAX_TEXT = 2000
 MAX_METRES = 1000.0
 MAX_PROBLEMS = 50
 MAX_DEPTH = 20
+TOO_DEEP = "Lists are nested too deep here. Look for a bracket too many."
 
 _LANGUAGE = re.compile(r"[a-z]{2}(-[A-Z]{2})?")
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -98,8 +99,11 @@ def compose(path: Path) -> Node:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         what = " ".join(part for part in (error.context, error.problem) if part)
+        line = mark.line + 1 if mark else None
+        if "nesting depth" in what:  # libyaml's own limit; it reads ahead of `_build`
+            raise Hopeless(line, TOO_DEEP) from None
         raise Hopeless(
-            mark.line + 1 if mark else None,
+            line,
             f"This is not valid YAML: {what}. Look at the indentation, colons, quotes and "
             "brackets here and on the line before.",
         ) from None
@@ -129,9 +133,7 @@ def _build(events: Iterable[Any]) -> Node | None:
             if isinstance(event, yaml.CollectionStartEvent):
                 around.append((node, []))
                 if len(around) > MAX_DEPTH:
-                    raise Hopeless(
-                        line, "Lists are nested too deep here. Look for a bracket too many."
-                    )
+                    raise Hopeless(line, TOO_DEEP)
                 continue
         elif isinstance(event, yaml.CollectionEndEvent):
             node, items = around.pop()
