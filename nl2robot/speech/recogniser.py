@@ -147,16 +147,17 @@ class Recogniser:
     def __init__(self, model: Path | None, language: str, second: SecondEar | None = None) -> None:
         """`model` is the folder of a vosk model, `second` judges what is heard with it, or hears
         alone where there is none. Raises ModelError if the model cannot be used."""
-        assert model or second
         self.language = language
         self.second = second
         self._grammars: dict[tuple[str, ...], _Grammar] = {}
         self._idle: dict[tuple[_Grammar | None, int], list[Decoder]] = {}
         self._lock = threading.Lock()
         self._unusable = ModelError(
-            f"The speech model in {model} cannot be used. "
+            f"The speech model {f'in {model} ' if model else ''}cannot be used. "
             f"Run `nl2robot models get {language} --again` to fetch it again."
         )
+        if model is None and second is None:  # there is one, but it is damaged
+            raise self._unusable
         try:
             self._model = vosk.Model(str(model)) if model else None
         except Exception as error:  # vosk raises nothing more precise

@@ -20,7 +20,7 @@ from nl2robot.speech.answers import expect, hear_answer
 from nl2robot.speech.audio import RATE, Audio, read
 from nl2robot.speech.byte_pairs import BytePairs
 from nl2robot.speech.log_mel import BANDS, log_mel
-from nl2robot.speech.recogniser import LEAST_BELIEF, Recogniser
+from nl2robot.speech.recogniser import LEAST_BELIEF, Recogniser, load
 from nl2robot.speech.second_ear import SecondEar
 from nl2robot.speech.spotting import Spotter
 from nl2robot.speech.whisper import Whisper
@@ -202,6 +202,17 @@ def test_what_is_said_in_german_or_french_becomes_a_program(
     program = ear.translate(heard).program
     assert program is not None
     assert program.startswith('robot.goto("pharmacy")\nrobot.say(')
+
+
+def test_a_language_whose_only_model_is_damaged_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NL2ROBOT_MODELS", str(tmp_path))
+    (tmp_path / "whisper").mkdir()
+    for name in ("model.bin", "config.json", "tokenizer.json", "vocabulary.txt"):
+        (tmp_path / "whisper" / name).write_bytes(b"nothing")
+    with pytest.raises(ModelError, match="nl2robot models get de --again"):
+        load("de")
 
 
 def test_a_model_that_is_no_model_is_told(tmp_path: Path, whisper_model: Path) -> None:
