@@ -528,8 +528,9 @@ def test_stop_cried_on_any_page_stops_the_program(says, listening) -> None:
         run = operator.run(operator.approve(operator.check("robot.wait(100)\n")))
         hold(page)
         assert operator.wait(run).state == "stopped"
+        # Looked for first: it fades.
+        expect(page.get_by_role("alert")).to_contain_text(WORDS["stopped"].split("{")[0])
         expect(button(page)).to_have_attribute("data-state", "listening")  # still held
-    expect(page.get_by_role("alert")).to_contain_text(WORDS["stopped"].split("{")[0])
 
 
 def test_a_command_said_on_another_page_is_taken_to_the_desk(says, listening) -> None:

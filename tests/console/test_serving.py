@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
+from threading import Event
 
 from playwright.sync_api import Page, expect
 
 from nl2robot.console.reference import reference
-from tests.console.conftest import Look, Served, serving
+from tests.console.conftest import SOON, Look, Served, serving
 from tests.console.test_desk import approve, say
 
 
 def test_stop_is_on_the_page_and_reaches_the_robot(page: Page, served: Served) -> None:
     with served.robot() as robot:
-        heard: list[str] = []
-        robot.subscribe(["stopped"], lambda kind, data: heard.append(kind))
+        stopped = Event()
+        robot.subscribe(["stopped"], lambda kind, data: stopped.set())
         page.get_by_role("button", name="STOP").click()
         expect(page.get_by_role("alert")).to_have_text("The robot was stopped.")
-    assert heard
+        assert stopped.wait(SOON / 1000)
 
 
 def test_the_console_speaks_the_language_of_the_browser(look: Look) -> None:
