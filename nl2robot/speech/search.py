@@ -22,6 +22,7 @@ from nl2robot.speech.expectation import Expectation
 
 WIDTH: Final = 6  # texts that are followed side by side
 EXPECTED: Final = 0.25  # weight of what is likely to be said next to the sound
+FAR: Final = 10.0  # behind the best subword (log probability)
 HOPELESS: Final = 2.0  # a text that is so far behind a finished one (log likelihood) will not win
 _LONGEST_ROUND: Final = 8  # subwords
 PUNCTUATION: Final = ".?!,"
@@ -191,5 +192,9 @@ def _best(
     scores = sounds
     if expectation is not None:
         scores = sounds + EXPECTED * expectation.after(numbers)
-    best = np.argpartition(-scores, width + 1)[: width + 1]
+    # Almost all are far behind; to sort those out first takes a tenth of the time.
+    near = np.flatnonzero(scores > scores.max() - FAR)
+    if len(near) <= width:
+        near = np.arange(len(scores))
+    best = near[np.argpartition(-scores[near], width)[: width + 1]]
     return [(int(number), float(scores[number])) for number in best]

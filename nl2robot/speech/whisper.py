@@ -28,6 +28,7 @@ from nl2robot.speech.byte_pairs import BytePairs
 from nl2robot.speech.ct2_file import read
 from nl2robot.speech.expectation import Expectation
 from nl2robot.speech.log_mel import log_mel
+from nl2robot.speech.quantized import Floats, Product
 from nl2robot.speech.search import WIDTH, Sound, Text
 
 _log = logging.getLogger(__name__)
@@ -37,8 +38,6 @@ _MORE: Final = 8  # than that, whatever the length
 SHORTEST: Final = 8.0
 """Seconds of sound, or silence, that it is given at least. It was trained on half a minute always;
 of much less it writes what was not said, and a whole one takes four times as long."""
-
-Floats = NDArray[np.float32]
 
 
 class Whisper:
@@ -189,7 +188,8 @@ class _Decoder:
             if name.startswith("decoder/") and value.ndim
         }
         self._heads = int(values["decoder/num_heads"])
-        self._embeddings = own["embeddings/weight"]
+        self._embeddings = own["embeddings/weight"].astype(np.float16)  # as they lie in the file
+        self._project = Product(own["embeddings/weight"].T)
         self._positions = own["position_encodings/encodings"]
         self._norm = _Norm(own, "layer_norm")
         count = len({name.split("/")[0] for name in own if name.startswith("layer_")})
@@ -210,16 +210,14 @@ class _Decoder:
         """Of every subword after each of these, before they are made probabilities."""
         start = memory.length if memory else 0
         count = numbers.shape[1]
-        x = self._embeddings[numbers] + self._positions[start : start + count]
+        known = self._embeddings[numbers].astype(np.float32)
+        x = known + self._positions[start : start + count]
         unseen = np.triu(np.full((count, start + count), -np.inf, np.float32), start + 1)
         after = []
         for n, layer in enumerate(self._layers):
             x, kept = layer(x, sound[n], memory.layers[n] if memory else None, unseen)
             after.append(kept)
-        rows = self._norm(x).reshape(-1, x.shape[-1])
-        # This way round numpy needs half the time.
-        scores = (self._embeddings @ rows.T).T.reshape(*numbers.shape, -1)
-        return scores, _Memory(after)
+        return self._project(self._norm(x)), _Memory(after)
 
 
 class _Norm:
@@ -232,28 +230,23 @@ class _Norm:
         return np.asarray(x / spread * self._gamma + self._beta, np.float32)
 
 
-class _Linear:
-    def __init__(self, own: Mapping[str, Floats], name: str) -> None:
-        self._weight = own[f"{name}/weight"].T
-        self._bias = own[f"{name}/bias"]
-
-    def __call__(self, x: Floats) -> Floats:
-        return x @ self._weight + self._bias
+def _linear(own: Mapping[str, Floats], name: str) -> Product:
+    return Product(own[f"{name}/weight"].T, own[f"{name}/bias"])
 
 
 class _Layer:
     def __init__(self, own: Mapping[str, Floats], name: str, heads: int) -> None:
         self._heads = heads
         self._own_norm = _Norm(own, f"{name}/self_attention/layer_norm")
-        self._own_in = _Linear(own, f"{name}/self_attention/linear_0")
-        self._own_out = _Linear(own, f"{name}/self_attention/linear_1")
+        self._own_in = _linear(own, f"{name}/self_attention/linear_0")
+        self._own_out = _linear(own, f"{name}/self_attention/linear_1")
         self._sound_norm = _Norm(own, f"{name}/attention/layer_norm")
-        self._asked = _Linear(own, f"{name}/attention/linear_0")
-        self._offered = _Linear(own, f"{name}/attention/linear_1")
-        self._sound_out = _Linear(own, f"{name}/attention/linear_2")
+        self._asked = _linear(own, f"{name}/attention/linear_0")
+        self._offered = _linear(own, f"{name}/attention/linear_1")
+        self._sound_out = _linear(own, f"{name}/attention/linear_2")
         self._last_norm = _Norm(own, f"{name}/ffn/layer_norm")
-        self._wide = _Linear(own, f"{name}/ffn/linear_0")
-        self._narrow = _Linear(own, f"{name}/ffn/linear_1")
+        self._wide = _linear(own, f"{name}/ffn/linear_0")
+        self._narrow = _linear(own, f"{name}/ffn/linear_1")
 
     def of_sound(self, encoded: Floats) -> tuple[Floats, Floats]:
         keys, values = np.split(self._offered(encoded), 2, axis=-1)
