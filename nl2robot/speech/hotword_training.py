@@ -2,6 +2,7 @@
 
     --lang en            the words of a language (default: of all)
     --word "hey pepper"  one word of your own, into your data folder
+    --absent FOLDER      recordings of people who do not say the words: of your ward, say
     --seed 0             the same seed, the same heads; several: as many heads, joined to one
 
 Needs the voices (`pip install 'nl2robot[voices]'`), one core and some minutes a word. Nothing but
@@ -14,6 +15,7 @@ import argparse
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
+from itertools import chain, islice
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, Final
@@ -23,7 +25,7 @@ from numpy.typing import NDArray
 
 from nl2robot.paths import data_file, made
 from nl2robot.speech import scenes
-from nl2robot.speech.audio import RATE
+from nl2robot.speech.audio import RATE, read
 from nl2robot.speech.embeddings import SIZE, STEP_SECONDS, Embeddings, embed
 from nl2robot.speech.hotword_corpus import (
     Places,
@@ -36,7 +38,7 @@ from nl2robot.speech.hotword_corpus import (
     words_of,
 )
 from nl2robot.speech.hotword_head import SHIPPED, Head, forward, probability
-from nl2robot.speech.hotword_voices import Half
+from nl2robot.speech.hotword_voices import Half, trimmed
 from nl2robot.speech.hotword_words import WORDS
 from nl2robot.speech.scenes import Signal
 
@@ -46,6 +48,8 @@ TALK: Final = 40  # minutes without any of the words, in each language
 BABBLE: Final = 40  # minutes, with the people of each language
 NEAR: Final = 16  # minutes, with what sounds like a word
 NEAR_SAID: Final = 40  # of it in neural voices
+ABSENT: Final = 2  # times that recordings without the words are heard, each time elsewhere
+PIECE: Final = 20  # seconds of them at a time
 HIDDEN: Final = 48
 EPOCHS: Final = 14
 FITS: Final = 3  # from other beginnings, joined to one head
@@ -63,6 +67,7 @@ STOP_WINDOW: Final = 0.24
 HOT_THRESHOLD: Final = 0.8
 STOP_THRESHOLD: Final = 0.5
 PROCESSES: Final = 2
+RECORDINGS: Final = (".wav", ".ogg", ".flac", ".mp3", ".webm")
 BLURRED: Final = (-0.3, 0.8)
 NARROW: Final = 0.12
 CLIPPED: Final = 0.06
@@ -262,6 +267,32 @@ def everything() -> frozenset[str]:
 _corpora: Final[dict[str, tuple[Places, Examples]]] = {}
 
 
+def recorded(folder: Path) -> list[Signal]:
+    """All recordings of a folder and those in it, equally loud, in pieces. Raises AudioError for
+    one that cannot be read."""
+    files = sorted(file for file in folder.rglob("*") if file.suffix.lower() in RECORDINGS)
+    sounds = (trimmed(scenes.signal(read(file))) for file in files)
+    pieces = (
+        sound[at : at + PIECE * RATE]
+        for sound in sounds
+        for at in range(0, len(sound), PIECE * RATE)
+    )
+    return [piece / max(scenes.level(piece), 1e-6) * np.float32(0.1) for piece in pieces]
+
+
+def absent(recordings: Sequence[Signal], where: Places, rng: np.random.Generator) -> Examples:
+    """People who do not say the words, in other places than where they were recorded."""
+    collector = Collector()
+    for _ in range(ABSENT):
+        order = iter([recordings[i] for i in rng.permutation(len(recordings))])
+        while sounds := list(islice(order, int(rng.integers(4, 12)))):
+            pauses = (silence(float(rng.exponential(0.35))) for _ in sounds)
+            spoken = chain.from_iterable(zip(sounds, pauses, strict=False))
+            lead = silence(_LONGEST * STEP_SECONDS)
+            collector.add(somewhere(np.concatenate([lead, *spoken]), where, rng))
+    return collector.examples()
+
+
 @dataclass(frozen=True)
 class Task:
     """A head to be trained."""
@@ -271,6 +302,8 @@ class Task:
     stop: bool
     near: tuple[str, ...]
     folder: Path
+    recordings: Path | None = None
+    """A folder of recordings of people who do not say the word."""
 
     def examples(self, seed: int) -> Examples:
         rng = seeded(seed, self.language, self.word)
@@ -291,6 +324,8 @@ class Task:
             return alike() if rng.random() < 0.7 else where.remark()
 
         close = talking(said, where, NEAR, rng).examples()
+        if self.recordings:
+            close = both(close, absent(recorded(self.recordings), where, rng))
         return both(both(collector.examples(), close), talked)
 
     def done(self, seed: int) -> Head:
@@ -345,6 +380,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument(
         "--seed", type=int, nargs="+", default=[0], help="several: as many heads, joined to one"
     )
+    parser.add_argument("--absent", type=Path, metavar="FOLDER", help="recordings without the word")
     options = parser.parse_args(arguments)
     code = options.lang or "en"
     todo = [task for each in WORDS for task in tasks(each)]
@@ -352,6 +388,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if options.word:
         near = tuple(options.word.split()) if " " in options.word.strip() else ()
         todo = [Task(code, options.word, False, near, data_file("hotwords") / code)]
+    todo = [replace(task, recordings=options.absent) for task in todo]
     rounds = [trained(todo, seed) for seed in options.seed]
     for task, *heads in zip(todo, *rounds, strict=True):
         print(joined(heads).save(made(task.folder)))

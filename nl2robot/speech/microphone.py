@@ -150,7 +150,7 @@ def _opened(name: str | None, backends: list[Backend]) -> CaptureDevice:
     if not there:
         raise AudioError(
             "There is no microphone on this computer. "
-            "Plug one in, or use a recording: nl2robot listen --wav FILE."
+            "Plug one in, use a recording (nl2robot listen --wav FILE), or type (nl2robot chat)."
         )
     chosen = _named(name, there) if name is not None else None
     try:

@@ -7,15 +7,17 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
+import soundfile
 
 from nl2robot.speech import hotword_voices
-from nl2robot.speech.audio import RATE
+from nl2robot.speech.audio import RATE, AudioError
 from nl2robot.speech.hotword_benchmark import Stage, all_said
-from nl2robot.speech.hotword_corpus import Speech, seeded, words_of
+from nl2robot.speech.hotword_corpus import Places, Speech, seeded, words_of
 from nl2robot.speech.hotword_head import Head
-from nl2robot.speech.hotword_training import joined, microphone
+from nl2robot.speech.hotword_training import absent, joined, microphone, recorded
 from nl2robot.speech.hotword_voices import ROBOTIC, UNSEEN, Cast, Half
 from nl2robot.speech.hotword_words import WORDS
+from nl2robot.speech.scenes import level
 from nl2robot.speech.voices import Sound
 
 LIVELY = [
@@ -120,3 +122,27 @@ def test_a_microphone_is_near_or_far_and_never_louder_than_full_scale() -> None:
     assert max(peaks) <= 1
     assert min(peaks) < 0.05
     assert len(microphone(tone, rng)) == len(tone)
+
+
+def test_recordings_of_a_ward_teach_what_is_not_the_word(tmp_path: Path) -> None:
+    rng = seeded(0, "ward")
+    for name, seconds in (("night.wav", 45), ("visits/day.flac", 3)):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        talk = rng.normal(0, 0.02, seconds * RATE)
+        soundfile.write(tmp_path / name, talk, RATE)
+    (tmp_path / "notes.txt").write_text("Recorded on ward 4.")
+    pieces = recorded(tmp_path)
+    assert [round(len(piece) / RATE) for piece in pieces] == [20, 20, 5, 3]
+    assert [level(piece) for piece in pieces] == pytest.approx([0.1] * 4, rel=0.01)
+    noise = rng.normal(0, 0.1, 60 * RATE).astype(np.float32)
+    where = Places({"babble": [noise], "corridor": [noise], "noise": [noise]}, [], rng)
+    examples = absent(pieces, where, rng)
+    assert not examples.labels.any()
+    # All of it twice, in steps of 80 ms.
+    assert len(examples.ends) == pytest.approx(2 * 48 / 0.08, rel=0.15)
+
+
+def test_a_recording_that_cannot_be_read_is_told(tmp_path: Path) -> None:
+    (tmp_path / "broken.wav").write_bytes(b"RIFF")
+    with pytest.raises(AudioError, match=r"broken\.wav"):
+        recorded(tmp_path)

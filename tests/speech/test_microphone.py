@@ -118,7 +118,7 @@ def test_without_a_sound_card_it_is_said_that_there_is_none(
     fallen_back = SimpleNamespace(backend="Null", get_captures=lambda: [{"name": "Null"}])
     monkeypatch.setattr(miniaudio, "Devices", lambda _backends: fallen_back)
     assert devices() == []
-    with pytest.raises(AudioError, match=r"no microphone on this computer. Plug one in, or"):
+    with pytest.raises(AudioError, match=r"no microphone on this computer. Plug one in, use a"):
         Microphone()
 
 
