@@ -5,8 +5,8 @@
     --absent FOLDER      recordings of people who do not say the words: of your ward, say
     --seed 0             the same seed, the same heads; several: as many heads, joined to one
 
-Needs the voices (`pip install 'nl2robot[voices]'`), one core and some minutes a word. Nothing but
-numpy learns here: the embeddings are frozen, and a head is small.
+Needs the voices (`pip install 'nl2robot[voices]'`), and half an hour of two cores a
+word. Nothing but numpy learns here: the embeddings are frozen, and a head is small.
 """
 
 from __future__ import annotations
@@ -42,15 +42,16 @@ from nl2robot.speech.hotword_voices import Half, trimmed
 from nl2robot.speech.hotword_words import WORDS
 from nl2robot.speech.scenes import Signal
 
-SCENES: Final = 1400  # in which a word is said
-SAYINGS: Final = 70  # of it in neural voices, each higher and lower in many scenes
-TALK: Final = 40  # minutes without any of the words, in each language
-BABBLE: Final = 40  # minutes, with the people of each language
-NEAR: Final = 16  # minutes, with what sounds like a word
-NEAR_SAID: Final = 40  # of it in neural voices
+SCENES: Final = 3000  # in which a word is said
+SAYINGS: Final = 240  # of it in neural voices, each higher and lower in many scenes
+REMARKS: Final = 120  # in neural voices, of which talk and babble are made
+TALK: Final = 60  # minutes without any of the words, in each language
+BABBLE: Final = 80  # minutes, with the people of each language
+NEAR: Final = 30  # minutes, with what sounds like a word
+NEAR_SAID: Final = 120  # of it in neural voices
 ABSENT: Final = 2  # times that recordings without the words are heard, each time elsewhere
 PIECE: Final = 20  # seconds of them at a time
-HIDDEN: Final = 48
+HIDDEN: Final = 64
 EPOCHS: Final = 14
 FITS: Final = 3  # from other beginnings, joined to one head
 BATCH: Final = 1024
@@ -252,7 +253,8 @@ def both(first: Examples, second: Examples) -> Examples:
 
 def _corpus(code: str, seed: int) -> tuple[Places, Examples]:
     """What every head learns not to be its word, in one language."""
-    speech = Speech(code, Half.TRAINING, seeded(seed, code, "corpus"), everything())
+    rng = seeded(seed, code, "corpus")
+    speech = Speech(code, Half.TRAINING, rng, everything(), REMARKS)
     where = places([speech], speech.rng)
     talked = talking(speech.talked, where, TALK, speech.rng).examples()
     return where, both(talked, noises(where, BABBLE, speech.rng).examples())

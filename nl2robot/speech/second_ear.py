@@ -16,6 +16,7 @@ from __future__ import annotations
 import re
 import threading
 from collections.abc import Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from math import exp
@@ -102,8 +103,10 @@ class SecondEar:
         with self._lock:
             expected = self._expected(tuple(phrases))
         sound = self._listened(samples)
-        free = sound.texts(width=1)[0]
-        own = sound.texts(expected.sentences)[:CANDIDATES]
+        with ThreadPoolExecutor(1) as beside:  # on another core, if there is one
+            freely = beside.submit(sound.texts, width=1)
+            own = sound.texts(expected.sentences)[:CANDIDATES]
+            free = freely.result()[0]
         likelihoods = {text.text: text.likelihood for text in [free, *own] if text.text}
         others = [expected.words.written(text) for text in candidates]
         agreed = {self._plain(text, expected.words) for text in others}
