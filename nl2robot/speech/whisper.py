@@ -13,6 +13,7 @@ from __future__ import annotations
 import json
 import logging
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -183,18 +184,20 @@ class _Decoder:
 
     def __init__(self, values: Mapping[str, NDArray[Any]]) -> None:
         own = {
-            name.removeprefix("decoder/"): np.ascontiguousarray(value, np.float32)
+            name.removeprefix("decoder/"): value if value.ndim > 1 else value.astype(np.float32)
             for name, value in values.items()
             if name.startswith("decoder/") and value.ndim
         }
         self._heads = int(values["decoder/num_heads"])
-        self._embeddings = own["embeddings/weight"].astype(np.float16)  # as they lie in the file
-        self._project = Product(own["embeddings/weight"].T)
-        self._positions = own["position_encodings/encodings"]
+        self._embeddings = own["embeddings/weight"].copy()  # without it the whole file would stay
+        self._project = Product(self._embeddings)
+        self._positions = own["position_encodings/encodings"].astype(np.float32)
         self._norm = _Norm(own, "layer_norm")
         count = len({name.split("/")[0] for name in own if name.startswith("layer_")})
         count -= "layer_norm" in {name.split("/")[0] for name in own}
-        self._layers = [_Layer(own, f"layer_{n}", self._heads) for n in range(count)]
+        with ThreadPoolExecutor() as builders:  # of these, two take half the time of one
+            layers = [builders.submit(_Layer, own, f"layer_{n}", self._heads) for n in range(count)]
+            self._layers = [layer.result() for layer in layers]
 
     @property
     def size(self) -> int:
@@ -221,7 +224,7 @@ class _Decoder:
 
 
 class _Norm:
-    def __init__(self, own: Mapping[str, Floats], name: str) -> None:
+    def __init__(self, own: Mapping[str, NDArray[Any]], name: str) -> None:
         self._gamma, self._beta = own[f"{name}/gamma"], own[f"{name}/beta"]
 
     def __call__(self, x: Floats) -> Floats:
@@ -230,12 +233,12 @@ class _Norm:
         return np.asarray(x / spread * self._gamma + self._beta, np.float32)
 
 
-def _linear(own: Mapping[str, Floats], name: str) -> Product:
-    return Product(own[f"{name}/weight"].T, own[f"{name}/bias"])
+def _linear(own: Mapping[str, NDArray[Any]], name: str) -> Product:
+    return Product(own[f"{name}/weight"], own[f"{name}/bias"])
 
 
 class _Layer:
-    def __init__(self, own: Mapping[str, Floats], name: str, heads: int) -> None:
+    def __init__(self, own: Mapping[str, NDArray[Any]], name: str, heads: int) -> None:
         self._heads = heads
         self._own_norm = _Norm(own, f"{name}/self_attention/layer_norm")
         self._own_in = _linear(own, f"{name}/self_attention/linear_0")
