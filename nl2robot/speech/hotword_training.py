@@ -23,6 +23,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from nl2robot.errors import UserError
 from nl2robot.paths import data_file, made
 from nl2robot.speech import scenes
 from nl2robot.speech.audio import RATE, read
@@ -266,7 +267,9 @@ def everything() -> frozenset[str]:
     return frozenset(part for word in said for part in words_of(word))
 
 
+# What all heads share, and the processes that train them inherit.
 _corpora: Final[dict[str, tuple[Places, Examples]]] = {}
+_recordings: Final[list[Signal]] = []  # in which nobody says the words
 
 
 def recorded(folder: Path) -> list[Signal]:
@@ -289,7 +292,7 @@ def absent(recordings: Sequence[Signal], where: Places, rng: np.random.Generator
         order = iter([recordings[i] for i in rng.permutation(len(recordings))])
         while sounds := list(islice(order, int(rng.integers(4, 12)))):
             pauses = (silence(float(rng.exponential(0.35))) for _ in sounds)
-            spoken = chain.from_iterable(zip(sounds, pauses, strict=False))
+            spoken = chain.from_iterable(zip(sounds, pauses, strict=True))
             lead = silence(_LONGEST * STEP_SECONDS)
             collector.add(somewhere(np.concatenate([lead, *spoken]), where, rng))
     return collector.examples()
@@ -304,8 +307,6 @@ class Task:
     stop: bool
     near: tuple[str, ...]
     folder: Path
-    recordings: Path | None = None
-    """A folder of recordings of people who do not say the word."""
 
     def examples(self, seed: int) -> Examples:
         rng = seeded(seed, self.language, self.word)
@@ -326,8 +327,8 @@ class Task:
             return alike() if rng.random() < 0.7 else where.remark()
 
         close = talking(said, where, NEAR, rng).examples()
-        if self.recordings:
-            close = both(close, absent(recorded(self.recordings), where, rng))
+        if _recordings:
+            close = both(close, absent(_recordings, where, rng))
         return both(both(collector.examples(), close), talked)
 
     def done(self, seed: int) -> Head:
@@ -375,6 +376,18 @@ def joined(heads: Sequence[Head]) -> Head:
     return replace(heads[0], weights=weights)
 
 
+def _read_or_exit(folder: Path) -> list[Signal]:
+    try:
+        found = recorded(folder)
+    except UserError as error:
+        raise SystemExit(str(error)) from error
+    if not found:
+        raise SystemExit(
+            f"There is no recording in {folder}. Give a folder of {', '.join(RECORDINGS)} files."
+        )
+    return found
+
+
 def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description="Train the heads of hot words.")
     parser.add_argument("--lang", choices=sorted(WORDS), help="of one language (default: all)")
@@ -390,7 +403,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if options.word:
         near = tuple(options.word.split()) if " " in options.word.strip() else ()
         todo = [Task(code, options.word, False, near, data_file("hotwords") / code)]
-    todo = [replace(task, recordings=options.absent) for task in todo]
+    if options.absent:  # now, for what cannot be read should not be told after half an hour
+        _recordings.extend(_read_or_exit(options.absent))
     rounds = [trained(todo, seed) for seed in options.seed]
     for task, *heads in zip(todo, *rounds, strict=True):
         print(joined(heads).save(made(task.folder)))

@@ -10,14 +10,14 @@ call alike. onnxruntime computes it.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float32]
 
-_MIDDLE = 128
+_MIDDLE: Final = 128
 """What stands for zero. Weights of a byte without a sign: with one, processors that have no
 instruction for such products (VNNI) may overflow."""
 

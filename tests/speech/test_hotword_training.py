@@ -14,7 +14,7 @@ from nl2robot.speech.audio import RATE, AudioError
 from nl2robot.speech.hotword_benchmark import Stage, all_said
 from nl2robot.speech.hotword_corpus import Places, Speech, seeded, words_of
 from nl2robot.speech.hotword_head import Head
-from nl2robot.speech.hotword_training import absent, joined, microphone, recorded
+from nl2robot.speech.hotword_training import absent, joined, main, microphone, recorded
 from nl2robot.speech.hotword_voices import ROBOTIC, UNSEEN, Cast, Half
 from nl2robot.speech.hotword_words import WORDS
 from nl2robot.speech.scenes import level
@@ -146,3 +146,14 @@ def test_a_recording_that_cannot_be_read_is_told(tmp_path: Path) -> None:
     (tmp_path / "broken.wav").write_bytes(b"RIFF")
     with pytest.raises(AudioError, match=r"broken\.wav"):
         recorded(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("file", "told"), [("broken.wav", "broken.wav"), ("notes.txt", "There is no recording in")]
+)
+def test_what_cannot_be_learned_from_is_told_before_half_an_hour_of_work(
+    tmp_path: Path, file: str, told: str
+) -> None:
+    (tmp_path / file).write_bytes(b"RIFF")
+    with pytest.raises(SystemExit, match=told):
+        main(["--lang", "en", "--absent", str(tmp_path)])
