@@ -110,7 +110,7 @@ class Model(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     sources: tuple[Source, ...]
     engine: Engine = "vosk"
     beside: tuple[str, ...] = ()  # the codes of the models that this one is fetched after
-    alone: bool = False  # whether these languages can be heard with this one only
+    alone: tuple[str, ...] = ()  # those of them that can be heard with this one only
     called: str = ""  # what people are told that it is, where that is not plain
 
     @property

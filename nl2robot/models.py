@@ -110,7 +110,9 @@ def need(code: str) -> Path:
 
 def _alone(code: str, registry: Registry) -> Path | None:
     """The model with which alone this language can be heard, if one is installed."""
-    found = (find(other, registry) for other, model in _beside(code, registry) if model.alone)
+    found = (
+        find(other, registry) for other, model in _beside(code, registry) if code in model.alone
+    )
     return next(filter(None, found), None)
 
 
@@ -286,7 +288,7 @@ def get(
     try:
         path = _get_one(code, progress, registry, again)
     except ModelError as error:
-        if not any(model.alone for _, model in _beside(code, registry)):
+        if not any(code in model.alone for _, model in _beside(code, registry)):
             raise
         missing = error
     for other, model in _beside(code, registry):

@@ -42,10 +42,10 @@ def _list(as_json: bool) -> int:
     if as_json:
         print(json.dumps([models.as_json(model) for model in listed], ensure_ascii=False))
         return ExitStatus.OK
+    width = max(len(model.language) for model in listed)
     for model in listed:
-        print(
-            f"{model.code:<12}  {model.language:<18} {model.state:<10} {model.megabytes:>5.0f} MB"
-        )
+        named = f"{model.code:<12}  {model.language:<{width}}"
+        print(f"{named} {model.state:<10} {model.megabytes:>5.0f} MB")
         if model.state != "installed":
             print(f"    nl2robot models get {model.code}")
     return ExitStatus.OK

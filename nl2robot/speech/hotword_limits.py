@@ -28,15 +28,16 @@ SEED: Final = 11  # that no head was trained with
 SNRS: Final = (None, 10, 5)
 KINDS: Final = ("babble", "talk", "corridor with talk")
 PIECE: Final = 10  # seconds, in which one false alarm at most is counted
-LIMITS: Final = range(-18, 3)
+LIMITS: Final = range(-45, 3)
+LOWEST: Final = -1000.0
 
 
 class Noting(Judge):
     """A second stage that accepts nothing, and notes by how much it would have."""
 
     def __init__(self, judge: Judge) -> None:
-        self._judge = judge
-        self.floor, self.samples, self.limit = judge.floor, judge.samples, judge.limit
+        self._judge = judge.limited(LOWEST)  # far below, so that every model is asked
+        self.floor, self.samples, self.limit = judge.floor, judge.samples, LOWEST
         self.most = -np.inf
 
     def verdict(self, samples: Samples, score: float) -> float:
@@ -48,7 +49,7 @@ def strongest(head: Head, judge: Judge, smooth: int, sound: Sound) -> float:
     """The limit from which on nothing is heard in this sound."""
     noting = Noting(judge)
     Heads([head], [noting], smooth=smooth).hear(sound.embeddings, sound.samples)
-    return noting.most + judge.limit
+    return noting.most + noting.limit
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

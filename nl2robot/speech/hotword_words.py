@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Final
+from typing import Final, Literal
 
 import msgspec
 import yaml
@@ -11,23 +11,38 @@ import yaml
 _FILE: Final = Path(__file__).parents[1] / "data" / "hotwords.yaml"
 
 
+class Opinion(msgspec.Struct, frozen=True):
+    """How one speech model judges a word."""
+
+    by: Literal["moonshine", "whisper"]
+    seconds: float
+    """Of sound up to now in which it looks for the word."""
+    weight: float
+    """Of the log likelihood of the word, beside the log odds of the head's score."""
+    contrast: float = 0.0
+    """Of how much likelier (in logs) it is than the likeliest rival."""
+
+
+class Way(msgspec.Struct, frozen=True):
+    """Who judges, and where the line is."""
+
+    floor: float
+    """Scores of the head from which on they are asked."""
+    limit: float
+    """Of the sum of all: above it the word was said."""
+    opinions: tuple[Opinion, ...]
+    """The quickest first."""
+
+
 class Judged(msgspec.Struct, frozen=True):
-    """How the second stage judges a word."""
+    """How a second stage judges a word."""
 
     written: tuple[str, ...]
-    """The ways in which the second speech model writes it."""
+    """The ways in which speech models write it."""
     rivals: tuple[str, ...]
     """What it is easily taken for, written as well."""
-    seconds: float
-    """Of sound up to now in which it is looked for."""
-    floor: float
-    """Scores of the head from which on it is."""
-    weight: float
-    """Of the log likelihood, beside the log odds of the head's score."""
-    contrast: float
-    """Of how much likelier (in logs) it is than the likeliest rival."""
-    limit: float
-    """Of their sum: above it the word was said."""
+    ways: tuple[Way, ...]
+    """The first is taken whose speech models are all installed."""
 
 
 class Words(msgspec.Struct, frozen=True):

@@ -43,14 +43,15 @@ class Manner:
     before: float = 0.35
     """What is kept of the sound before the speech: its first consonant may not be voiced."""
     after: float = 0.3
-    """What is kept of the sound after it."""
+    """What is kept of the sound after it; then the decoder is asked what it was, in case that the
+    speech has ended."""
     longest: float = 30.0
     """Of one utterance; no command is longer, but a television is."""
     patience: float | None = None
     """Without speech, after which that is an event; None: never."""
 
 
-COMMANDS: Final = Manner()
+COMMANDS: Final = Manner(after=0.2)
 HELD: Final = Manner(pause=10.0)
 """While somebody holds a button: what they say until they let go is one command, however long they
 think in between."""

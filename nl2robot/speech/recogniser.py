@@ -19,7 +19,8 @@ from __future__ import annotations
 import json
 import threading
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -226,6 +227,8 @@ class Recogniser:
         tells it from sound of the same speaker. Raises SpeechError as `recognise` does.
         """
         grammar = None if phrases is None else self._grammar(phrases)
+        if grammar is not None and self.second is not None and worst_fit is None:
+            helpers().submit(self.second.expect, grammar.phrases)  # while they speak
         if self._model is None:
             return _Unaided(self, grammar, worst_fit)
         return Decoding(self, grammar, worst_fit, gain)
@@ -342,39 +345,50 @@ class Decoding:
     def finish(self) -> Heard:
         """What was said. To be called once, after which nothing can be fed."""
         started = time.perf_counter()
-        seconds = self._samples / RATE
         if self._silent:
-            return _heard((), seconds)
-        self._feed(np.zeros(int(PADDING * RATE), np.int16))
-        self._each(Decoder.finish)
-        sure, *others = self._decoders.values()
-        heard = _heard(self._words(sure), seconds)
+            return _heard((), self._samples / RATE)
         if self._second is not None:
-            heard = self._judged(heard, self._second)
-        elif others:
-            limited, free = (scored(decoder.results) for decoder in others)
-            limited = [Scored(self._written(text.text), text.score) for text in limited]
-            trusted = _Trust(free[0], heard.confidence, self._worst_fit)
-            heard = replace(
-                heard,
-                doubtful=trusted.reading(limited[0]).doubtful,
-                free_text=free[0].text,
-                readings=_readings(limited, free, trusted),
-            )
+            with ThreadPoolExecutor(1) as beside:  # the ear hears while the decoders are ended
+                heard = self._judged(beside.submit(self._ended), self._second)
+        else:
+            heard = self._compared(self._ended())
         for key, decoder in self._decoders.items():
             self._recogniser._take_back(decoder.anew(), *key)
         self._decoders = {}
         return replace(heard, seconds_taken=time.perf_counter() - started)
 
-    def _judged(self, heard: Heard, ear: SecondEar) -> Heard:
+    def _ended(self) -> Heard:
+        """What was heard word by word."""
+        self._feed(np.zeros(int(PADDING * RATE), np.int16))
+        self._each(Decoder.finish)
+        sure, *_ = self._decoders.values()
+        return _heard(self._words(sure), self._samples / RATE)
+
+    def _compared(self, heard: Heard) -> Heard:
+        """What was heard, beside what is heard where anything may be said."""
+        if self._grammar is None:
+            return heard
+        _, limited, free = (scored(decoder.results) for decoder in self._decoders.values())
+        limited = [Scored(self._written(text.text), text.score) for text in limited]
+        trusted = _Trust(free[0], heard.confidence, self._worst_fit)
+        return replace(
+            heard,
+            doubtful=trusted.reading(limited[0]).doubtful,
+            free_text=free[0].text,
+            readings=_readings(limited, free, trusted),
+        )
+
+    def _judged(self, unjudged: Future[Heard], ear: SecondEar) -> Heard:
         """What was heard, as the second ear hears and believes it."""
-        if heard.seconds_of_audio > LONGEST:
+        if self._samples > LONGEST * RATE:
+            heard = unjudged.result()
             return replace(heard, doubtful=True, free_text=heard.text)
         sound = np.concatenate(self._sound)
         if self._grammar is None:
-            free = ear.free(sound)
+            free, heard = ear.free(sound), unjudged.result()
             return replace(heard, text=free, words=heard.words if free == heard.text else ())
-        opinion = ear.hear(sound, self._grammar.phrases, self._candidates()[:CANDIDATES])
+        opinion = ear.hear(sound, self._grammar.phrases, self._candidates(unjudged))
+        heard = unjudged.result()
         readings = tuple(
             Reading(
                 each.written or each.text,
@@ -398,10 +412,12 @@ class Decoding:
             readings=readings,
         )
 
-    def _candidates(self) -> list[str]:
-        """What the limited decoder heard, the likeliest first."""
+    def _candidates(self, unjudged: Future[Heard]) -> Iterator[str]:
+        """What the limited decoder heard, the likeliest first. Waits for it."""
+        unjudged.result()
         _, limited = self._decoders.values()
-        return [self._written(text.text) for text in scored(limited.results)]
+        for text in scored(limited.results)[:CANDIDATES]:
+            yield self._written(text.text)
 
     def _feed(self, samples: Samples) -> None:
         sound = samples.tobytes()
@@ -470,13 +486,15 @@ class _Unaided(Decoding):
         if self._silent:
             return heard
         if self._worst_fit is None:
-            heard = self._judged(heard, self._ear)
+            nothing: Future[Heard] = Future()
+            nothing.set_result(heard)
+            heard = self._judged(nothing, self._ear)
         elif heard.seconds_of_audio <= LONGEST:  # whoever sets it judges by themselves
             heard = replace(heard, text=self._ear.free(np.concatenate(self._sound)))
         return replace(heard, seconds_taken=time.perf_counter() - started)
 
-    def _candidates(self) -> list[str]:
-        return []
+    def _candidates(self, unjudged: Future[Heard]) -> Iterator[str]:
+        return iter(())
 
 
 def load(code: str) -> Recogniser:

@@ -99,9 +99,9 @@ class SecondEar:
     def hear(
         self, samples: Samples, phrases: Sequence[str], candidates: Iterable[str] = ()
     ) -> Opinion:
-        """`phrases` are what may be said, `candidates` what others heard, the likeliest first."""
-        with self._lock:
-            expected = self._expected(tuple(phrases))
+        """`phrases` are what may be said, `candidates` what others heard, the likeliest first; they
+        are asked for last, so that an iterator may wait for them."""
+        expected = self.expect(phrases)
         sound = self._listened(samples)
         with ThreadPoolExecutor(1) as beside:  # on another core, if there is one
             freely = beside.submit(sound.texts, width=1)
@@ -127,6 +127,11 @@ class SecondEar:
                 judged[plain] = each
         best = sorted(judged.values(), key=lambda each: -each.evidence.belief)
         return Opinion(self._plain(free.text, expected.words), tuple(best))
+
+    def expect(self, phrases: Sequence[str]) -> _Expected:
+        """Makes ready to hear these phrases, which takes up to half a second the first time."""
+        with self._lock:
+            return self._expected(tuple(phrases))
 
     def free(self, samples: Samples) -> str:
         """What is said where anything may be said; empty for nothing."""

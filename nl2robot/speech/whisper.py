@@ -47,13 +47,10 @@ class Whisper:
     def __init__(self, folder: Path, language: str) -> None:
         """`folder` holds a model that CTranslate2 has converted. Raises ModelError if it is no
         good."""
-        import ctranslate2
-
         try:
             self.subwords = BytePairs.load(folder / "tokenizer.json", language)
             described = json.loads((folder / "config.json").read_text("utf-8"))
-            self._model = ctranslate2.models.Whisper(str(folder), device="cpu", compute_type="int8")
-            self._decoder = _Decoder(read(folder / "model.bin"))
+            self._model, self._decoder = _weights(folder)
         except Exception as error:  # CTranslate2 raises RuntimeError only, json and numpy others
             raise ModelError(
                 f"The speech model in {folder} cannot be used. "
@@ -156,6 +153,15 @@ def _blas() -> Any:
     from threadpoolctl import ThreadpoolController
 
     return ThreadpoolController()
+
+
+@cache
+def _weights(folder: Path) -> tuple[Any, _Decoder]:
+    """The same for every language: CTranslate2's model, and our decoder."""
+    import ctranslate2
+
+    model = ctranslate2.models.Whisper(str(folder), device="cpu", compute_type="int8")
+    return model, _Decoder(read(folder / "model.bin"))
 
 
 # ── the decoder ──────────────────────────────────────────────────────────────────────────────

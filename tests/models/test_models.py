@@ -480,7 +480,7 @@ def in_two_wheels(tmp_path: Path) -> models.Registry:
     source = Parts(parts=tuple(parts), joined=joined)
     return {
         "de": Model("German", (away,)),
-        "two": Model("German", (source,), engine="moonshine", beside=("de",), alone=True),
+        "two": Model("German", (source,), engine="moonshine", beside=("de",), alone=("de",)),
     }
 
 
@@ -841,13 +841,14 @@ def test_who_hears_less_well_than_could_be_is_told_how_to_hear_better(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("NL2ROBOT_MODELS", str(tmp_path))
-    (missing,) = models.lacking_beside("en")
+    missing, shared = models.lacking_beside("en")
     assert "second English speech model is not installed" in missing
     assert "nl2robot models get en-moonshine" in missing
+    assert "nl2robot models get whisper" in shared
     second = tmp_path / "en-moonshine"
     second.mkdir()
-    (damaged,) = models.lacking_beside("en")
+    damaged, _ = models.lacking_beside("en")
     assert "is damaged" in damaged
     for name in models.NEEDED["moonshine"][0]:
         (second / name).write_bytes(b"put there by hand")
-    assert models.lacking_beside("en") == []
+    assert models.lacking_beside("en") == [shared]

@@ -21,8 +21,8 @@ from nl2robot.speech.hotword_head import Head, load_head
 from nl2robot.speech.hotword_judge import Judge, judge_of
 from nl2robot.speech.hotword_voices import trimmed
 from nl2robot.speech.hotword_words import WORDS
-from nl2robot.speech.moonshine import Moonshine
 from nl2robot.speech.recogniser import Recogniser
+from nl2robot.speech.search import Network
 from nl2robot.speech.spotting import Spotter
 from nl2robot.speech.voices import espeak, joined
 from tests.speech.conftest import RECORDED, SHOWN
@@ -131,17 +131,66 @@ def test_a_head_of_ones_own_is_found_first(tmp_path: Path, monkeypatch: pytest.M
 # ── the second stage, where the second speech model is installed ─────────────────────────────
 
 
+@pytest.mark.parametrize(
+    ("language", "installed", "word", "other"),
+    [
+        ("en", "en-moonshine", "hey robot", "the robot"),
+        ("de", "whisper", "hallo Roboter", "der Roboter"),
+        ("fr", "whisper", "salut robot", "le robot"),
+    ],
+)
 def test_the_second_stage_hears_the_word_in_what_the_head_is_unsure_of(
+    language: str,
+    installed: str,
+    word: str,
+    other: str,
     second_model: Path,
+    whisper_model: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The same doubtful score, and one of them was it."""
-    judge = judge_of("en", "hey robot", 0.8)
+    (tmp_path / installed).symlink_to(second_model.parent / installed)
+    monkeypatch.setenv("NL2ROBOT_MODELS", str(tmp_path))
+    judge = judge_of(language, word, 0.8)
     assert judge is not None
     verdicts = []
-    for text in ("hey robot", "the robot"):
-        samples, end = said(text, speaker="f3")
-        verdicts.append(judge.verdict(samples[: int((end + 0.08) * RATE)], 0.4))
+    for text in (word, other):
+        samples, end = said(text, language, speaker="f3")
+        verdicts.append(judge.verdict(samples[: int((end + 0.08) * RATE)], 0.1))
     assert verdicts[0] > 0 >= verdicts[1]
+
+
+def test_where_two_speech_models_are_installed_both_judge(
+    second_model: Path, whisper_model: Path
+) -> None:
+    judge = judge_of("en", "hey robot", 0.8)
+    assert judge is not None
+    both, one = WORDS["en"].judged["hey robot"].ways
+    assert judge.floor == both.floor < one.floor
+
+
+@pytest.mark.parametrize(("likelihood", "asked"), [(-60.0, 0), (-2.0, 1)])
+def test_the_slower_model_is_not_asked_of_what_the_quicker_one_ruled_out(
+    likelihood: float, asked: int
+) -> None:
+    class Says:
+        def __init__(self, likelihood: float) -> None:
+            self.likelihood, self.asked = likelihood, 0
+
+        def listen(self, samples: Samples) -> Says:
+            self.asked += 1
+            return self
+
+        def likelihoods(self, texts: list[str]) -> list[float]:
+            return [self.likelihood for _ in texts]
+
+    judged = WORDS["en"].judged["hey robot"]
+    quicker, slower = Says(likelihood), Says(-2.0)
+    models = [cast("Network", quicker), cast("Network", slower)]
+    verdict = Judge(models, judged, judged.ways[0], 0.8).verdict(said("hey robot")[0], 0.5)
+    assert (quicker.asked, slower.asked) == (1, asked)
+    assert (verdict > 0) == bool(asked)
 
 
 def test_without_the_second_model_the_head_alone_decides(
@@ -160,7 +209,8 @@ def test_a_call_is_not_lost_when_the_second_stage_fails(caplog: pytest.LogCaptur
 
     head = load_head("en", "hey robot")
     assert head is not None
-    judge = Judge(cast("Moonshine", Broken()), WORDS["en"].judged["hey robot"], head.threshold)
+    judged = WORDS["en"].judged["hey robot"]
+    judge = Judge([cast("Network", Broken())], judged, judged.ways[1], head.threshold)
     samples, _ = said("hey robot")
     (heard,) = Heads([head], [judge]).feed(samples)
     (alone,) = Heads([head], [None]).feed(samples)
