@@ -292,6 +292,9 @@ def to_data(plan: Plan) -> dict[str, Any]:
     return data
 
 
+msgspec.json.Decoder(Plan)  # learned before there are threads, see `robot_api.schema`
+
+
 def from_data(data: Any) -> Plan:
     """The plan of such data. Raises `msgspec.ValidationError`, whose message names the spot."""
     return msgspec.convert(data, Plan)

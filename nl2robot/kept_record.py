@@ -67,6 +67,9 @@ class Movement(msgspec.Struct, frozen=True, kw_only=True):
     """More happened than is kept."""
 
 
+msgspec.json.Decoder(Movement)  # learned before there are threads, see `robot_api.schema`
+
+
 def packed(movement: Movement) -> bytes:
     return zlib.compress(msgspec.json.encode(movement), 6)
 

@@ -120,6 +120,9 @@ class Model(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 Registry = dict[str, Model]  # by code; that of a language's own model is the language's
 
+# Learned now: two threads that met the type first, both at once, would crash msgspec (0.22).
+msgspec.json.Decoder(Registry)
+
 
 def load_registry(path: Path | None = None) -> Registry:
     """The table of sources, from models.yaml or another file of the same form."""

@@ -25,7 +25,7 @@ import time
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Final
 
 import msgspec
 
@@ -61,6 +61,9 @@ class Manifest(msgspec.Struct, frozen=True):
     licence: str
     archive_sha256: str
     files: dict[str, tuple[int, str]]  # path in the model's folder -> size, SHA-256
+
+
+_MANIFESTS: Final = msgspec.json.Decoder(Manifest)  # made once, for reasons see `Registry`
 
 
 @dataclass(frozen=True)
@@ -179,7 +182,7 @@ def _empty(folder: Path, names: Iterable[str]) -> list[str]:
 
 def _manifest(folder: Path) -> Manifest | None:
     try:
-        return msgspec.json.decode((folder / MANIFEST).read_bytes(), type=Manifest)
+        return _MANIFESTS.decode((folder / MANIFEST).read_bytes())
     except (OSError, msgspec.DecodeError):
         return None
 

@@ -40,6 +40,9 @@ class Capabilities(msgspec.Struct, frozen=True, kw_only=True):
     """The unit of the map, "m" or "cm": what the paper's message style counts in."""
 
 
+msgspec.json.Decoder(Capabilities)  # learned before there are threads, see `schema`
+
+
 class StopFlag:
     """Whether the call at hand was stopped; motion must look at it at least every 20 ms.
 

@@ -169,6 +169,10 @@ def compiled(schema: Mapping[str, Any]) -> Draft202012Validator:
     return Draft202012Validator(schema)
 
 
+# Learned now: two threads that met a type first, both at once, would crash msgspec (0.22).
+msgspec.json.Decoder(tuple[Location, Clock])
+
+
 # --- results -------------------------------------------------------------------------------------
 
 

@@ -8,6 +8,7 @@ import io
 import os
 import shutil
 import stat
+import subprocess
 import sys
 import tarfile
 import threading
@@ -852,3 +853,22 @@ def test_who_hears_less_well_than_could_be_is_told_how_to_hear_better(
     for name in models.NEEDED["moonshine"][0]:
         (second / name).write_bytes(b"put there by hand")
     assert models.lacking_beside("en") == [shared]
+
+
+def test_two_ears_that_look_for_their_models_at_once_find_them() -> None:
+    """They met the types of the registry for the first time, both at once, and msgspec crashed."""
+    together = (
+        "import sys, threading, msgspec, yaml\n"
+        "from pathlib import Path\n"
+        "from nl2robot import model_sources\n"
+        "file = Path(model_sources.__file__).parent / 'data' / 'models.yaml'\n"
+        "table = yaml.safe_load(file.read_text('utf-8'))\n"
+        "sys.setswitchinterval(1e-6)\n"
+        "ready = threading.Barrier(8)\n"
+        "look = lambda: (ready.wait(), msgspec.convert(table, model_sources.Registry))\n"
+        "ears = [threading.Thread(target=look) for _ in range(8)]\n"
+        "[ear.start() for ear in ears]\n"
+        "[ear.join() for ear in ears]\n"
+    )
+    for _ in range(3):
+        assert subprocess.run([sys.executable, "-c", together], check=False).returncode == 0
