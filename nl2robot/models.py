@@ -63,7 +63,7 @@ class Manifest(msgspec.Struct, frozen=True):
     files: dict[str, tuple[int, str]]  # path in the model's folder -> size, SHA-256
 
 
-_MANIFESTS: Final = msgspec.json.Decoder(Manifest)  # made once, for reasons see `Registry`
+_MANIFESTS: Final = msgspec.json.Decoder(Manifest)  # before there are threads, see `Registry`
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,10 @@
             print(detection.word, detection.time)
 
 No input or output here: samples in, detections out. Words with a trained head (those of
-data/hotwords.yaml) are heard by it, in any language and without a speech model; where the second
-speech model is installed it judges what the head is not sure of (`nl2robot.speech.hotword_judge`).
-Any other word is heard by the speech model of its language (`nl2robot.speech.spotting`). Which way
-hears how well: docs/hotword.md.
+data/hotwords.yaml) are heard by it, in any language and without a speech model; where second
+speech models are installed, they judge what the head is not sure of
+(`nl2robot.speech.hotword_judge`). Any other word is heard by the speech model of its language
+(`nl2robot.speech.spotting`). Which way hears how well: docs/hotword.md.
 """
 
 from __future__ import annotations

@@ -29,7 +29,7 @@ AROUND: Final = 0.3
 LOUD: Final = 0.3
 """The peak, of full scale, to which the sound is brought."""
 _SURE: Final = 1e-5  # a score is never nearer to 0 or 1: its logit stays finite
-_LOADED: Final[dict[str, Callable[[str], Network | None]]] = {
+_LOADERS: Final[dict[str, Callable[[str], Network | None]]] = {
     "moonshine": moonshine.load,
     "whisper": whisper.load,
 }
@@ -93,7 +93,7 @@ def judge_of(language: str, word: str, threshold: float) -> Judge | None:
     """The second stage of a word; None where it is heard by its head alone."""
     judged = WORDS[language].judged.get(word)
     for way in judged.ways if judged else ():
-        models = [_LOADED[opinion.by](language) for opinion in way.opinions]
+        models = [_LOADERS[opinion.by](language) for opinion in way.opinions]
         found = [model for model in models if model is not None]
         if judged and len(found) == len(models):
             return Judge(found, judged, way, threshold)

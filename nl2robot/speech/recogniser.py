@@ -20,7 +20,7 @@ import json
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -349,7 +349,7 @@ class Decoding:
             return _heard((), self._samples / RATE)
         if self._second is not None:
             with ThreadPoolExecutor(1) as beside:  # the ear hears while the decoders are ended
-                heard = self._judged(beside.submit(self._ended), self._second)
+                heard = self._judged(beside.submit(self._ended).result, self._second)
         else:
             heard = self._compared(self._ended())
         for key, decoder in self._decoders.items():
@@ -378,17 +378,18 @@ class Decoding:
             readings=_readings(limited, free, trusted),
         )
 
-    def _judged(self, unjudged: Future[Heard], ear: SecondEar) -> Heard:
-        """What was heard, as the second ear hears and believes it."""
+    def _judged(self, unjudged: Callable[[], Heard], ear: SecondEar) -> Heard:
+        """What was heard, as the second ear hears and believes it; `unjudged` waits for what was
+        heard word by word."""
         if self._samples > LONGEST * RATE:
-            heard = unjudged.result()
+            heard = unjudged()
             return replace(heard, doubtful=True, free_text=heard.text)
         sound = np.concatenate(self._sound)
         if self._grammar is None:
-            free, heard = ear.free(sound), unjudged.result()
+            free, heard = ear.free(sound), unjudged()
             return replace(heard, text=free, words=heard.words if free == heard.text else ())
         opinion = ear.hear(sound, self._grammar.phrases, self._candidates(unjudged))
-        heard = unjudged.result()
+        heard = unjudged()
         readings = tuple(
             Reading(
                 each.written or each.text,
@@ -412,9 +413,9 @@ class Decoding:
             readings=readings,
         )
 
-    def _candidates(self, unjudged: Future[Heard]) -> Iterator[str]:
+    def _candidates(self, unjudged: Callable[[], Heard]) -> Iterator[str]:
         """What the limited decoder heard, the likeliest first. Waits for it."""
-        unjudged.result()
+        unjudged()
         _, limited = self._decoders.values()
         for text in scored(limited.results)[:CANDIDATES]:
             yield self._written(text.text)
@@ -482,18 +483,16 @@ class _Unaided(Decoding):
 
     def finish(self) -> Heard:
         started = time.perf_counter()
-        heard = _heard((), self._samples / RATE)
+        silence = heard = _heard((), self._samples / RATE)
         if self._silent:
-            return heard
+            return silence
         if self._worst_fit is None:
-            nothing: Future[Heard] = Future()
-            nothing.set_result(heard)
-            heard = self._judged(nothing, self._ear)
+            heard = self._judged(lambda: silence, self._ear)
         elif heard.seconds_of_audio <= LONGEST:  # whoever sets it judges by themselves
             heard = replace(heard, text=self._ear.free(np.concatenate(self._sound)))
         return replace(heard, seconds_taken=time.perf_counter() - started)
 
-    def _candidates(self, unjudged: Future[Heard]) -> Iterator[str]:
+    def _candidates(self, unjudged: Callable[[], Heard]) -> Iterator[str]:
         return iter(())
 
 
