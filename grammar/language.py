@@ -17,6 +17,7 @@ Every file may hold any of these keys; those of all files are put together:
     speech        how reported speech becomes direct speech
     rewordings    other ways to say the same
     help          topics with example phrases
+    sayings       what else people say, for the recogniser
 """
 
 from __future__ import annotations
@@ -77,6 +78,8 @@ class Language:
     """Other ways to say the same, as they are written down (`grammar.rewordings`)."""
     help: Mapping[str, tuple[str, ...]]
     """topic -> example templates"""
+    sayings: tuple[str, ...]
+    """More templates like these, which nobody is shown."""
     words: frozenset[str]
     """Normal forms of all words of rules and lists."""
     spelled_words: frozenset[str]
@@ -272,6 +275,7 @@ def _language(code: str, compiled: Compiled) -> Language:
         speech=data.get("speech", {}),
         rewordings=tuple(data.get("rewordings", ())),
         help={topic: tuple(examples) for topic, examples in data.get("help", {}).items()},
+        sayings=tuple(data.get("sayings", ())),
         words=compiled.words,
         spelled_words=compiled.spelled_words,
     )

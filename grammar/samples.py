@@ -14,6 +14,8 @@ from grammar.lexicon import Lexicon
 from grammar.naming import joined_up, naming, place_called, the
 
 _SLOT: Final = re.compile(r"\{(\w+)(!the)?\}")
+NAMED: Final = 2
+"""How often each of the sayings is told, with other names."""
 ALIKE: Final = 86
 """From where on, of 100, two words are the same but for an ending: "tie" is not "time"."""
 
@@ -35,18 +37,21 @@ def _samples(lexicon: Lexicon, language: Language) -> dict[str, list[str]]:
 
 @functools.lru_cache(maxsize=16)
 def all_samples(lexicon: Lexicon, code: str = "en") -> tuple[str, ...]:
-    """The same examples with every name of this world in every slot, one after the other: from
-    whole sentences a recogniser learns which words stand together."""
+    """The same examples with every name of this world in every slot, one after the other, and what
+    else people say with some names: from whole sentences a recogniser learns which words stand
+    together."""
     language = load_language(code)
-    slots = {slot for each in language.help.values() for one in each for slot, _ in _slots(one)}
+    examples = [example for topic in language.help.values() for example in topic]
+    slots = {slot for one in examples for slot, _ in _slots(one)}
     most = max((len(names_for(slot, lexicon)) for slot in slots), default=1)
-    filled = (
-        _filled(example, lexicon, language, shift)
-        for shift in range(most)
-        for examples in language.help.values()
-        for example in examples
+    filled = (_filled(one, lexicon, language, shift) for shift in range(most) for one in examples)
+    # Each with other names: those of the world get their turn all the same.
+    said = (
+        _filled(one, lexicon, language, NAMED * number + shift)
+        for number, one in enumerate(language.sayings)
+        for shift in range(NAMED)
     )
-    return tuple(dict.fromkeys(each for each in filled if each))
+    return tuple(dict.fromkeys(each for each in (*filled, *said) if each))
 
 
 def _slots(example: str) -> list[tuple[str, str]]:

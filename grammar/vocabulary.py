@@ -19,7 +19,8 @@ def vocabulary(lexicon: Lexicon, language: str = "en") -> list[str]:
     """The words, in lower case and in order, each once."""
     pack = load_language(language)
     texts: list[str] = [*pack.spelled_words, *pack.spelling.contractions]
-    texts += [_MARK.sub("", example) for examples in pack.help.values() for example in examples]
+    examples = [example for topic in pack.help.values() for example in topic]
+    texts += [_MARK.sub("", example) for example in (*examples, *pack.sayings)]
     for name in (*lexicon.places, *lexicon.people, *lexicon.objects, *lexicon.furniture):
         texts += [name.name, *name.aliases, *name.attributes, name.kind or ""]
     texts += [*lexicon.contacts, *lexicon.gestures, *lexicon.emotions, *lexicon.skills]

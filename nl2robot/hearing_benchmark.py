@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from grammar.samples import samples
+from grammar.samples import all_samples, samples
 from nl2robot.hearing import Ear
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.speech.answers import expect, hear_answer
@@ -113,10 +113,11 @@ class _Bench:
         ]
         order = np.random.default_rng(seed).permutation(len(known))
         self._known = [known[n] for n in order]
+        self._told = frozenset(all_samples(lexicon, language))
 
     def trials(self, size: str) -> Iterator[tuple[Trial, Callable[[Trial], Outcome]]]:
         said, most = spoken(self._language), MOST[size]
-        commands = [text for text in said["commands"] if text not in self._known]
+        commands = [text for text in said["commands"] if text not in self._told]
         for kind, sayings in (
             ("new commands", commands),
             ("known commands", self._known[:40]),

@@ -16,6 +16,10 @@ from robot_api.errors import Stopped
 T = TypeVar("T")
 
 
+# Learned before there are threads, see `robot_api.schema`.
+msgspec.json.Decoder(tuple[Translation, Review, Approval, Status])
+
+
 class Operator:
     """Somebody who has programs reviewed and run, over a client's connection."""
 

@@ -42,6 +42,9 @@ class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     routines: tuple[Routine, ...] = ()
 
 
+msgspec.json.Decoder(_File)  # learned before there are threads, see `robot_api.schema`
+
+
 class Routines:
     """The routines of a file; every change is on disk when the method returns. Threads may share
     it. Raises `UserError` where the file cannot be used."""

@@ -38,6 +38,9 @@ class _Kept(msgspec.Struct):
     draft: _Waiting | None
 
 
+msgspec.json.Decoder(_Kept)  # learned before there are threads, see `robot_api.schema`
+
+
 class Dialogues:
     """Those of all browsers; the one unused longest is forgotten first."""
 

@@ -46,6 +46,9 @@ class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     worlds: dict[str, tuple[Zone, ...]] = {}
 
 
+msgspec.json.Decoder(_File)  # learned before there are threads, see `robot_api.schema`
+
+
 class DrawnZones:
     """The zones of a file, by world. Raises `UserError` where the file cannot be used."""
 

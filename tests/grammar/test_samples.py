@@ -95,3 +95,21 @@ def test_everybody_in_a_world_stands_in_whole_sentences(language: str) -> None:
     assert {*itertools.chain(*samples(lexicon, language).values())} <= {
         *all_samples(lexicon, language)
     }
+
+
+@pytest.mark.parametrize("language", languages())
+def test_what_else_people_say_is_understood_alone_or_after_a_command(language: str) -> None:
+    lexicon = hospital(language)
+    commands = list(itertools.chain(*samples(lexicon, language).values()))
+    sayings = load_language(language).sayings
+    assert len(sayings) >= 100
+    unknown = []
+    for said in all_samples(lexicon, language):
+        contexts = (understand(each, lexicon, language).context for each in commands)
+        if not any(
+            understood.status != "rejected" or understood.request is not None
+            for context in itertools.chain([None], contexts)
+            for understood in [understand(said, lexicon, language, context)]
+        ):
+            unknown.append(said)
+    assert not unknown
