@@ -115,7 +115,7 @@ WAYS: dict[str, Way] = {
     "second ear: likelihood, and both heard it": _by(
         lambda each: -each.unlikely - 1000 * (not each.agreed)
     ),
-    "second ear: belief, weights as they are": _by(lambda each: each.belief),
+    "second ear: belief, weights as they are": _weighed(WEIGHTS),
 }
 
 
@@ -151,7 +151,7 @@ def _always(way: Way) -> Callable[[Sequence[Case]], Way]:
 
 def fitted(cases: Sequence[Case], rounds: int = 4) -> Weights:
     """Weights of a logistic regression: is the reading right that these weights would choose?"""
-    weights: Weights = WEIGHTS["en"]  # of any language: only where to begin
+    weights: Weights = WEIGHTS
     for _ in range(rounds):
         rows, right = [], []
         for case in cases:
