@@ -19,6 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
+from nl2robot.errors import UserError
 from nl2robot.hearing import Ear
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.speech.audio import RATE, Audio, Samples, read
@@ -93,9 +94,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("files", nargs="*", type=Path, default=shown)
     parser.add_argument("--lang", default="en")
     options = parser.parse_args(arguments)
-    recordings = [read(file) for file in options.files]
+    try:
+        recordings = [read(file) for file in options.files]
+        ear = Ear(Knowledge(load_world(DEFAULT_WORLD)), options.lang)
+    except UserError as error:
+        raise SystemExit(str(error)) from error
     Listener()  # loads the detector
-    ear = Ear(Knowledge(load_world(DEFAULT_WORLD)), options.lang)
     print(json.dumps(measure(recordings, ear), indent=2))
 
 
