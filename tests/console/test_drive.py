@@ -159,7 +159,7 @@ def test_two_operators_hand_over_and_an_observer_looks_on(look: Look, served: An
     observer = look(f"/drive?{token}")
     expect(observer.get_by_text("Nobody drives the robot by hand.")).to_be_visible()
     for name in ("Take the helm", "Say it", "Go there", "Show"):
-        expect(observer.get_by_role("button", name=name)).to_have_count(0)
+        expect(observer.get_by_role("button", name=name, exact=True)).to_have_count(0)
 
 
 def test_a_program_goes_on_when_the_driver_leaves(look: Look, watch: Watch) -> None:
