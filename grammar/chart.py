@@ -144,6 +144,10 @@ class Chart:
         ends = self._walked(self.network.rule(rule), start)
         return sorted(ends, key=lambda end: (ends[end][0], -end))
 
+    def reading(self, rule: str, start: int, end: int) -> Node:
+        """The cheapest reading between two tokens, one of those of `ends`."""
+        return self._node(start, end, self._walked(self.network.rule(rule), start)[end])
+
     @property
     def reached(self) -> int:
         """The furthest token that any rule at the beginning could use."""

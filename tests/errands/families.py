@@ -35,6 +35,7 @@ from __future__ import annotations
 
 import argparse
 import itertools
+import math
 import random
 import re
 from collections import Counter, defaultdict
@@ -47,10 +48,10 @@ from typing import Any, Literal
 import msgspec
 import yaml
 
+from nl2robot.deliberation.paper_robot import Event, Over, PaperRobot, Scene
 from nl2robot.knowledge import Knowledge
 from nl2robot.translation import Translation, translate
 from sim.world import World, load_world
-from tests.errands.paper_robot import Event, Scene, carried_out
 
 FOLDER = Path(__file__).parent
 MOST = 60
@@ -170,6 +171,20 @@ def judged(family: Family, sentence: str, chosen: tuple[str, ...] = ()) -> Judge
             why = f"case {number}: {fault}; it was ({end}):{course}"
             return Judged(sentence, chosen, "wrong", why, translation.program)
     return Judged(sentence, chosen, "right", "", translation.program)
+
+
+def carried_out(program: str, scene: Scene) -> tuple[list[Event], str]:
+    """What the program does in the scene, and how it ended: "done", "over" or why it failed. The
+    rules' own programs are run as they are; a thousand a second."""
+    robot = PaperRobot(scene)
+    random.seed(0)
+    try:
+        exec(program, {"robot": robot, "math": math})
+    except Over:
+        return robot.events, "over"
+    except Exception as error:  # noqa: BLE001 (whatever a program stumbles over is its end)
+        return robot.events, f"{type(error).__name__}: {error}"
+    return robot.events, "done"
 
 
 def misses(case: Case, events: Sequence[Event], end: str) -> str | None:

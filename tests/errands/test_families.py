@@ -6,8 +6,8 @@ from collections import Counter
 
 import pytest
 
-from tests.errands.families import Family, families, judged
-from tests.errands.paper_robot import Scene, carried_out
+from nl2robot.deliberation.paper_robot import Scene
+from tests.errands.families import Family, carried_out, families, judged
 
 FAMILIES = families()
 

@@ -720,7 +720,7 @@ def test_a_package_with_a_link_in_it_is_refused(tmp_path: Path) -> None:
     [
         (b"<html>Please log in to the guest network</html>", "archive is broken"),
         (zipped(FILES)[:-400_000], "archive is broken"),
-        (zipped({"README": b"no model"}), "does not hold a speech model"),
+        (zipped({"README": b"no model"}), "does not hold such a model"),
         (zipped(FILES, folder="other"), "has no folder small-model"),
     ],
     ids=["a login page", "cut short", "no model", "another folder"],

@@ -7,14 +7,14 @@ is the scene.
 
 from __future__ import annotations
 
-import math
-import random
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from robot_api.capabilities.matching import match_answer
+from robot_api.errors import NotFound, NotPossible, Stopped, UnknownPlace
+from robot_api.values import Clock, Location
 
 START = "start"
 """Where the command is given: where the operator stands."""
@@ -22,12 +22,8 @@ OPERATOR = "operator"
 MOST_EVENTS = 400
 
 
-class Over(BaseException):
+class Over(Stopped):
     """The program would go on for ever, or waits for somebody who does not come."""
-
-
-class Failed(Exception):
-    """As a robot's error: a program may catch it."""
 
 
 @dataclass(frozen=True)
@@ -55,31 +51,17 @@ class Scene:
     """(what, where), a row for each."""
     answers: Mapping[str, Any] = field(default_factory=dict)
     """Of somebody: a text, a list of texts, or texts by patterns of the questions."""
+    option: int | None = None
+    """Which of the answers that are offered people give of whom nothing else is said, from 0 on;
+    who is offered none names this number."""
     arrivals: dict[str, list[str]] = field(default_factory=dict)
     """Who comes to a place, one after the other, while somebody waits there."""
     traits: Mapping[str, str] = field(default_factory=dict)
     """More words for somebody: {"Zoe": "visitor woman waving"}."""
     clock: str = "10:00"
     weekday: str = "Tuesday"
-    battery: int = 80
-
-
-@dataclass(frozen=True)
-class Location:
-    place: str
-    x: float = 0.0
-    y: float = 0.0
-    theta: float = 0.0
-
-    def __str__(self) -> str:
-        return self.place
-
-
-@dataclass(frozen=True)
-class Clock:
-    time: str
-    weekday: str
     date: str = "2026-11-24"
+    battery: int = 80
 
 
 def words_of(phrase: str) -> set[str]:
@@ -151,13 +133,13 @@ class PaperRobot:
     def goto(self, place: Any, y: Any = None, theta: Any = None) -> None:
         name = str(place)
         if name != START and name not in self.scene.places:
-            raise Failed(f"There is no place called {name}.")
+            raise UnknownPlace(f"There is no place called {name}.")
         self.place = name
         self.partner = None
         self._event("visits", name)
 
     def location(self) -> Location:
-        return Location(self.place)
+        return Location(0.0, 0.0, 0.0, self.place)
 
     def places(self, kind: str | None = None) -> list[str]:
         return [name for name, k in self.scene.places.items() if kind is None or k == kind]
@@ -182,7 +164,7 @@ class PaperRobot:
     def describe(self, thing: str) -> str:
         seen = [*self._people_here(thing), *self._things_here(thing)]
         if not seen:
-            raise Failed(f"I do not see {thing}.")
+            raise NotFound(f"I do not see {thing}.")
         return f"I see {', '.join(seen)}."
 
     def find(self, thing: str, place: str | None = None) -> bool:
@@ -234,6 +216,8 @@ class PaperRobot:
     ) -> str:
         whom = self._one(person)
         self._event("asks", question, whom)
+        if self.scene.option is not None and whom not in self.scene.answers:
+            return options[self.scene.option % len(options)] if options else str(self.scene.option)
         answer = self._answer(whom, str(question))
         if not options:
             return answer
@@ -261,7 +245,7 @@ class PaperRobot:
             return self.partner
         if self.place == self.operator_at:
             return OPERATOR
-        raise Failed(f"{person or 'Nobody'} is not here.")
+        raise NotFound(f"{person or 'Nobody'} is not here.")
 
     def _answer(self, whom: str, question: str) -> str:
         number = self.asked[whom] = self.asked.get(whom, 0) + 1
@@ -293,9 +277,9 @@ class PaperRobot:
     def grab(self, thing: object) -> None:
         here = self._things_here(str(thing))
         if self.held:
-            raise Failed("My hand is full.")
+            raise NotPossible("My hand is full.")
         if not here:
-            raise Failed(f"I do not see {thing}.")
+            raise NotFound(f"I do not see {thing}.")
         self.things.remove((here[0], self.place))
         self.held.append(here[0])
         self._event("takes", here[0])
@@ -303,7 +287,7 @@ class PaperRobot:
     def _let_go(self, thing: object) -> str:
         held = [each for each in self.held if words_of(str(thing)) <= words_of(each)]
         if not held:
-            raise Failed(f"I do not hold {thing}.")
+            raise NotPossible(f"I do not hold {thing}.")
         self.held.remove(held[0])
         return held[0]
 
@@ -343,7 +327,7 @@ class PaperRobot:
     def clock(self) -> Clock:
         hours, minutes = map(int, self.scene.clock.split(":"))
         now = hours * 60 + minutes + int(self.minutes)
-        return Clock(f"{now // 60 % 24:02d}:{now % 60:02d}", self.scene.weekday)
+        return Clock(f"{now // 60 % 24:02d}:{now % 60:02d}", self.scene.weekday, self.scene.date)
 
     def battery(self) -> int:
         return self.scene.battery
@@ -357,16 +341,3 @@ class PaperRobot:
 
     def __getattr__(self, name: str) -> Any:
         return lambda *values, **named: self._event("does", f"{name} {values} {named}")
-
-
-def carried_out(program: str, scene: Scene) -> tuple[list[Event], str]:
-    """What the program does in the scene, and how it ended: "done", "over" or why it failed."""
-    robot = PaperRobot(scene)
-    random.seed(0)
-    try:
-        exec(program, {"robot": robot, "math": math})
-    except Over:
-        return robot.events, "over"
-    except Exception as error:  # noqa: BLE001 (whatever a program stumbles over is its end)
-        return robot.events, f"{type(error).__name__}: {error}"
-    return robot.events, "done"

@@ -1,0 +1,165 @@
+"""What a sentence speaks of, as far as the names and the noun phrases of the language tell.
+
+The rules of a language read noun phrases and quantities well, whatever is said around them: "den
+roten Hefter aus Bobs Büro" is a "red stapler", and "bob's office"; "anderthalb Minuten" are 90
+seconds. Each of these is a mention, with the literal that a program would hold.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Final, Literal
+
+from grammar.chart import Chart, Node, TooMuch
+from grammar.discourse import Discourse, Thing
+from grammar.doubts import Ambiguous, NotUnderstood
+from grammar.plan import Ask, Text
+from grammar.slips import command_words
+from grammar.understand import Reader
+
+Sort = (
+    Literal["place", "kind", "person", "thing", "furniture", "contact", "gesture", "emotion"]
+    | Literal["joint", "skill", "language", "url", "selector"]
+    | Literal["seconds", "metres", "degrees", "percent", "times", "number", "time"]
+)
+
+_READ: Final[dict[str, Sort]] = {
+    "place_ref": "place",
+    "all_places": "kind",
+    "person_ref": "person",
+    "counted": "thing",
+    "thing": "thing",
+    "duration": "seconds",
+    "length": "metres",
+    "angle": "degrees",
+    "percentage": "percent",
+    "times": "times",
+    "clock_time": "time",
+}
+"""Rules whose readings are mentions."""
+_LISTED: Final[dict[str, Sort]] = {
+    "kind": "kind",
+    "kinds": "kind",
+    "furniture": "furniture",
+    "contact": "contact",
+    "gesture": "gesture",
+    "emotion": "emotion",
+    "joint": "joint",
+    "skill": "skill",
+    "language": "language",
+    "number": "number",
+    "url": "url",
+    "selector": "selector",
+}
+"""Slots whose matches are."""
+MOST_TOKENS: Final = 8
+_DEAREST: Final[dict[Sort, float]] = {"thing": 3.3, "place": 1.6, "person": 1.6, "kind": 1.6}
+_DEAREST_QUANTITY: Final = 1.2
+"""Costs up to which a reading counts."""
+_MISSPELT: Final = 4.7
+"""The same of a name with a misspelt word."""
+
+
+@dataclass(frozen=True)
+class Mention:
+    start: int
+    end: int
+    """The tokens."""
+    sort: Sort
+    value: str
+    """The literal: a name in the world's spelling, a noun phrase, a number in the robot's unit."""
+    cost: float = 0.0
+    """How far-fetched it is."""
+
+
+def mentions(reader: Reader) -> tuple[Mention, ...]:
+    """All mentions of a sentence, also those that exclude each other, in the order of their words;
+    of the same words and sort the likeliest first."""
+    found: dict[tuple[int, int, Sort, str], Mention] = {}
+    for mention in (*_listed(reader), *_read(reader)):
+        key = (mention.start, mention.end, mention.sort, mention.value)
+        if key not in found or mention.cost < found[key].cost:
+            found[key] = mention
+    return tuple(sorted(found.values(), key=lambda each: (each.start, -each.end, each.cost)))
+
+
+def _listed(reader: Reader) -> Iterator[Mention]:
+    for at in range(len(reader.tokens)):
+        for slot, sort in _LISTED.items():
+            for end, cost, value in reader.slots.matches("{" + slot + "}", at):
+                for each in _values(value):
+                    yield Mention(at, end, sort, each, cost)
+
+
+def _values(value: Any) -> Iterator[str]:
+    """The names that a match of a slot stands for."""
+    value = getattr(value, "value", value)  # of misspelt words
+    for each in value if isinstance(value, tuple) else (value,):
+        yield written(each) if isinstance(each, float | int) else str(getattr(each, "name", each))
+
+
+def written(number: float) -> str:
+    """A number as programs hold it."""
+    return f"{number:.10g}"
+
+
+def _read(reader: Reader) -> Iterator[Mention]:
+    chart = reader.chart()
+    known = {name for name in _READ if name in chart.network.names}
+    try:
+        for at, token in enumerate(reader.tokens):
+            if token.kind == "mark":
+                continue
+            for rule in known:
+                for end in chart.ends(rule, at):
+                    if end - at <= MOST_TOKENS and reader.tokens[end - 1].kind != "mark":
+                        yield from _meant(reader, chart, rule, at, end)
+    except TooMuch:
+        return
+
+
+def _meant(reader: Reader, chart: Chart, rule: str, at: int, end: int) -> Iterator[Mention]:
+    node = chart.reading(rule, at, end)
+    sort = _READ[rule]
+    if node.cost > _MISSPELT or (sort == "thing" and _is_no_noun(reader, at, end)):
+        return
+    value = _value(reader, node)
+    if not value:
+        return
+    named = sort in ("place", "person") and bool(node.corrections) and _is_name(reader, value)
+    if named or node.cost <= _DEAREST.get(sort, _DEAREST_QUANTITY):
+        yield Mention(at, end, sort, value, node.cost)
+
+
+def _is_name(reader: Reader, value: str) -> bool:
+    return any(each.name == value for each in (*reader.lexicon.places, *reader.lexicon.people))
+
+
+def _is_no_noun(reader: Reader, at: int, end: int) -> bool:
+    """Whether words that may be a noun are an order, or none that anybody means."""
+    norms = [token.norm for token in reader.tokens[at:end]]
+    orders = command_words(reader.language)
+    return all(norm in reader.language.closed or norm in orders for norm in norms)
+
+
+def _value(reader: Reader, node: Node) -> str:
+    """The literal of a reading; "" where it has none."""
+    discourse = Discourse(reader.language, reader.lexicon, reader.tokens, reader.text)
+    try:
+        meant = discourse.build(node)
+    except (NotUnderstood, Ambiguous):
+        return ""
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
+        return ""  # a rule that needs more than its own words
+    match meant:
+        case Text(value=text) | Thing(value=Text(value=text)):
+            return text
+        case Ask(method="places", arguments={"kind": Text(value=text)}):
+            return text
+        case str():
+            return meant
+        case int() | float():
+            return written(meant)
+        case _:
+            return ""

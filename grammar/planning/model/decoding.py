@@ -1,0 +1,190 @@
+"""How a program is written, token by token: only what may still become one, several in doubt.
+
+The likeliest program is written first. Wherever another token would have been nearly as likely,
+another draft may be begun there later, so that drafts differ where the model is in doubt and share
+all that they have in common.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import islice
+from typing import Any, Final, Protocol
+
+from grammar.planning.model.recogniser import Draft
+from grammar.planning.model.request import Written
+
+LOOKED_AT: Final = 24
+"""Tokens that are compared at each step."""
+FURTHER: Final = 2000
+"""Tokens that are looked through where none of these may follow."""
+MOST_TOKENS: Final = 320
+"""Of one program."""
+LEAST_LIKELY: Final = 4.0
+"""By how much less likely than the first another program may be, as a logarithm."""
+
+
+class Full(Exception):
+    """The model can remember no more."""
+
+
+class LanguageModel(Protocol):
+    """A model that reads tokens; `Branch` is its own notion of what it has read."""
+
+    def encode(self, text: str) -> list[int]:
+        """The tokens of a text."""
+        ...
+
+    def text(self, token: int) -> str:
+        """What a token stands for; "" for the end of a program."""
+        ...
+
+    def read(self, pieces: Sequence[tuple[Any, Sequence[int]]]) -> list[Any]:
+        """Read tokens behind each of some branches; the branches as they are then. Raises
+        `Full`."""
+        ...
+
+    def following(self, branch: Any) -> Iterator[tuple[int, float]]:
+        """The tokens that may follow, the likeliest first, with logarithms of probabilities."""
+        ...
+
+
+@dataclass(frozen=True)
+class Fork:
+    """A place where another token could have been taken."""
+
+    branch: Any
+    """What was read before it."""
+    draft: Draft
+    token: int
+    """The other token."""
+    draft_after: Draft
+    score: float
+    """The logarithm of the probability of all tokens up to it."""
+    ends: bool = False
+    """Whether the program would have ended here."""
+
+
+@dataclass
+class _Growing:
+    branch: Any
+    draft: Draft
+    score: float
+    tokens: int = 0
+    least: float = 0.0
+    pending: tuple[int, ...] = ()
+    """Tokens that were chosen and not read yet."""
+    done: bool = False
+    dead: bool = False
+
+
+@dataclass
+class Decoder:
+    """Writes programs for one sentence."""
+
+    model: LanguageModel
+    forks: list[Fork] = field(default_factory=list)
+    steps: int = 0
+    """How often the model was asked to read."""
+
+    def written(
+        self,
+        prompt: Any,
+        begun: Draft,
+        most: int = 1,
+        on_text: Callable[[str], None] | None = None,
+    ) -> Iterator[Written]:
+        """Up to `most` different programs, the likeliest first; `prompt` is the branch behind which
+        they are written. `on_text` is told the first one as it grows."""
+        best = -math.inf
+        for written in self._grown([_Growing(prompt, begun, 0.0)], on_text):
+            best = written.score
+            yield written
+        likely = [fork for fork in self.forks if fork.score > best - LEAST_LIKELY]
+        others = sorted(likely, key=lambda fork: -fork.score)[: most - 1]
+        self.forks = []
+        yield from self._grown([self._begun(fork) for fork in others], None, best - LEAST_LIKELY)
+
+    def _begun(self, fork: Fork) -> _Growing:
+        growing = _Growing(fork.branch, fork.draft_after, fork.score, pending=(fork.token,))
+        growing.done = fork.ends
+        return growing
+
+    def _grown(
+        self,
+        growing: list[_Growing],
+        on_text: Callable[[str], None] | None,
+        least: float = -math.inf,
+    ) -> Iterator[Written]:
+        """Write all these to their ends, side by side, but for what becomes less likely than
+        `least`."""
+        for each in growing:
+            if not each.pending and not each.done:
+                self._step(each, fork=on_text is not None)
+        while True:
+            for each in [each for each in growing if each.done]:
+                growing.remove(each)
+                yield Written(each.draft.text, each.score, math.exp(each.least), each.tokens)
+            growing[:] = [each for each in growing if not each.dead and each.score > least]
+            if not growing:
+                return
+            try:
+                branches = self.model.read([(each.branch, each.pending) for each in growing])
+            except Full:
+                return  # a half-written program is none
+            self.steps += 1
+            for each, branch in zip(growing, branches, strict=True):
+                each.branch = branch
+                self._step(each, fork=len(growing) == 1)
+                if on_text is not None:
+                    on_text(each.draft.text)
+
+    def _step(self, each: _Growing, *, fork: bool) -> None:
+        """Choose what follows; remember what else might."""
+        choices = self._choices(each)
+        if not choices or each.tokens >= MOST_TOKENS:
+            each.dead = True
+            return
+        total = math.log(sum(math.exp(score) for _, score, _ in choices))
+        (token, score, draft), *others = choices
+        if fork:
+            for other, less, after in others[:3]:
+                self.forks.append(
+                    Fork(
+                        each.branch,
+                        each.draft,
+                        other,
+                        after or each.draft,
+                        each.score + less - total,
+                        after is None,
+                    )
+                )
+        each.score += score - total
+        each.least = min(each.least, score - total)
+        if draft is None:
+            each.done = True
+            return
+        each.tokens += 1
+        each.draft = draft
+        each.pending = (token,)
+
+    def _choices(self, each: _Growing) -> list[tuple[int, float, Draft | None]]:
+        """The tokens that may follow, with the draft behind each; None behind the end."""
+        found: list[tuple[int, float, Draft | None]] = []
+        for number, (token, score) in enumerate(islice(self.model.following(each.branch), FURTHER)):
+            if number >= LOOKED_AT and found:
+                break
+            text = self.model.text(token)
+            if text == "":
+                if each.draft.is_whole:
+                    found.append((token, score, None))
+                continue
+            draft = each.draft.extended(text)
+            if draft is not None:
+                found.append((token, score, draft))
+        return found
+
+
+__all__ = ["Decoder", "Fork", "Full", "LanguageModel"]

@@ -1,0 +1,127 @@
+"""From what a language model writes to a plan: the dialect is shorter than the program.
+
+`robot.` stands before no method, and a search for somebody stands alone: that what follows is only
+done if they are found, and that they were not is told where the robot was sent from, is a matter of
+course that no model has to write each time.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Collection
+from typing import Final
+
+import msgspec
+
+from grammar.language import Language
+from grammar.lexicon import Lexicon
+from grammar.naming import naming
+from grammar.plan import (
+    Ask,
+    Call,
+    ForEach,
+    Holds,
+    If,
+    Items,
+    Not,
+    Plan,
+    Recall,
+    Step,
+    Text,
+    Value,
+)
+from grammar.planning.model.expressions import CALLS
+from grammar.reading import read_program
+from grammar.speech import speech
+from grammar.tidy import BODIES
+
+START: Final = "start"
+ANYBODY: Final = "person"
+_SEARCH: Final = "find"
+
+
+def program_of(text: str) -> str:
+    """The dialect as Python that a robot's program is: with `robot.` before its methods."""
+    tree = ast.parse(text)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in CALLS:
+            node.func = ast.Attribute(ast.Name("robot", ast.Load()), node.func.id, ast.Load())
+    return ast.unparse(ast.fix_missing_locations(tree)) + "\n"
+
+
+def expanded(text: str, people: Collection[str], lexicon: Lexicon, language: Language) -> Plan:
+    """The plan of what a model wrote; `people` are whom the sentence speaks of."""
+    plan = read_program(program_of(text), language.code).plan
+    return Expansion(people, lexicon, language).of(plan)
+
+
+class Expansion:
+    """What goes without saying, said."""
+
+    def __init__(self, people: Collection[str], lexicon: Lexicon, language: Language) -> None:
+        self.people = {*people} - {ANYBODY}
+        self.lexicon = lexicon
+        self.language = language
+        self.returns = False
+
+    def of(self, plan: Plan) -> Plan:
+        steps = self.steps(plan.steps, in_loop=False, names={})
+        keeps = any(isinstance(step, Call) and step.save_as == START for step in steps)
+        if self.returns and not keeps:
+            steps = (Call("location", save_as=START), *steps)
+        return msgspec.structs.replace(plan, steps=steps)
+
+    def steps(
+        self, steps: tuple[Step, ...], in_loop: bool, names: dict[str, Value]
+    ) -> tuple[Step, ...]:
+        done: list[Step] = []
+        for number, step in enumerate(steps):
+            step = self.inner(step, in_loop, names)
+            if self.is_search(step, names):
+                assert isinstance(step, Call)
+                rest = self.steps(steps[number + 1 :], in_loop, names)
+                return (*done, self.searched(step, rest, in_loop))
+            done.append(step)
+        return tuple(done)
+
+    def inner(self, step: Step, in_loop: bool, names: dict[str, Value]) -> Step:
+        if isinstance(step, ForEach):
+            names = {**names, step.variable: step.items}
+        changed = {
+            body: self.steps(getattr(step, body), in_loop or not isinstance(step, If), names)
+            for body in BODIES
+            if getattr(step, body, ())
+        }
+        return msgspec.structs.replace(step, **changed) if changed else step
+
+    def is_search(self, step: Step, names: dict[str, Value]) -> bool:
+        """Whether somebody is looked for, and nothing said of what is done if they are not
+        found."""
+        if not isinstance(step, Call) or step.method != _SEARCH or step.save_as is not None:
+            return False
+        thing = step.arguments["thing"]
+        if isinstance(thing, Recall):
+            among = names.get(thing.name)
+            named = among.items if isinstance(among, Items) else ()
+            return any(isinstance(each, Text) and each.value in self.people for each in named)
+        return isinstance(thing, Text) and thing.value in self.people
+
+    def searched(self, search: Call, rest: tuple[Step, ...], in_loop: bool) -> Step:
+        found = Holds(Ask(_SEARCH, search.arguments))
+        missing = () if in_loop else self.missing(search.arguments["thing"])
+        if not rest:
+            return If(Not(found), missing) if missing else search
+        return If(found, rest, missing)
+
+    def missing(self, thing: Value) -> tuple[Step, ...]:
+        """Coming back and telling that somebody could not be found."""
+        self.returns = True
+        called = naming(self.lexicon, self.language).called
+        name = thing.value if isinstance(thing, Text) else ""
+        known = any(person.name == name for person in self.lexicon.people)
+        spoken = called(name) if known else speech(self.language.code).nouns.the(called(name))
+        told = self.language.phrase("not_found", thing=spoken)
+        return (
+            Call("goto", {"place": Recall(START)}),
+            Call("say", {"text": Text(told)}),
+        )

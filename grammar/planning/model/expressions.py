@@ -1,0 +1,568 @@
+"""Values and conditions of the dialect, read letter by letter, as far as they are written.
+
+A reader stands at a place of one line. Where the line ends too early it raises `Unfinished`, with
+what could come next if that is one of a few; where no program goes on like this it raises `Dead`.
+"""
+
+from __future__ import annotations
+
+import keyword
+import re
+from collections.abc import Iterable, Sequence
+from functools import cached_property
+from typing import Final
+
+from grammar.planning.model.types import (
+    NOTHING,
+    NUMBER,
+    PERSON,
+    PLACE,
+    TEXT,
+    TRUTH,
+    Kind,
+    Type,
+    result_of,
+)
+from grammar.planning.model.vocabulary import FREE, NUMBERS, OPTIONS, Vocabulary, form, role
+from robot_api.methods import METHODS, Parameter
+
+LONGEST_TEXT: Final = 300
+"""Characters that are said or shown at once."""
+LONGEST_OPTION: Final = 60
+DAYS: Final = ("Monday", "Tuesday", "Wednesday", "Thursday", "Friday", "Saturday", "Sunday")
+NOT_OFFERED: Final = frozenset({"stop", "log"})
+"""Methods that no model is asked for."""
+CALLS: Final = tuple(name for name in METHODS if name not in NOT_OFFERED)
+SEEING: Final = frozenset({"sees", "count", "find", "describe", "wait_for"})
+"""Methods whose thing may be a person."""
+FUNCTIONS: Final = (
+    *("len", "sum", "max", "min", "round", "sorted"),
+    *("number_in", "percent", "minutes_since", "random_choice", "weekday"),
+)
+KEYWORDS: Final = frozenset({*keyword.kwlist, "robot"})
+"""Names that are no names."""
+_WORD: Final = re.compile(r"[A-Za-z_]\w*")
+_DIGITS: Final = re.compile(r"-?[\d.]*")
+_ORDERS: Final = (" <= ", " >= ", " < ", " > ")
+_EQUAL: Final = (" == ", " != ")
+_WITHIN: Final = (" not in ", " in ")
+
+
+class Dead(Exception):
+    """No program goes on like this."""
+
+
+class Unfinished(Exception):
+    """The line ends too early; `completions` are all that could follow, if they are few."""
+
+    def __init__(self, completions: Iterable[str] = ()) -> None:
+        super().__init__()
+        self.completions = tuple(completions)
+
+
+class Reader:
+    """Reads a line from a place on, where some names are known."""
+
+    def __init__(self, line: str, at: int, names: dict[str, Type], words: Vocabulary) -> None:
+        self.line = line
+        self.at = at
+        self.names = names
+        self.words = words
+        self.used: set[str] = set()
+        """Names whose values were used."""
+        self.quote = '"'
+
+    # --- letters
+
+    @cached_property
+    def numbers(self) -> tuple[str, ...]:
+        """Those that may stand where nothing says what is counted."""
+        words = self.words
+        return (*words.numbers, *words.minutes, *words.percents, "0", "1", "-1", "2")
+
+    @property
+    def rest(self) -> str:
+        return self.line[self.at :]
+
+    def choose(self, options: Sequence[str]) -> str:
+        """One of these texts."""
+        rest = self.rest
+        found = max((each for each in options if rest.startswith(each)), key=len, default=None)
+        if found is not None:
+            self.at += len(found)
+            return found
+        begun = [each[len(rest) :] for each in options if each.startswith(rest)]
+        if begun:
+            raise Unfinished(begun)
+        raise Dead
+
+    def expect(self, text: str) -> None:
+        self.choose((text,))
+
+    def maybe(self, *options: str) -> str:
+        """One of these texts if it stands here, else ""; they may also follow what does not."""
+        rest = self.rest
+        if any(each.startswith(rest) for each in options):
+            if rest in options:
+                self.at += len(rest)
+                return rest
+            raise Unfinished
+        found = next((each for each in options if rest.startswith(each)), "")
+        self.at += len(found)
+        return found
+
+    def next(self) -> str:
+        """The letter that stands here."""
+        if self.at >= len(self.line):
+            raise Unfinished
+        return self.line[self.at]
+
+    def word(self, known: Iterable[str] | None = None) -> str:
+        """A name; one of those that are `known`, if that is said."""
+        self.next()
+        match = _WORD.match(self.line, self.at)
+        if match is None:
+            raise Dead
+        word = match.group()
+        if match.end() == len(self.line):
+            if known is None:
+                raise Unfinished
+            begun = [each[len(word) :] for each in known if each.startswith(word)]
+            if not begun:
+                raise Dead
+            raise Unfinished(begun if all(begun) else ())
+        if known is not None and word not in known:
+            raise Dead
+        self.at = match.end()
+        return word
+
+    def text(self, longest: int = LONGEST_TEXT) -> str:
+        """Words in quotation marks."""
+        self.expect(self.quote)
+        start = self.at
+        while (letter := self.next()) != self.quote:
+            if letter in "\\\n{}" or self.at - start >= longest:
+                raise Dead
+            self.at += 1
+        self.at += 1
+        return self.line[start : self.at - 1]
+
+    def literal(self, known: Sequence[str]) -> str:
+        """One of these in quotation marks."""
+        chosen = self.choose([f"{self.quote}{each}{self.quote}" for each in known])
+        return chosen[1:-1]
+
+    # --- conditions
+
+    def condition(self) -> None:
+        self.conjunction()
+        while self.maybe(" or "):
+            self.conjunction()
+
+    def conjunction(self) -> None:
+        self.negation()
+        while self.maybe(" and "):
+            self.negation()
+
+    def negation(self) -> None:
+        if self.starts("not "):
+            self.at += len("not ")
+            self.negation()
+        elif self.next() == "(":
+            self.at += 1
+            self.condition()
+            self.expect(")")
+        else:
+            self.comparison()
+
+    def starts(self, text: str) -> bool:
+        """Whether this stands here; as long as it may, what is said is unfinished."""
+        rest = self.rest
+        if len(rest) < len(text) and text.startswith(rest):
+            raise Unfinished
+        return rest.startswith(text)
+
+    def comparison(self) -> Type:
+        """A value, alone or compared with another; alone it must be able to be true or not."""
+        left = self.value()
+        operator = self.maybe(*_ORDERS, *_EQUAL, *_WITHIN)
+        if not operator:
+            if left.kind in (Kind.PLACE, Kind.PERSON, Kind.LOCATION, Kind.NOTHING):
+                raise Dead
+            return left
+        if operator in _WITHIN:
+            self.container(left)
+        else:
+            self.compared(left, ordered=operator in _ORDERS)
+        return TRUTH
+
+    def container(self, left: Type) -> None:
+        if not left.is_text:
+            raise Dead
+        if self.next() == "[":
+            self.listed(left)
+            return
+        right = self.value()
+        if right.kind not in (Kind.LIST, Kind.RECORD) and not right.is_text:
+            raise Dead
+
+    def compared(self, left: Type, *, ordered: bool) -> None:
+        if left.kind is Kind.NUMBER:
+            if self.value().kind is not Kind.NUMBER:
+                raise Dead
+        elif left.is_text or left.kind is Kind.LOCATION:
+            if self.next() in "\"'":
+                self.expected(left)
+            elif not (self.value().is_text or left.kind is Kind.LOCATION) or (
+                ordered and not left.options
+            ):
+                raise Dead
+        elif left.kind is Kind.TRUTH and not ordered:
+            self.choose(("True", "False"))
+        else:
+            raise Dead
+
+    def expected(self, left: Type) -> None:
+        """A fixed text that a value is compared with: one that it can be."""
+        if left.options:
+            self.literal(left.options)
+        elif left.kind in (Kind.PLACE, Kind.LOCATION):
+            self.literal(self.words.places)
+        elif left.kind is Kind.PERSON:
+            self.literal(self.words.people)
+        else:
+            self.text(LONGEST_OPTION)
+
+    # --- values
+
+    def value(self) -> Type:
+        left = self.product()
+        while operator := self.maybe(" + ", " - "):
+            right = self.product()
+            left = self.combined(left, operator, right)
+        return left
+
+    def product(self) -> Type:
+        left = self.atom()
+        while operator := self.maybe(" * ", " / ", " // ", " % "):
+            left = self.combined(left, operator, self.atom())
+        return left
+
+    def combined(self, left: Type, operator: str, right: Type) -> Type:
+        if left.kind is right.kind is Kind.NUMBER:
+            return NUMBER
+        if operator == " + " and left.is_text and right.is_text:
+            return TEXT
+        if operator == " + " and left.kind is right.kind is Kind.LIST:
+            return left.joined(right) or NOTHING
+        raise Dead
+
+    def atom(self) -> Type:
+        letter = self.next()
+        if letter == self.quote:
+            self.text()
+            return TEXT
+        if letter == "[":
+            return self.listed()
+        if letter == "{":
+            self.expect("{}")
+            return Type(Kind.RECORD)
+        if letter == "(":
+            self.at += 1
+            inner = self.value()
+            self.expect(")")
+            return inner
+        if letter.isdigit() or letter == "-":
+            self.number(self.numbers)
+            return NUMBER
+        if self.quote == '"' and self.starts('f"'):
+            self.filled_text()
+            return TEXT
+        return self.named()
+
+    def number(
+        self, known: Sequence[str], low: float | None = None, high: float | None = None
+    ) -> None:
+        match = _DIGITS.match(self.line, self.at)
+        written = match.group() if match else ""
+        if self.at + len(written) == len(self.line):
+            if not any(each.startswith(written) for each in known):
+                raise Dead
+            raise Unfinished
+        if written not in known:
+            raise Dead
+        value = float(written)
+        if (low is not None and value < low) or (high is not None and value > high):
+            raise Dead
+        self.at += len(written)
+
+    def filled_text(self) -> None:
+        """A text with values in braces."""
+        self.expect('f"')
+        start = self.at
+        while (letter := self.next()) != '"':
+            if letter in "\\\n}" or self.at - start >= LONGEST_TEXT:
+                raise Dead
+            self.at += 1
+            if letter == "{":
+                self.quote = "'"
+                if self.value().kind is Kind.NOTHING:
+                    raise Dead
+                self.quote = '"'
+                self.expect("}")
+        self.at += 1
+
+    def named(self) -> Type:
+        """What begins with a name: a value that is known, or a call."""
+        word = self.word((*self.names, *CALLS, *FUNCTIONS, "True", "False"))
+        if word in ("True", "False"):
+            return TRUTH
+        if word in self.names and not self.is_called(word):
+            self.used.add(word)
+            return self.part(self.names[word])
+        if word in FUNCTIONS:
+            return self.function(word)
+        if word == "clock":
+            return self.clock()
+        found = self.call(word)
+        return self.part(found)
+
+    def is_called(self, word: str) -> bool:
+        """Whether a bracket follows: a name may be that of a method, which never stands without."""
+        return word in CALLS and self.next() == "("
+
+    def part(self, of: Type) -> Type:
+        """What is taken of a value: an entry, its letters in lower case."""
+        while True:
+            if of.kind in (Kind.LIST, Kind.RECORD) and self.maybe("["):
+                of = self.entry(of)
+            elif of.is_text and self.maybe(".lower()"):
+                continue
+            elif of.kind is Kind.RECORD and self.maybe(".values()"):
+                of = Type(Kind.LIST, of=of.of)
+            elif of.kind is Kind.LIST and self.maybe(".count("):
+                self.expected(of.of or TEXT)
+                self.expect(")")
+                of = NUMBER
+            else:
+                return of
+
+    def entry(self, of: Type) -> Type:
+        if of.kind is Kind.RECORD:
+            if not self.value().is_text:
+                raise Dead
+        else:
+            self.choose(("0", "-1"))
+        self.expect("]")
+        return of.of or TEXT
+
+    def clock(self) -> Type:
+        self.expect("()")
+        field = self.choose((".time", ".weekday", ".date"))
+        if field == ".time":
+            return Type(Kind.TEXT, self.words.times or ("00:00",))
+        return Type(Kind.TEXT, DAYS) if field == ".weekday" else TEXT
+
+    def function(self, name: str) -> Type:
+        self.expect("(")
+        if name == "weekday":
+            self.expect(")")
+            return TEXT
+        given = self.value()
+        match name:
+            case "len" if given.kind in (Kind.LIST, Kind.RECORD):
+                found = NUMBER
+            case "number_in" if given.is_text:
+                found = NUMBER
+            case "sum" if given.kind is Kind.LIST and given.of == NUMBER:
+                found = NUMBER
+            case "round" if given.kind is Kind.NUMBER:
+                found = NUMBER
+            case "minutes_since" if given.is_text:
+                found = NUMBER
+            case "random_choice" if given.kind is Kind.LIST:
+                found = given.of or TEXT
+            case "percent" if given.kind is Kind.NUMBER:
+                self.another_number()
+                found = NUMBER
+            case "sorted" if given.kind is Kind.LIST:
+                found = given
+            case "max" | "min" if given.kind is Kind.RECORD:
+                found = self.best(given)
+            case "max" | "min" if given.kind is Kind.LIST:
+                found = given.of or NUMBER
+            case "max" | "min" if given.kind is Kind.NUMBER:
+                self.another_number()
+                found = NUMBER
+            case _:
+                raise Dead
+        self.expect(")")
+        return found
+
+    def another_number(self) -> None:
+        self.expect(", ")
+        if self.value().kind is not Kind.NUMBER:
+            raise Dead
+
+    def best(self, record: Type) -> Type:
+        """Which key of a record has the highest value: `max(votes, key=votes.get)`."""
+        before = self.line[: self.at]
+        name = before[before.rindex("(") + 1 :]
+        self.expect(f", key={name}.get")
+        return record.keys or TEXT
+
+    # --- lists
+
+    def listed(self, of: Type | None = None) -> Type:
+        """A list of texts or numbers; of what can be compared with a value, if one is given."""
+        self.expect("[")
+        if self.maybe("]"):
+            return Type(Kind.LIST)
+        items: list[str] = []
+        numbers = False
+        while True:
+            if self.next() == self.quote:
+                start = self.at
+                if of is not None:
+                    self.expected(of)
+                else:
+                    self.literal(self.items())
+                items.append(self.line[start + 1 : self.at - 1])
+            elif self.next().isdigit():
+                self.number(self.numbers)
+                numbers = True
+            else:
+                self.named()
+            if self.choose((", ", "]")) == "]":
+                break
+        if numbers:
+            return Type(Kind.LIST, of=NUMBER)
+        return Type(Kind.LIST, of=self.sort_of(items))
+
+    def items(self) -> tuple[str, ...]:
+        words = self.words
+        known = (*words.places, *words.people, *words.things, *words.kinds, *words.phrases)
+        return tuple(dict.fromkeys(known))
+
+    def sort_of(self, items: Sequence[str]) -> Type:
+        if items and all(each in self.words.places for each in items):
+            return Type(Kind.PLACE, tuple(items))
+        if items and all(each in self.words.people for each in items):
+            return Type(Kind.PERSON, tuple(items))
+        return Type(Kind.TEXT, tuple(items))
+
+    def options(self) -> Type:
+        """The answers that a question offers, or the list that holds them."""
+        if self.next() != "[":
+            known = self.value()
+            if known.kind is not Kind.LIST:
+                raise Dead
+            return known.of or TEXT
+        self.at += 1
+        offered: list[str] = []
+        while True:
+            offered.append(self.text(LONGEST_OPTION))
+            if not offered[-1].strip() or offered.count(offered[-1]) > 1:
+                raise Dead
+            if self.choose((", ", "]")) == "]":
+                break
+        if len(offered) < 2:
+            raise Dead  # no choice
+        return self.sort_of(offered)
+
+    # --- calls
+
+    def call(self, method: str) -> Type:
+        """The brackets behind a robot method's name; gives what it returns."""
+        parameters = form(method)
+        self.expect("(")
+        if method == "goto" and (self.next().isdigit() or self.next() == "-"):
+            return self.point()
+        given: set[str] = set()
+        result = result_of(method)
+        by_name = False
+        while True:
+            left = [each for each in parameters if each.name not in given]
+            needed = [each for each in left if each.required]
+            if not needed and self.next() == ")":
+                break
+            if not left:
+                raise Dead
+            parameter = self.named_parameter(left)
+            by_name = by_name or parameter is not None
+            if parameter is None:
+                if by_name:
+                    raise Dead
+                parameter = left[0]
+            given.add(parameter.name)
+            type_ = self.argument(method, parameter)
+            if parameter.name == "options":
+                result = type_
+            left = [each for each in parameters if each.name not in given]
+            ends = (")",) * (not any(each.required for each in left)) + (", ",) * bool(left)
+            if self.choose(ends) == ")":
+                return result
+        self.expect(")")
+        return result
+
+    def named_parameter(self, left: Sequence[Parameter]) -> Parameter | None:
+        """The parameter that is given by its name here, if one is."""
+        for parameter in left:
+            lead = f"{parameter.name}="
+            if self.rest.startswith(lead) and not self.rest.startswith(f"{lead}="):
+                self.at += len(lead)
+                return parameter
+            if self.rest and lead.startswith(self.rest):
+                raise Unfinished
+        return None
+
+    def point(self) -> Type:
+        self.number(self.numbers)
+        self.expect(", ")
+        self.number(self.numbers)
+        if self.maybe(", "):
+            self.number(self.numbers)
+        self.expect(")")
+        return NOTHING
+
+    def argument(self, method: str, parameter: Parameter) -> Type:
+        what = role(METHODS[method], parameter)
+        if what == OPTIONS:
+            return self.options()
+        if what == FREE:
+            given = self.value()
+            if given.kind is Kind.NOTHING:
+                raise Dead
+            return given
+        known: tuple[str, ...] = getattr(self.words, what)
+        if what in NUMBERS:
+            return self.numeric(parameter, known)
+        if method in SEEING:
+            known = (*known, *self.words.people)
+        if self.next() == self.quote:
+            if not known:
+                raise Dead
+            self.literal(known)
+            return TEXT
+        if what == "things" and self.starts("f"):
+            self.filled_text()
+            return TEXT
+        given = self.value()
+        fits = given.is_text or (what == "places" and given.kind is Kind.LOCATION)
+        strange = {"places": PERSON.kind, "people": PLACE.kind}.get(what)
+        if not fits or given.kind is strange:
+            raise Dead
+        return given
+
+    def numeric(self, parameter: Parameter, known: Sequence[str]) -> Type:
+        schema = parameter.kind.schema
+        schema = next(iter(schema.get("anyOf", ())), schema)
+        if self.next().isdigit() or self.next() == "-":
+            start = self.at
+            self.number(known, schema.get("minimum"), schema.get("maximum"))
+            if self.rest[:1] in (")", ","):
+                return NUMBER
+            self.at = start
+        if self.value().kind is not Kind.NUMBER:
+            raise Dead
+        return NUMBER

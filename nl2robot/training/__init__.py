@@ -1,0 +1,1 @@
+"""Learning from examples; nothing that runs a robot imports this."""

@@ -1,0 +1,1 @@
+"""What the language model learns to write programs from: a corpus, its check, the training."""

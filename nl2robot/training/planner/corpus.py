@@ -1,0 +1,86 @@
+"""The corpus: what people say, with the program that does it; one YAML file for each author.
+
+    author: night nurse
+    world: seaview.yaml             # in worlds/, or a built-in one
+    items:
+      - de: Sag Bob bitte, dass seine Schwester angerufen hat.
+        do: |
+          find("Bob")
+          say("Ihre Schwester hat angerufen.")
+      - en: and tell Clara too
+        after:
+          say: Tell Bob that lunch is ready.
+          do: "find(\\"Bob\\")\\nsay(\\"Lunch is ready.\\")"
+        do: ...
+
+The programs are in the dialect of `grammar.planning.model`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any, Final
+
+import yaml
+
+from grammar.language import languages
+from nl2robot.errors import UserError
+from nl2robot.knowledge import Knowledge
+from sim.world import load_world
+
+FOLDER: Final = Path(__file__).parent
+CORPUS: Final = FOLDER / "corpus"
+WORLDS: Final = FOLDER / "worlds"
+
+
+@dataclass(frozen=True)
+class Before:
+    """What was said and done before."""
+
+    say: str
+    do: str
+
+
+@dataclass(frozen=True)
+class Item:
+    where: str
+    """File and line."""
+    author: str
+    world: str
+    language: str
+    say: str
+    do: str
+    after: Before | None = None
+
+
+@cache
+def knowledge(world: str) -> Knowledge:
+    file = WORLDS / world
+    return Knowledge(load_world(file if file.is_file() else world, names_only=True))
+
+
+def load(files: Iterable[Path]) -> Iterator[Item]:
+    """The items of some files. Raises `UserError` where one is not as it should be."""
+    for file in files:
+        content = yaml.safe_load(file.read_text("utf-8"))
+        for number, entry in enumerate(content["items"], 1):
+            yield _item(file, number, content, entry)
+
+
+def _item(file: Path, number: int, content: dict[str, Any], entry: dict[str, Any]) -> Item:
+    where = f"{file.name} item {number}"
+    spoken = [code for code in languages() if code in entry]
+    extra = entry.keys() - {*languages(), "do", "after", "id"}
+    if len(spoken) != 1 or "do" not in entry or extra:
+        raise UserError(f"{where}: it needs one of en, de, fr, and do; after may be there.")
+    after = Before(**entry["after"]) if "after" in entry else None
+    say = str(entry[spoken[0]]).strip()
+    do = str(entry["do"]).strip("\n")
+    return Item(where, content["author"], content["world"], spoken[0], say, do, after)
+
+
+def files() -> list[Path]:
+    return sorted(CORPUS.glob("*.yaml"))
