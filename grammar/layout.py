@@ -101,6 +101,21 @@ def flat(document: Document) -> str:
             assert_never(document)
 
 
+def enclosed(document: Document) -> Document:
+    """The document in brackets where it would fall apart next to something else, such as `.lower()`
+    or an operator."""
+    match document:
+        case Operators() | Compare():
+            pass
+        case Prefix(before=before) if before:
+            pass
+        case Atom(text=text) if text[:1].isdigit() or text[:1] == "-":
+            pass
+        case _:
+            return document
+    return Brackets("(", (document,), ")", trailing_comma=False)
+
+
 def quote(text: str) -> str:
     """The text as a string literal on one line, with whatever could do harm or hide escaped."""
     return _string(((text, False),))
@@ -145,7 +160,7 @@ def _broken_at_brackets(head: str, document: Document, tail: str, indent: int) -
             lines = _broken_at_brackets(start, right, tail, indent)
             if lines and indent + len(lines[0]) <= WIDTH:
                 return lines
-            if not isinstance(left, Call | Brackets):
+            if not isinstance(left, Call | Brackets) or "." in flat(left).partition("(")[0]:
                 return lines
             first = _broken_at_brackets(head, left, "", indent)
             if first is None:

@@ -2,8 +2,9 @@
 
 A plan is a list of steps over the robot methods of `robot_api.methods`, with conditions, loops and
 remembered values; it is the language-independent middle of the project. `grammar.program` writes
-it as Python, `grammar.explain` as plain words; `schema()` gives its JSON Schema. Every node is a
-tagged `msgspec.Struct`, so `to_data` and `from_data` round-trip through JSON.
+it as Python, `grammar.reading` reads it back, `grammar.explain` puts it into plain words,
+`grammar.normal` gives the one form of all plans that say the same, `schema()` the JSON Schema.
+Every node is a tagged `msgspec.Struct`, so `to_data` and `from_data` round-trip through JSON.
 
 Richer commands ("bring the stapler from the supply room to Alice") are not nodes of their own: they
 are spelled out as the calls they consist of, so that what is explained is what is done.
@@ -11,7 +12,7 @@ are spelled out as the calls they consist of, so that what is explained is what 
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any, Final, Literal
 
 import msgspec
 
@@ -62,14 +63,131 @@ class Ask(Node, frozen=True, tag="ask"):
     field: str | None = None
 
 
+PLACE: Final = Ask("location", field="place")
+"""The name of the place where the robot is, as a text: its coordinates where there is none."""
+
+
 class Sentence(Node, frozen=True, tag="sentence"):
     """Words put together from fixed texts and values: an f-string."""
 
     parts: tuple[Value, ...]
 
 
+class Record(Node, frozen=True, tag="record"):
+    """Values by keys, such as a number for each person: a dict."""
+
+    entries: tuple[tuple[Value, Value], ...] = ()
+    """Keys with their values, in order."""
+
+
+class Range(Node, frozen=True, tag="range"):
+    """The whole numbers from `start` on that are less than `stop`."""
+
+    stop: Value
+    start: Value = Number(0)
+
+
 class Length(Node, frozen=True, tag="length"):
-    """How many items a list has."""
+    """How many items a list has, or entries a record."""
+
+    of: Value
+
+
+class Item(Node, frozen=True, tag="item"):
+    """The item of a list at a position (0 is the first, -1 the last), or what a record has for a
+    key; `default` if it has nothing for it."""
+
+    of: Value
+    at: Value
+    default: Value | None = None
+
+
+class ListOf(Node, frozen=True, tag="list of"):
+    """A list of its own: of the items of a list or a range, or the keys of a record."""
+
+    of: Value
+
+
+class Values(Node, frozen=True, tag="values"):
+    """The values of a record, as a list."""
+
+    of: Value
+
+
+class KeyOf(Node, frozen=True, tag="key of"):
+    """The key that has the smallest or largest value of a record, the first of several; an empty
+    text if there is none."""
+
+    function: Literal["min", "max"]
+    of: Value
+
+
+class Occurrences(Node, frozen=True, tag="occurrences"):
+    """How many items of a list are equal to one."""
+
+    of: Value
+    item: Value
+
+
+class Sorted(Node, frozen=True, tag="sorted"):
+    """A list in order, the smallest first or last."""
+
+    of: Value
+    descending: bool = False
+
+
+class Distinct(Node, frozen=True, tag="distinct"):
+    """A list without what is in it a second time."""
+
+    of: Value
+
+
+class Join(Node, frozen=True, tag="join"):
+    """The items of a list as one text, with another between them."""
+
+    of: Value
+    separator: Value
+
+
+class Field(Node, frozen=True, tag="field"):
+    """A part of a location or a clock that was remembered, such as its time."""
+
+    of: Value
+    name: str
+
+
+class Arithmetic(Node, frozen=True, tag="arithmetic"):
+    """Two numbers calculated with: `//` divides without remainder, `%` gives the remainder. `+`
+    also puts two lists together."""
+
+    left: Value
+    operator: Literal["+", "-", "*", "/", "//", "%"]
+    right: Value
+
+
+class Aggregate(Node, frozen=True, tag="aggregate"):
+    """The sum of the numbers of a list, the smallest or the largest of them; 0 if it is empty."""
+
+    function: Literal["min", "max", "sum"]
+    of: Value
+
+
+class Round(Node, frozen=True, tag="round"):
+    """A number rounded, to a whole one unless `digits` says how many are left after the point."""
+
+    of: Value
+    digits: Value = Number(0)
+
+
+class Absolute(Node, frozen=True, tag="absolute"):
+    """A number without its sign."""
+
+    of: Value
+
+
+class NumberIn(Node, frozen=True, tag="number in"):
+    """The first number that a text names, in digits or in words of the plan's language; 0 if it
+    names none."""
 
     of: Value
 
@@ -85,7 +203,7 @@ class Figure(Node, frozen=True, tag="figure"):
     """A number made of the numbers that a list of answers names: `how` is "sum", "average",
     "highest" or "lowest"; 0 if none of them names one."""
 
-    how: str
+    how: Annotated[str, msgspec.Meta(pattern="^(sum|average|highest|lowest)$")]
     of: Value
 
 
@@ -108,38 +226,25 @@ class Weekday(Node, frozen=True, tag="weekday"):
     names: tuple[str, ...]
 
 
-Value = (
-    Text
-    | Number
-    | Truth
-    | Recall
-    | Items
-    | Ask
-    | Sentence
-    | Length
-    | Share
-    | Figure
-    | Choice
-    | Elapsed
-    | Weekday
-)
-
-
 # --- conditions ----------------------------------------------------------------------------------
 
 
 class Holds(Node, frozen=True, tag="holds"):
-    """The value is true (`sees`, `find`, `wait_for`)."""
+    """The value is true (`sees`, `find`, `wait_for`), or there is something in it: a list that is
+    not empty, a text, a number other than 0."""
 
     value: Value
 
 
+Comparison = Annotated[str, msgspec.Meta(pattern="^(==|!=|<|<=|>|>=|in)$")]
+
+
 class Compare(Node, frozen=True, tag="compare"):
-    """Two values compared: one of == != < <= > >=; `in` for an item of a list or a part of a text
-    (upper and lower case count as the same in texts)."""
+    """Two values compared: one of == != < <= > >=; `in` for an item of a list, a key of a record
+    or a part of a text (upper and lower case count as the same in texts)."""
 
     left: Value
-    operator: str
+    operator: Comparison
     right: Value
 
 
@@ -156,6 +261,44 @@ class Either(Node, frozen=True, tag="or"):
 
 
 Condition = Holds | Compare | Not | Both | Either
+
+Value = (
+    Text
+    | Number
+    | Truth
+    | Recall
+    | Items
+    | Record
+    | Range
+    | Ask
+    | Sentence
+    | Length
+    | Item
+    | ListOf
+    | Values
+    | KeyOf
+    | Occurrences
+    | Sorted
+    | Distinct
+    | Join
+    | Field
+    | Arithmetic
+    | Aggregate
+    | Round
+    | Absolute
+    | NumberIn
+    | Share
+    | Figure
+    | Choice
+    | Elapsed
+    | Weekday
+    | Holds
+    | Compare
+    | Not
+    | Both
+    | Either
+)
+"""Conditions are values, too: whether they hold."""
 
 
 # --- steps ---------------------------------------------------------------------------------------
@@ -184,10 +327,20 @@ class Collect(Node, frozen=True, tag="collect"):
 
 
 class Increase(Node, frozen=True, tag="increase"):
-    """Add to the number of this name: one, unless it says how much."""
+    """Add to the number of this name: one, unless it says how much; to a list all items of another.
+    With a `key`, to what the record of this name has for it, which is 0 at first."""
 
     name: str
     by: Value | None = None
+    key: Value | None = None
+
+
+class SetItem(Node, frozen=True, tag="set item"):
+    """Keep a value for a key in the record of this name, or at a position in the list."""
+
+    name: str
+    key: Value
+    value: Value
 
 
 class If(Node, frozen=True, tag="if"):
@@ -204,11 +357,13 @@ class Repeat(Node, frozen=True, tag="repeat"):
 
 
 class ForEach(Node, frozen=True, tag="for each"):
-    """Do it for every item, which goes by the name `variable` inside."""
+    """Do it for every item of a list, or key of a record, which goes by the name `variable` inside;
+    what the record has for the key by the name `value`."""
 
     variable: str
     items: Value
     steps: tuple[Step, ...]
+    value: str | None = None
 
 
 class While(Node, frozen=True, tag="while"):
@@ -232,14 +387,20 @@ class Forever(Node, frozen=True, tag="forever"):
 
 
 class Try(Node, frozen=True, tag="try"):
-    """Do it, and if the robot fails at it, do the other."""
+    """Do it, and if the robot fails at it, do the other, in which the sentence that says why goes
+    by the name `problem`."""
 
     steps: tuple[Step, ...]
     otherwise: tuple[Step, ...]
+    problem: str | None = None
 
 
 class End(Node, frozen=True, tag="end"):
     """Leave the innermost loop."""
+
+
+class Continue(Node, frozen=True, tag="continue"):
+    """Go on with the next round of the innermost loop."""
 
 
 Step = (
@@ -247,6 +408,7 @@ Step = (
     | Remember
     | Collect
     | Increase
+    | SetItem
     | If
     | Repeat
     | ForEach
@@ -255,6 +417,7 @@ Step = (
     | Forever
     | Try
     | End
+    | Continue
 )
 
 

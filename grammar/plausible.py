@@ -26,6 +26,7 @@ from grammar.plan import (
     Remember,
     Repeat,
     RepeatUntil,
+    SetItem,
     Step,
     Text,
     Try,
@@ -174,7 +175,7 @@ def _questions(step: ForEach) -> frozenset[str]:
 
 def _changes_something(step: Step) -> bool:
     """Whether it may be different after a step: time has passed, or something was moved."""
-    if isinstance(step, Remember | Collect | Increase):
+    if isinstance(step, Remember | Collect | Increase | SetItem):
         return False
     return any(
         isinstance(node, Call | Ask) and node.method in {"wait", "wait_for", "put", "give", "guide"}

@@ -1,29 +1,29 @@
-"""From a program back to a plan, as far as plans go, so that an edited program can be explained.
+"""From a program back to a plan.
 
-What `grammar.program` writes is read back as what it was written from. Anything else that Python
-can say is kept as code (`Code`, `CodeStep`, `Function`), which explanations quote as it stands: a
-reader never misses a robot call, though it may not be in plain words.
+What `grammar.program` writes is read back as what it was written from, and much that says the same
+in other words. `read_program` also takes what no plan can say, so that an edited program can be
+explained: it is kept as code (`Code`, `CodeStep`, `Function`), which explanations quote as it
+stands; a reader never misses a robot call, though it may not be in plain words. `parse_program`
+refuses it, and gives the plan in its normal form.
 """
 
 from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterable, Iterator, Sequence
+import warnings
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Final
 
 from grammar import plan as p
-from grammar.inference import form_for, walk
-from grammar.program import HELPERS
-from robot_api.methods import METHODS
+from grammar.helpers import is_helper
+from grammar.inference import Types
+from grammar.normal import ZERO, as_increase, negative, normal
+from grammar.read_values import Code, Doubt, Problem, ValueReader, is_none, problem_with
+from grammar.traversal import walk
 
-FIGURES: Final = {f"{how}_of": how for how in ("sum", "average", "highest", "lowest")}
-"""Functions of written programs that make one number of many."""
-
-
-class Code(p.Recall, frozen=True, tag="code"):
-    """A value that no plan could give; `name` is its source."""
+__all__ = ["Code", "CodeStep", "Function", "NotAPlan", "Reading", "parse_program", "read_program"]
 
 
 class CodeStep(p.End, frozen=True, tag="code step"):
@@ -38,6 +38,16 @@ class Function(p.Forever, frozen=True, tag="function"):
     name: str
 
 
+class NotAPlan(ValueError):
+    """The program says something that no plan can; `sentence` tells what, and what to say instead,
+    `line` where."""
+
+    def __init__(self, line: int, sentence: str) -> None:
+        super().__init__(f"Line {line}: {sentence}")
+        self.line = line
+        self.sentence = sentence
+
+
 @dataclass(frozen=True)
 class Reading:
     """A program as a plan, and where its steps are."""
@@ -50,46 +60,75 @@ class Reading:
 
 
 def read_program(source: str, language: str = "en") -> Reading:
-    """The plan of a program. Raises `SyntaxError` if it is no program."""
-    reader = _Reader(source)
-    steps = tuple(reader.steps(ast.parse(source).body))
-    return Reading(p.Plan(steps, language), reader.lines, reader.otherwise)
+    """The plan of a program, as far as plans go. Raises `SyntaxError` if it is no program."""
+    reader = _Reader(source, ast.parse(source))
+    return Reading(reader.plan(language), reader.lines, reader.otherwise)
 
+
+def parse_program(source: str, language: str = "en") -> p.Plan:
+    """The plan that says what the program does, in its normal form:
+
+        parse_program(write_program(plan), plan.language) == normal(plan)
+
+    `language` is the one that the plan is for: nothing in a program tells it. Raises `NotAPlan`.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", SyntaxWarning)
+            tree = ast.parse(source)
+            compile(source, "program", "exec", dont_inherit=True)  # finds a break outside a loop
+        reader = _Reader(source, tree)
+        plan = reader.plan(language)
+    except SyntaxError as error:
+        raise NotAPlan(
+            error.lineno or 1, f"Python does not understand this: {error.msg}."
+        ) from None
+    except (ValueError, RecursionError, MemoryError, OverflowError):
+        raise NotAPlan(1, "This is no program, or one that is nested too deeply.") from None
+    problems = [*reader.problems, *reader.doubted(Types(plan))]
+    if problems:
+        first = min(problems, key=lambda problem: problem.line)
+        raise NotAPlan(first.line, first.sentence)
+    return normal(plan)
+
+
+MODULES: Final = frozenset({"random", "re", "math"})
+"""What programs may import: whatever is said with it is looked at where it stands."""
 
 _ELSE: Final = re.compile(r"\s*else\s*:")
 _NEW_LINE: Final = re.compile(r"\r\n?|\n")  # what is one for Python
-_OPERATORS: Final[dict[type[ast.cmpop], str]] = {
-    ast.Eq: "==",
-    ast.NotEq: "!=",
-    ast.Lt: "<",
-    ast.LtE: "<=",
-    ast.Gt: ">",
-    ast.GtE: ">=",
-    ast.In: "in",
-}
 
 
-class _Reader:
-    def __init__(self, source: str) -> None:
-        self.source = source
+class _Reader(ValueReader):
+    """Reads the statements of one program."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
         self.lines: dict[int, int] = {}
         self.otherwise: dict[int, int] = {}
-        self.redefined = _redefined(source)
+        self.written = _NEW_LINE.split(self.source)
 
-    def code(self, node: ast.AST) -> str:
-        return ast.get_source_segment(self.source, node) or ast.unparse(node)
+    def plan(self, language: str) -> p.Plan:
+        return p.Plan(self.block(self.tree.body), language, tuple(self.background()))
+
+    def background(self) -> Iterator[str]:
+        """What was said besides: the comments at the top."""
+        for line in self.written:
+            if not line.startswith("#"):
+                return
+            yield line.removeprefix("#").strip()
 
     # --- statements ------------------------------------------------------------------------------
 
-    def steps(self, body: Iterable[ast.stmt]) -> Iterator[p.Step]:
+    def block(self, body: Iterable[ast.stmt]) -> tuple[p.Step, ...]:
+        steps: list[p.Step] = []
         for statement in body:
-            step = self.step(statement)
-            if step is None:
-                continue
-            self.lines[id(step)] = statement.lineno
-            if line := self.line_otherwise(statement):
-                self.otherwise[id(step)] = line
-            yield step
+            for step in self.steps(statement):
+                self.lines[id(step)] = statement.lineno
+                if line := self.line_otherwise(statement):
+                    self.otherwise[id(step)] = line
+                steps.append(step)
+        return tuple(steps)
 
     def line_otherwise(self, statement: ast.stmt) -> int | None:
         """The line of a statement's `else` or `except`; Python only knows that of the second."""
@@ -97,76 +136,157 @@ class _Reader:
             case ast.Try(handlers=[handler]):
                 return handler.lineno
             case ast.If(body=[*_, last], orelse=[first, *_]):
-                written = _NEW_LINE.split(self.source)
                 between = range(first.lineno, (last.end_lineno or last.lineno) - 1, -1)
-                return next((n for n in between if _ELSE.match(written[n - 1])), None)
+                return next((n for n in between if _ELSE.match(self.written[n - 1])), None)
             case _:
                 return None
 
-    def block(self, body: Iterable[ast.stmt]) -> tuple[p.Step, ...]:
-        return tuple(self.steps(body))
-
-    def step(self, statement: ast.stmt) -> p.Step | None:
-        """The step of a statement; None for one that does nothing."""
+    def steps(self, statement: ast.stmt) -> Iterator[p.Step]:
+        """The steps of a statement; none for one that does nothing."""
         match statement:
-            case ast.Pass() | ast.Import() | ast.ImportFrom():
-                return None
-            case ast.FunctionDef() if _is_helper(statement):
-                return None
+            case ast.Pass() | ast.AnnAssign(value=None) | ast.Expr(value=ast.Constant()):
+                pass
+            case ast.Import() | ast.ImportFrom():
+                self.imported(statement)
+            case ast.FunctionDef() if is_helper(statement):
+                pass
             case ast.FunctionDef(name=name, body=body):
-                return Function(steps=self.block(body), name=name)
-            case ast.Expr(value=ast.Constant()):
-                return None
+                self.problems.append(problem_with(statement, name))
+                yield Function(steps=self.block(body), name=name)
             case ast.Expr(value=ast.Call() as call):
-                return self.call(call, None) or self.collect(call) or self.other(statement)
-            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call() as call):
-                return self.call(call, name) or p.Remember(name, self.value(call))
-            case ast.Assign(targets=[ast.Name(id=name)], value=value):
-                return p.Remember(name, self.value(value))
-            case ast.AugAssign(target=ast.Name(id=name), op=ast.Add(), value=ast.Constant(value=1)):
-                return p.Increase(name)
-            case ast.AugAssign(target=ast.Name(id=name), op=ast.Add(), value=ast.Name(id=much)):
-                return p.Increase(name, p.Recall(much))
+                yield self.call(call) or self.other(statement)
+            case ast.Assign(targets=[ast.Tuple(elts=names)], value=ast.Tuple(elts=values)) if len(
+                names
+            ) == len(values) and all(isinstance(each, ast.Constant) for each in values):
+                for target, value in zip(names, values, strict=True):
+                    yield self.kept(statement, target, value)
+            case ast.Assign(targets=[target], value=value):
+                yield self.kept(statement, target, value)
+            case ast.Assign(targets=targets, value=ast.Constant() as value):
+                for target in targets:
+                    yield self.kept(statement, target, value)
+            case ast.AnnAssign(target=target, value=ast.expr() as value):
+                yield self.kept(statement, target, value)
+            case ast.AugAssign():
+                yield self.increased(statement)
             case ast.If(test=test, body=body, orelse=orelse):
-                return p.If(self.condition(test), self.block(body), self.block(orelse))
-            case ast.For(target=ast.Name(), orelse=[]):
-                return self.for_loop(statement)
+                yield p.If(self.condition(test), self.block(body), self.block(orelse))
+            case ast.For(orelse=[]):
+                yield self.for_loop(statement)
             case ast.While(orelse=[]):
-                return self.while_loop(statement)
-            case ast.Try(body=body, handlers=[handler], orelse=[], finalbody=[]):
-                return p.Try(self.block(body), self.block(handler.body))
+                yield self.while_loop(statement)
+            case ast.Try(handlers=[handler], orelse=[], finalbody=[]) if _catches_all(handler):
+                yield p.Try(self.block(statement.body), self.block(handler.body), handler.name)
             case ast.Break():
-                return p.End()
+                yield p.End()
+            case ast.Continue():
+                yield p.Continue()
+            case _:
+                yield self.other(statement)
+
+    def other(self, statement: ast.stmt) -> p.Step:
+        source = self.code(statement)
+        self.problems.append(problem_with(statement, source))
+        return CodeStep(source=source)
+
+    def imported(self, statement: ast.Import | ast.ImportFrom) -> None:
+        names = [each.name for each in statement.names]
+        named = [each.asname for each in statement.names if each.asname]
+        if isinstance(statement, ast.ImportFrom) or named or not MODULES.issuperset(names):
+            sentence = f"A plan imports nothing but {' and '.join(sorted(MODULES))}."
+            self.problems.append(Problem(statement.lineno, sentence))
+
+    def call(self, call: ast.Call) -> p.Step | None:
+        """A call of the robot, or of a method that changes a list."""
+        match call:
+            case ast.Call(func=ast.Attribute(value=ast.Name(id="robot"), attr=name)):
+                if asked := self.asked(call):
+                    return p.Call(asked.method, asked.arguments)
+                self.problems.append(Problem(call.lineno, self.no_such_call(call, name)))
+            case ast.Call(
+                func=ast.Attribute(ast.Name(id=name), "append"), args=[item], keywords=[]
+            ):
+                return p.Collect(name, self.value(item))
+            case ast.Call(
+                func=ast.Attribute(ast.Name(id=name), "extend"), args=[more], keywords=[]
+            ):
+                return p.Increase(name, self.value(more))
+            case ast.Call(func=ast.Attribute(ast.Name() as items, "sort"), args=[], keywords=how):
+                in_order = ast.Call(ast.Name("sorted", ast.Load()), [items], how)
+                value = self.formed(ast.copy_location(in_order, call))
+                return p.Remember(items.id, value) if value else None
+            case _:
+                pass
+        return None
+
+    def kept(self, statement: ast.stmt, target: ast.expr, value: ast.expr) -> p.Step:
+        """A value that is given a name, or put under a key."""
+        match value:
+            case ast.IfExp(test=test, body=one, orelse=other):
+                then, otherwise = (self.kept(statement, target, each) for each in (one, other))
+                return p.If(self.condition(test), (then,), (otherwise,))
+        match target:
+            case ast.Name(id=name):
+                if isinstance(value, ast.Call) and (asked := self.asked(value)):
+                    return p.Call(asked.method, asked.arguments, name)
+                read = self.nothing(value, name) if is_none(value) else self.value(value)
+                return as_increase(p.Remember(name, read))
+            case ast.Subscript(value=ast.Name(id=name), slice=key) if not isinstance(
+                key, ast.Slice
+            ):
+                return as_increase(p.SetItem(name, self.value(key), self.value(value)))
             case _:
                 return self.other(statement)
 
-    def other(self, statement: ast.stmt) -> p.Step:
-        return CodeStep(source=self.code(statement))
+    def nothing(self, none: ast.expr, name: str) -> p.Value:
+        """None, before something is known: an empty text, unless it is no text that will be."""
+        sentence = "A plan has no None. Begin with a value of the same kind, such as 0."
+        self.doubts.append(Doubt(p.Recall(name), "Any", Problem(none.lineno, sentence)))
+        return p.Text("")
 
-    def call(self, call: ast.Call, save_as: str | None) -> p.Step | None:
-        asked = self.asked(call)
-        return p.Call(asked.method, asked.arguments, save_as) if asked else None
-
-    def collect(self, call: ast.Call) -> p.Step | None:
-        match call:
-            case ast.Call(
-                func=ast.Attribute(value=ast.Name(id=name), attr="append"), args=[item], keywords=[]
-            ):
-                return p.Collect(name, self.value(item))
+    def increased(self, statement: ast.AugAssign) -> p.Step:
+        """`votes += 1`; what is multiplied is given its new value."""
+        target = statement.target
+        match statement.op, self.value(statement.value):
+            case ast.Add(), value:
+                by = None if value == p.Number(1) else value
+            case ast.Sub(), value:
+                by = negative(value)
             case _:
-                return None
+                whole = ast.BinOp(target, statement.op, statement.value)
+                return self.kept(statement, target, ast.copy_location(whole, statement))
+        match target:
+            case ast.Name(id=name):
+                return p.Increase(name, by)
+            case ast.Subscript(value=ast.Name(id=name), slice=key) if not isinstance(
+                key, ast.Slice
+            ):
+                return p.Increase(name, by, self.value(key))
+            case _:
+                return self.other(statement)
 
     def for_loop(self, loop: ast.For) -> p.Step:
-        assert isinstance(loop.target, ast.Name)
-        steps = self.block(loop.body)
-        match loop.iter:
-            case ast.Call(func=ast.Name(id="range"), args=[times], keywords=[]) if (
-                "range" not in self.redefined
+        match loop:
+            case ast.For(target=ast.Name(id=name), iter=ast.Call(func=ast.Attribute(of, "keys"))):
+                return p.ForEach(name, self.value(of), self.block(loop.body))
+            case ast.For(target=ast.Name(id=name)):
+                items, steps = self.value(loop.iter), self.block(loop.body)
+                if isinstance(items, p.Range) and items.start == ZERO and not self.is_used(name):
+                    return p.Repeat(items.stop, steps)
+                return p.ForEach(name, items, steps)
+            case ast.For(
+                target=ast.Tuple(elts=[ast.Name(id=key), ast.Name(id=name)]),
+                iter=ast.Call(func=ast.Attribute(of, "items"), args=[], keywords=[]),
             ):
-                # Who uses the number of the round cannot be told "three times".
-                if not _uses(loop.body, loop.target.id):
-                    return p.Repeat(self.value(times), steps)
-        return p.ForEach(loop.target.id, self.value(loop.iter), steps)
+                return p.ForEach(key, self.value(of), self.block(loop.body), name)
+            case _:
+                return self.other(loop)
+
+    def is_used(self, name: str) -> bool:
+        """Whether the program speaks of a name a second time: who counts the rounds of a loop and
+        never looks at the number just says how many there are."""
+        names = (each.id for each in ast.walk(self.tree) if isinstance(each, ast.Name))
+        return list(names).count(name) > 1
 
     def while_loop(self, loop: ast.While) -> p.Step:
         match loop:
@@ -184,169 +304,10 @@ class _Reader:
             return p.Forever(steps)
         return p.While(self.condition(loop.test), steps)
 
-    # --- values ----------------------------------------------------------------------------------
 
-    def asked(self, call: ast.Call) -> p.Ask | None:
-        """A robot call with all its arguments by name; None if it is something else."""
-        match call.func:
-            case ast.Attribute(value=ast.Name(id="robot"), attr=name) if name in METHODS:
-                method = METHODS[name]
-            case _:
-                return None
-        if any(isinstance(each, ast.Starred) for each in call.args):
-            return None
-        named: dict[str, p.Value] = {}
-        for keyword in call.keywords:
-            if keyword.arg is None:
-                return None
-            named[keyword.arg] = self.value(keyword.value)
-        for form in method.forms:
-            if len(call.args) > len(form):
-                continue
-            by_place = {
-                parameter.name: self.value(given)
-                for parameter, given in zip(form, call.args, strict=False)
-            }
-            arguments = by_place | named
-            if by_place.keys().isdisjoint(named) and form_for(method, arguments) == form:
-                return p.Ask(name, arguments)
-        return None
-
-    def value(self, node: ast.expr) -> p.Value:
-        match node:
-            case ast.Constant(value=bool() as truth):
-                return p.Truth(truth)
-            case ast.Constant(value=str() as text):
-                return p.Text(text)
-            case ast.Constant(value=int() | float() as number):
-                return p.Number(number)
-            case ast.UnaryOp(op=ast.USub(), operand=ast.Constant(value=int() | float() as number)):
-                return p.Number(-number)
-            case ast.Name(id=name):
-                return p.Recall(name)
-            case ast.List(elts=items):
-                return p.Items(tuple(map(self.value, items)))
-            case ast.JoinedStr(values=parts):
-                return p.Sentence(tuple(map(self.value, parts)))
-            case ast.FormattedValue(value=value, conversion=-1, format_spec=None):
-                return self.value(value)
-            case ast.BinOp(op=ast.Add()) if (added := self.added(node)) is not None:
-                return p.Sentence(tuple(added))
-            case ast.Attribute(value=ast.Call() as call, attr=name):
-                asked = self.asked(call)
-                if asked is not None and not asked.arguments:
-                    return p.Ask(asked.method, field=name)
-            case ast.ListComp(
-                elt=ast.Call(func=ast.Attribute(value=ast.Name(id=same), attr="lower")),
-                generators=[ast.comprehension(target=ast.Name(id=name), iter=items, ifs=[])],
-            ) if same == name:
-                return self.value(items)
-            case ast.Call():
-                return self.called(node)
-            case _:
-                pass
-        return Code(self.code(node))
-
-    def called(self, call: ast.Call) -> p.Value:
-        names = {node.id for node in ast.walk(call.func) if isinstance(node, ast.Name)}
-        if names & self.redefined:
-            return Code(self.code(call))
-        match call:
-            case ast.Call(
-                func=ast.Name(id="str"),
-                args=[ast.Call(func=ast.Attribute(ast.Name(id="robot"), "location"))],
-            ):
-                return p.Ask("location", field="place")
-            case ast.Call(func=ast.Name(id="str" | "int" | "float"), args=[value], keywords=[]):
-                return self.value(value)
-            case ast.Call(func=ast.Name(id="len"), args=[value], keywords=[]):
-                return p.Length(self.value(value))
-            case ast.Call(func=ast.Name(id="percent"), args=[part, whole], keywords=[]):
-                return p.Share(self.value(part), self.value(whole))
-            case ast.Call(func=ast.Name(id=name), args=[of], keywords=[]) if name in FIGURES:
-                return p.Figure(FIGURES[name], self.value(of))
-            case ast.Call(func=ast.Name(id="minutes_since"), args=[since], keywords=[]):
-                return p.Elapsed(self.value(since))
-            case ast.Call(
-                func=ast.Name(id="weekday_called"), args=[ast.List(elts=days)], keywords=[]
-            ) if all(isinstance(name, ast.Constant) for name in days):
-                named = (name.value for name in days if isinstance(name, ast.Constant))
-                return p.Weekday(tuple(str(day) for day in named))
-            case ast.Call(
-                func=ast.Attribute(value=ast.Name(id="random"), attr="choice"), args=[among]
-            ):
-                return p.Choice(self.value(among))
-            case ast.Call(
-                func=ast.Attribute(value=ast.Constant(value=", "), attr="join"), args=[items]
-            ):
-                return self.value(items)
-            case ast.Call(func=ast.Attribute(value=text, attr="lower"), args=[], keywords=[]):
-                return self.value(text)
-            case _:
-                return self.asked(call) or Code(self.code(call))
-
-    def added(self, node: ast.expr) -> list[p.Value] | None:
-        """The parts of texts put together with +; None if it is no text for certain."""
-        parts: list[ast.expr] = []
-        while isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
-            parts.insert(0, node.right)
-            node = node.left
-        parts.insert(0, node)
-        texts = (ast.Constant, ast.JoinedStr)
-        if not any(
-            isinstance(part, texts) and isinstance(getattr(part, "value", ""), str)
-            for part in parts
-        ):
-            return None
-        return [self.value(part) for part in parts]
-
-    # --- conditions ------------------------------------------------------------------------------
-
-    def condition(self, node: ast.expr) -> p.Condition:
-        match node:
-            case ast.UnaryOp(op=ast.Not(), operand=operand):
-                return p.Not(self.condition(operand))
-            case ast.BoolOp(op=ast.And(), values=values):
-                return p.Both(tuple(map(self.condition, values)))
-            case ast.BoolOp(values=values):
-                return p.Either(tuple(map(self.condition, values)))
-            case ast.Compare(left=left, ops=[ast.NotIn()], comparators=[right]):
-                return p.Not(p.Compare(self.value(left), "in", self.value(right)))
-            case ast.Compare(left=left, ops=[operator], comparators=[right]) if (
-                type(operator) in _OPERATORS
-            ):
-                return p.Compare(self.value(left), _OPERATORS[type(operator)], self.value(right))
-            case _:
-                return p.Holds(self.value(node))
-
-
-def _redefined(source: str) -> set[str]:
-    """Names of Python's that the program gives another meaning, so that nobody can trust them."""
-    bound: set[str] = set()
-    for node in ast.walk(ast.parse(source)):
-        match node:
-            case ast.FunctionDef(name=name) if not _is_helper(node):
-                bound.add(name)
-            case ast.ClassDef(name=name) | ast.arg(arg=name):
-                bound.add(name)
-            case ast.Name(id=name, ctx=ast.Store()):
-                bound.add(name)
-            case ast.alias(name=name, asname=str() as other) if name != other:
-                bound.add(other)
-            case _:
-                pass
-    return bound & {"str", "int", "float", "len", "range", "random", *HELPERS}
-
-
-def _is_helper(node: ast.FunctionDef) -> bool:
-    """Whether it is one of the functions that written programs bring along."""
-    helper = HELPERS.get(node.name)
-    return helper is not None and ast.unparse(node) == ast.unparse(ast.parse("\n".join(helper)))
-
-
-def _uses(body: Sequence[ast.stmt], name: str) -> bool:
-    return any(
-        isinstance(node, ast.Name) and node.id == name
-        for statement in body
-        for node in ast.walk(statement)
-    )
+def _catches_all(handler: ast.ExceptHandler) -> bool:
+    match handler.type:
+        case None | ast.Name(id="Exception"):
+            return True
+        case _:
+            return False

@@ -72,6 +72,15 @@ class Durations(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return fill(self.two, {"first": ", ".join(parts[:-1]), "last": parts[-1]})
 
 
+class NumberWords(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """The numbers that a program looks for in what was said."""
+
+    names: tuple[str, ...]
+    """What 0 to 19 and the tens from 20 to 90 are called, each with its other names: "un/une"."""
+    rewritten: tuple[tuple[str, str], ...] = ()
+    """What is to be replaced first, in turn, so that the words stand one by one."""
+
+
 class Nouns(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     thing: tuple[str, ...]
     place: tuple[str, ...]
@@ -147,8 +156,11 @@ class Speech(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     values: dict[str, str]
     nouns: Nouns
     conditions: dict[str, str]
+    elapsed: dict[str, str]
+    """How it is said how much time has passed, by the operator it is compared with."""
     methods: dict[str, Words]
     durations: Durations
+    numbers: NumberWords
     languages: dict[str, str] = {}
     """What languages are called, by their codes."""
     counts: tuple[Kept, ...] = ()

@@ -7,11 +7,14 @@ from dataclasses import dataclass, replace
 from typing import assert_never
 
 from grammar import plan as p
-from grammar.inference import may_end, walk
+from grammar.identifiers import speaks_of
+from grammar.kinds import is_list, is_record
+from grammar.pauses import may_end
 from grammar.reading import CodeStep, Function
 from grammar.speech import fill, fitting, gaps
 from grammar.told import Told
 from grammar.told_values import ValueTeller, as_call, signed, sort_of
+from grammar.traversal import walk
 
 
 @dataclass
@@ -25,14 +28,7 @@ class Teller(ValueTeller):
     def _name_results(self) -> None:
         """Give everything remembered words of its own: the shortest that nothing else has."""
         choices: dict[str, list[str]] = {}
-        for step in walk(self.plan.steps):
-            match step:
-                case p.Call(save_as=str() as name) | p.Remember(name=name):
-                    step = as_call(step)
-                case p.ForEach(variable=name):
-                    pass
-                case _:
-                    continue
+        for name, step in self._made(self.plan.steps):
             self.makers[name] = step if name not in self.makers else None
             wishes = list(self._called(name, step))
             known = choices.setdefault(name, wishes)
@@ -52,6 +48,19 @@ class Teller(ValueTeller):
                 values = {"value": wishes[0], "name": name.replace("_", " ")}
                 self.results[name] = fill(self.words.values["told apart"], values)
 
+    def _made(self, steps: Iterable[p.Step]) -> Iterator[tuple[str, p.Step]]:
+        """The names that steps give something, each with the step that does."""
+        for step in walk(steps):
+            match step:
+                case p.Call(save_as=str() as name) | p.Remember(name=name):
+                    yield name, as_call(step)
+                case p.ForEach(variable=name, value=value):
+                    yield name, step
+                    if value is not None:
+                        yield value, step
+                case p.Try(problem=str() as name):
+                    yield name, step
+
     def _apart_from(self, name: str) -> set[str]:
         """Of what a loop goes over, the items of other loops: two loops one after the other may
         both speak of "this place", one within the other may not."""
@@ -60,10 +69,8 @@ class Teller(ValueTeller):
             return set()
         loops = [each for each in walk(self.plan.steps) if isinstance(each, p.ForEach)]
         within = [each for each in loops if any(inner is loop for inner in walk(each.steps))]
-        near = {
-            each.variable for each in (*within, *walk(loop.steps)) if isinstance(each, p.ForEach)
-        }
-        return {each.variable for each in loops} - near
+        near = (each for each in (*within, *walk(loop.steps)) if isinstance(each, p.ForEach))
+        return _loop_names(loops) - _loop_names(near)
 
     def forget(self, steps: Iterable[p.Step]) -> None:
         """After or before steps that may run or not: what they make is no longer just the latest,
@@ -87,6 +94,12 @@ class Teller(ValueTeller):
                 yield from (self.filled(each, step.arguments) for each in patterns)
                 if not patterns:
                     yield self.named(readable)
+            case p.Try():
+                yield self.words.values["problem"]
+            case p.ForEach(value=value) if value == name:
+                yield self.words.values["item value"]
+            case p.ForEach(items=p.Range()):
+                yield self.words.values["item number"]
             case p.ForEach():
                 sort = readable.rstrip("0123456789").strip()
                 item = self.words.values.get(f"item {sort}", self.words.values["item"])
@@ -129,12 +142,17 @@ class Teller(ValueTeller):
                 yield Told(fill(pattern, {"what": kept}))
             case p.Remember(value=p.Items(items=())):
                 yield Told(fill(say["empty"], {"name": self.recall(step.name)}))
+            case p.Remember(value=p.Record(entries=())):
+                yield Told(fill(say["empty record"], {"name": self.recall(step.name)}))
             case p.Remember() if self.is_bookkeeping(step):
                 pass
             case p.Remember(value=p.Truth(value=True)) if so := self.finding(step.name):
                 yield Told(fill(say["note"], {"finding": so}))
             case p.Remember(value=p.Text(value="")):
                 yield Told(fill(say["unset"], {"name": self.recall(step.name)}))
+            case p.Remember(value=p.Compare() | p.Not() | p.Both() | p.Either() as so):
+                values = {"condition": self.condition(so), "name": self.recall(step.name)}
+                yield Told(fill(say["whether"], values))
             case p.Remember():
                 pattern = say["start" if isinstance(step.value, p.Number) else "remember"]
                 values = {"value": self.value(step.value), "name": self.recall(step.name)}
@@ -142,19 +160,27 @@ class Teller(ValueTeller):
             case p.Collect():
                 values = {"value": self.value(step.value), "name": self.recall(step.name)}
                 yield Told(fill(say["collect"], values))
-            case p.Increase(by=p.Recall() as much):
-                values = {"value": self.value(much), "name": self.recall(step.name)}
-                yield Told(fill(say["collect"], values))
             case p.Increase():
-                yield Told(fill(say["increase"], {"name": self.recall(step.name)}))
+                yield Told(self.increase(step))
+            case p.SetItem():
+                values = {"key": self.value(step.key), "value": self.value(step.value)}
+                yield Told(fill(say["set item"], {**values, "name": self.recall(step.name)}))
             case CodeStep(source=source):
                 yield Told(fill(say["code"], {"code": self.quoted_code(source)}))
             case p.End():
                 yield Told(say["end"])
+            case p.Continue():
+                yield Told(say["continue"])
             case p.If():
                 yield from self.branches(step)
             case p.Repeat():
                 yield self.loop("repeat", step.steps, times=self.times(step.times))
+            case p.ForEach(items=p.Range(stop=stop, start=p.Number(value=0))) if not speaks_of(
+                step.steps, step.variable
+            ):
+                yield self.loop("repeat", step.steps, times=self.times(stop))
+            case p.ForEach() if is_record(self.types.of(step.items)):
+                yield self.loop("for each entry", step.steps, items=self.value(step.items))
             case p.ForEach():
                 yield self.loop("for each", step.steps, items=self.each_of(step))
             case p.While(steps=(p.Call(method="wait"),)):  # nothing is done but waiting
@@ -178,6 +204,24 @@ class Teller(ValueTeller):
                     self.forget(step.otherwise)
             case _:
                 assert_never(step)
+
+    def increase(self, step: p.Increase) -> str:
+        """What is added to a number, a list or an entry of a record."""
+        say = self.words.steps
+        name = self.recall(step.name)
+        if step.key is not None:
+            name = self.value(p.Item(p.Recall(step.name), step.key))
+        match step.by:
+            case None:
+                return fill(say["increase"], {"name": name})
+            case p.Number(value=number) if number < 0:
+                return fill(say["decrease"], {"value": self.value(p.Number(-number)), "name": name})
+            case p.Arithmetic(left=p.Number(value=0), operator="-", right=less):
+                return fill(say["decrease"], {"value": self.value(less), "name": name})
+            case by:
+                several = is_list(self.types.of(by)) and not isinstance(by, p.Items)
+                pattern = say["extend" if several else "collect"]
+                return fill(pattern, {"value": self.value(by), "name": name})
 
     def is_bookkeeping(self, step: p.Remember) -> bool:
         """Whether it only says that nothing is known yet, or which number is to be passed next."""
@@ -226,7 +270,7 @@ class Teller(ValueTeller):
     def loop(self, kind: str, steps: tuple[p.Step, ...], **values: str) -> Told:
         self.forget(steps)
         told = self.clause(kind, steps, False, **values)
-        if not steps and kind not in ("repeat", "for each"):
+        if not steps and kind not in ("repeat", "for each", "for each entry"):
             told = replace(told, steps=(Told(self.words.steps["pause"]),))
         self.forget(steps)
         return told
@@ -255,9 +299,16 @@ class Teller(ValueTeller):
         return action
 
     def times(self, times: p.Value) -> str:
+        if isinstance(times, p.NumberIn):
+            times = times.of
         if isinstance(times, p.Number):
             word = self.words.times.words.get(int(times.value))
             if word and float(times.value).is_integer():
                 return word
             return fill(self.words.times.number, {"number": self.value(times)})
         return fill(self.words.times.value, {"value": self.value(times)})
+
+
+def _loop_names(loops: Iterable[p.ForEach]) -> set[str]:
+    """What the items of loops go by in them."""
+    return {name for each in loops for name in (each.variable, each.value) if name is not None}

@@ -26,12 +26,14 @@ from grammar.plan import (
     Remember,
     Repeat,
     RepeatUntil,
+    SetItem,
     Step,
     Text,
     Try,
     Value,
     While,
 )
+from grammar.traversal import nodes as nodes
 from robot_api.methods import METHODS
 
 BODIES: Final = ("steps", "then", "otherwise")
@@ -76,7 +78,7 @@ def _scoped(steps: tuple[Step, ...], known: frozenset[str]) -> tuple[Step, ...]:
         bound.append(bound[-1] | _surely(done[-1]))
     result: list[Step] = []
     for step, before in zip(done, bound, strict=False):
-        inside = before | ({step.variable} if isinstance(step, ForEach) else set())
+        inside = before | (loop_names(step) if isinstance(step, ForEach) else set())
         inner = {name: _scoped(body, inside) for name in BODIES if (body := _body(step, name))}
         result.append(msgspec.structs.replace(step, **inner) if inner else step)
     return tuple(result)
@@ -117,8 +119,15 @@ def gives(step: Step) -> frozenset[str]:
         elif isinstance(each, Remember):
             found.add(each.name)
         elif isinstance(each, ForEach):
-            found.add(each.variable)
+            found |= loop_names(each)
+        elif isinstance(each, Try) and each.problem:
+            found.add(each.problem)
     return frozenset(found)
+
+
+def loop_names(loop: ForEach) -> set[str]:
+    """The names that what a loop goes over has inside it."""
+    return {loop.variable} | ({loop.value} if loop.value else set())
 
 
 def _surely(step: Step) -> frozenset[str]:
@@ -280,20 +289,6 @@ def without_unused(plan: Plan) -> Plan:
         plan = less
 
 
-def nodes(value: Any) -> Iterator[Node]:
-    """All nodes in a part of a plan, itself included."""
-    if isinstance(value, Node):
-        yield value
-        for name in value.__struct_fields__:
-            yield from nodes(getattr(value, name))
-    elif isinstance(value, tuple | list):
-        for each in value:
-            yield from nodes(each)
-    elif isinstance(value, dict):
-        for each in value.values():
-            yield from nodes(each)
-
-
 def replaced(part: Any, old: Value, new: Value) -> Any:
     """A part of a plan with one value put in the place of another, in texts too."""
     if part == old:
@@ -334,7 +329,7 @@ def _forget(steps: tuple[Step, ...], used: set[str]) -> tuple[Step, ...]:
     kept = (
         _forget_in(step, used)
         for step in steps
-        if not (isinstance(step, Remember | Collect | Increase) and step.name not in used)
+        if not (isinstance(step, Remember | Collect | Increase | SetItem) and step.name not in used)
     )
     return _going_once(tuple(step for step in kept if step is not None))
 

@@ -7,9 +7,12 @@ from dataclasses import dataclass, field
 from typing import Final, assert_never
 
 from grammar import plan as p
-from grammar.inference import Types, walk
-from grammar.reading import Code
+from grammar.inference import Types, truth
+from grammar.kinds import is_list, is_record
+from grammar.read_values import Code
 from grammar.speech import Speech, Words, fill, fitting, forms, gaps
+from grammar.traversal import walk
+from grammar.writing import OPPOSITES as COMPARED
 from robot_api.methods import METHODS
 
 ROLES: Final = {
@@ -39,16 +42,7 @@ NUMBERS: Final = frozenset(
     if parameter.kind.schema.get("type") in ("number", "integer")
 )
 
-OPPOSITES: Final = {
-    "==": "!=",
-    "!=": "==",
-    "<": ">=",
-    ">=": "<",
-    ">": "<=",
-    "<=": ">",
-    "in": "not in",
-    "among": "not among",
-}
+OPPOSITES: Final = {**COMPARED, "in": "not in", "among": "not among"}
 
 
 @dataclass
@@ -179,26 +173,107 @@ class ValueTeller:
                 return self.asked(value)
             case p.Sentence():
                 return fill(say["quoted"], {"text": "".join(self._within_quotes(value.parts))})
-            case p.Length():
-                if self.types.of(value.of) == "int":
-                    return self.value(value.of)
-                entries = "entries" if isinstance(value.of, p.Recall) else "length"
-                return fill(say[entries], {"value": self.value(value.of)})
-            case p.Share():
-                values = {"part": self.value(value.part), "whole": self.value(value.whole)}
-                return fill(say["share"], values)
-            case p.Figure():
-                return fill(say[value.how], {"value": self.value(value.of)})
-            case p.Elapsed():
-                return fill(say["elapsed"], {"value": self.value(value.since)})
+            case p.Length(of=of) if self.types.of(of) == "int":
+                return self.value(of)
             case p.Weekday():
                 return self.words.methods["clock"].fields["weekday"]
-            case p.Choice():
-                among = value.among
-                items = self.series(among.items, "or") if isinstance(among, p.Items) else None
-                return fill(say["choice"], {"value": items or self.value(among)})
+            case p.Record(entries=()):
+                return say["empty table"]
+            case p.Record():
+                entries = (
+                    fill(say["entry"], {"key": self.value(key), "value": self.value(entry)})
+                    for key, entry in value.entries
+                )
+                return fill(say["table"], {"entries": say["comma"].join(entries)})
+            case p.Item():
+                return self.item(value)
+            case p.Range():
+                values = {
+                    "start": self.value(value.start),
+                    "stop": self.value(more(value.stop, -1)),
+                }
+                known = isinstance(value.stop, p.Number)
+                return fill(say["range" if known else "range to"], values)
+            case p.Field(of=of, name="place"):
+                return self.value(of)
+            case p.Field():
+                values = {"field": self.field(value), "of": self.value(value.of)}
+                return fill(say["field"], values)
+            case p.Holds() | p.Compare() | p.Not() | p.Both() | p.Either():
+                return fill(say["whether"], {"condition": self.condition(value)})
             case _:
-                assert_never(value)
+                return self.phrased(say[self.kind_of(value)], value)
+
+    def kind_of(self, value: p.Value) -> str:
+        """The name of the phrase for a value; that of most is the tag of its node."""
+        match value:
+            case p.Length(of=p.Recall()):
+                return "entries"
+            case p.Figure(how=how):
+                return how
+            case p.KeyOf(function=function):
+                return f"key of {function}"
+            case p.Sorted(descending=True):
+                return "sorted down"
+            case p.Aggregate(function=function, of=p.Recall()):
+                return {"max": "highest", "min": "lowest", "sum": "sum"}[function]
+            case p.Aggregate(function=function):
+                return f"{function} of"
+            case p.Round(digits=digits) if digits != p.Number(0):
+                return "round to"
+            case p.Arithmetic(left=p.Number(value=0), operator="-"):
+                return "negative"
+            case p.Arithmetic(operator="+") if is_list(self.types.of(value)):
+                return "together"
+            case p.Arithmetic(operator=operator):
+                return operator
+            case _:
+                return str(type(value).__struct_config__.tag)
+
+    def phrased(self, pattern: str, value: p.Value) -> str:
+        """A phrase whose gaps are the fields of a value."""
+        for gap in gaps(pattern):
+            if getattr(value, gap) == p.Number(1):
+                pattern = self.words.nouns.one(pattern, gap)
+        return fill(pattern, {gap: self.within(value, gap) for gap in gaps(pattern)})
+
+    def within(self, value: p.Value, gap: str) -> str:
+        """What is in a field of a value."""
+        inside: p.Value = getattr(value, gap)
+        if isinstance(value, p.Choice) and isinstance(inside, p.Items):
+            return self.series(inside.items, "or")
+        return self.grouped(inside) if isinstance(value, p.Arithmetic) else self.value(inside)
+
+    def grouped(self, value: p.Value) -> str:
+        """A value within another, in brackets if it would fall apart."""
+        told = self.value(value)
+        if isinstance(value, p.Arithmetic):
+            return fill(self.words.values["group"], {"value": told})
+        return told
+
+    def item(self, item: p.Item) -> str:
+        """The first of a list, or the entry of a record."""
+        say = self.words.values
+        of = self.value(item.of)
+        match item:
+            case p.Item(default=None) if is_record(self.types.of(item.of)):
+                return fill(say["entry for"], {"at": self.value(item.at), "of": of})
+            case p.Item(at=p.Number(value=0), default=None):
+                return fill(say["first"], {"of": of})
+            case p.Item(at=p.Number(value=-1), default=None):
+                return fill(say["last"], {"of": of})
+            case p.Item(at=at, default=default) if default is not None:
+                told = fill(say["entry for"], {"at": self.value(at), "of": of})
+                return fill(say["default"], {"value": told, "default": self.value(default)})
+            case _:
+                return fill(say["position"], {"at": self.grouped(more(item.at, 1)), "of": of})
+
+    def field(self, field: p.Field) -> str:
+        """What a part of a location or of the time is called."""
+        for words in self.words.methods.values():
+            if field.name in words.fields:
+                return words.fields[field.name]
+        return field.name
 
     def _within_quotes(self, parts: Iterable[p.Value]) -> Iterator[str]:
         for part in parts:
@@ -216,6 +291,16 @@ class ValueTeller:
         if ask.field in words.fields:
             return words.fields[ask.field]
         return self.patterned(words.value or words.do, ask.arguments)
+
+    def minutes(self, value: p.Value) -> str:
+        """So many minutes."""
+        durations = self.words.durations
+        if isinstance(value, p.Number):
+            return durations.told(60 * value.value)
+        number = fill(self.words.values["inserted"], {"value": self.value(value)})
+        return next(
+            fill(many, {"number": number}) for length, _, many in durations.units if length == 60
+        )
 
     def series(self, items: Sequence[p.Value], word: str) -> str:
         return self.listed([self.value(item) for item in items], word)
@@ -236,30 +321,30 @@ class ValueTeller:
                 return self.holds(condition.value, holds)
             case p.Compare():
                 return self.comparison(condition, holds)
-            case p.Not(condition=p.Both() | p.Either() as inner):
-                told = self.condition(inner)
-                return fill(say["not"], {"condition": told}) if holds else told
             case p.Not():
                 return self.condition(condition.condition, not holds)
             case p.Both() | p.Either():
                 if not condition.conditions:
                     return say["always" if isinstance(condition, p.Both) else "never"]
-                word = say["and" if isinstance(condition, p.Both) else "or"]
+                # Not both hold if one of them does not.
+                word = say["and" if isinstance(condition, p.Both) is holds else "or"]
                 if len(condition.conditions) == 1:
                     return self.condition(condition.conditions[0], holds)
-                joined = word.join(self.operand(each) for each in condition.conditions)
-                return joined if holds else fill(say["not"], {"condition": joined})
+                return word.join(self.operand(each, holds) for each in condition.conditions)
             case _:
                 assert_never(condition)
 
-    def operand(self, condition: p.Condition) -> str:
-        told = self.condition(condition)
+    def operand(self, condition: p.Condition, holds: bool) -> str:
+        told = self.condition(condition, holds)
         if isinstance(condition, p.Both | p.Either) and len(condition.conditions) > 1:
             return fill(self.words.conditions["group"], {"condition": told})
         return told
 
     def holds(self, value: p.Value, holds: bool) -> str:
         say = self.words.conditions
+        condition = truth(value, self.types.of(value))
+        if not isinstance(condition, p.Holds):
+            return self.condition(condition, holds)
         match value:
             case p.Truth():
                 return say["always" if value.value is holds else "never"]
@@ -285,6 +370,12 @@ class ValueTeller:
         if not holds and operator != "in":
             operator, holds = OPPOSITES[operator], True
         match compare:
+            case p.Compare(left=p.Elapsed(since=since), right=right) if operator != "in":
+                values = {"left": self.value(since), "right": self.minutes(right)}
+                return fill(self.words.elapsed[operator], values)
+            case p.Compare(operator="in", right=right) if is_record(self.types.of(right)):
+                values = {"left": self.value(compare.left), "right": self.value(right)}
+                return fill(say["has entry" if holds else "has no entry"], values)
             case p.Compare(operator="==" | "!=", left=p.Recall() as name, right=p.Text(value="")):
                 so = self.finding(name.name, operator == "!=")
                 if so is not None:
@@ -299,14 +390,13 @@ class ValueTeller:
                 if operator in patterns:
                     return fill(patterns[operator], {"right": text})
             case p.Compare(left=p.Length(of=p.Recall() as names), right=p.Number(value=0)):
-                known = {"==": "empty", "!=": "not empty", ">": "not empty"}
+                known = {"==": "empty", "<=": "empty", "!=": "not empty", ">": "not empty"}
                 if operator in known and self.types.of(names) != "int":
                     values = {"value": self.value(names)}
                     return fill(self.words.conditions[known[operator]], values)
         values = {"left": self.value(compare.left), "right": self.value(compare.right)}
         if operator == "in":
-            is_list = self.types.of(compare.right).startswith("list[")
-            operator = "among" if is_list else "in"
+            operator = "among" if is_list(self.types.of(compare.right)) else "in"
             if isinstance(compare.right, p.Items) and len(compare.right.items) == 1:
                 operator = "=="  # "none of “Clara”" is not her
                 values["right"] = self.value(compare.right.items[0])
@@ -315,6 +405,19 @@ class ValueTeller:
         if not holds:
             operator = OPPOSITES[operator]
         return fill(self.words.conditions[operator], values)
+
+
+def more(value: p.Value, number: int) -> p.Value:
+    """A value that is so much more: positions are told from 1 on, a range up to its last number."""
+    match value:
+        case p.Number(value=known):
+            return p.Number(known + number)
+        case p.Arithmetic(left=left, operator="+", right=p.Number(value=known)):
+            return left if known == -number else p.Arithmetic(left, "+", p.Number(known + number))
+        case _ if number < 0:
+            return p.Arithmetic(value, "-", p.Number(-number))
+        case _:
+            return p.Arithmetic(value, "+", p.Number(number))
 
 
 def sort_of(name: str) -> str:

@@ -9,7 +9,6 @@ import msgspec
 
 from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Steps, Thing
-from grammar.inference import takes_time
 from grammar.meanings.arrivals import may_be_another, names_somebody
 from grammar.meanings.asking_until import as_soon_as_answered, stops_asking
 from grammar.meanings.branches import ABOUT_ANSWERS, if_
@@ -26,6 +25,7 @@ from grammar.meanings.registry import meaning
 from grammar.meanings.reports import known_words
 from grammar.meanings.strangers import as_announced
 from grammar.meanings.surveys import asked_without_end, moved
+from grammar.pauses import takes_time
 from grammar.plan import (
     Ask,
     Call,

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import functools
 from typing import Any
 
 from hypothesis import strategies as st
 
 from grammar import plan as p
-from robot_api.methods import METHODS, Parameter
+from robot_api.methods import METHODS
 
 WORDS = ("person", "red cup", "Alice's office", 'the "blue" room', "Größe", "pharmacy", "yes")
 NAMES = ("answer", "place", "class", "robot", "len", "Größe", "2 cups", "x")
@@ -21,10 +22,10 @@ numbers = st.one_of(
 names = st.sampled_from(NAMES)
 
 
+@functools.cache
 def of_kind(
-    parameter: Parameter, depth: int, text: st.SearchStrategy[p.Text]
+    annotation: str, depth: int, text: st.SearchStrategy[p.Text]
 ) -> st.SearchStrategy[p.Value]:
-    annotation = parameter.kind.annotation.removesuffix(" | None")
     if annotation in ("int", "float"):
         return numbers
     if annotation == "list[str]":
@@ -32,6 +33,7 @@ def of_kind(
     return st.one_of(text, values(depth - 1)) if depth > 0 else text
 
 
+@functools.cache
 @st.composite
 def arguments(
     draw: st.DrawFn, method: str, depth: int, text: st.SearchStrategy[p.Text] = short_texts
@@ -40,10 +42,12 @@ def arguments(
     chosen: dict[str, Any] = {}
     for parameter in form:
         if parameter.required or draw(st.booleans()):
-            chosen[parameter.name] = draw(of_kind(parameter, depth, text))
+            annotation = parameter.kind.annotation.removesuffix(" | None")
+            chosen[parameter.name] = draw(of_kind(annotation, depth, text))
     return chosen
 
 
+@functools.cache
 @st.composite
 def asks(draw: st.DrawFn, depth: int) -> p.Ask:
     giving = [name for name, method in METHODS.items() if method.returns.annotation != "None"]
@@ -56,31 +60,76 @@ def asks(draw: st.DrawFn, depth: int) -> p.Ask:
     return p.Ask(method, draw(arguments(method, depth - 1)), field)
 
 
+@functools.cache
 def values(depth: int = 2) -> st.SearchStrategy[p.Value]:
     simple = st.one_of(short_texts, numbers, names.map(p.Recall), st.booleans().map(p.Truth))
     if depth <= 0:
         return simple
     inner = values(depth - 1)
     lists = st.lists(inner, max_size=4).map(lambda items: p.Items(tuple(items)))
+    entries = st.lists(st.tuples(simple, inner), max_size=3).map(lambda some: p.Record(tuple(some)))
+    several = st.one_of(names.map(p.Recall), lists, entries)
     return st.one_of(
         simple,
         asks(depth),
         lists,
+        entries,
         st.lists(inner, min_size=1, max_size=4).map(lambda parts: p.Sentence(tuple(parts))),
-        st.one_of(names.map(p.Recall), lists).map(p.Length),
         st.builds(p.Share, inner, inner),
         inner.map(p.Elapsed),
         st.lists(st.text(min_size=1), min_size=7, max_size=7).map(
             lambda names: p.Weekday(tuple(names))
         ),
-        lists.map(p.Choice),
+        st.one_of(lists, ranges(inner)).map(p.Choice),
+        of_several(several, inner),
+        of_numbers(inner, st.one_of(lists, ranges(inner))),
+        st.builds(p.Field, names.map(p.Recall), st.sampled_from(["x", "place", "time"])),
+        conditions(depth - 1),
     )
 
 
+def ranges(of: st.SearchStrategy[p.Value]) -> st.SearchStrategy[p.Range]:
+    return st.builds(p.Range, of, st.one_of(st.just(p.Number(0)), of))
+
+
+def of_several(
+    several: st.SearchStrategy[p.Value], inner: st.SearchStrategy[p.Value]
+) -> st.SearchStrategy[p.Value]:
+    """Values made of lists and records."""
+    return st.one_of(
+        several.map(p.Length),
+        st.builds(p.Item, several, inner, st.one_of(st.none(), inner)),
+        st.one_of(several, ranges(inner)).map(p.ListOf),
+        several.map(p.Values),
+        st.builds(p.KeyOf, st.sampled_from(["min", "max"]), several),
+        st.builds(p.Occurrences, several, inner),
+        st.builds(p.Sorted, several, st.booleans()),
+        several.map(p.Distinct),
+        st.builds(p.Join, several, st.one_of(short_texts, st.just(p.Text(", ")))),
+        st.builds(p.Figure, st.sampled_from(["sum", "average", "highest", "lowest"]), several),
+    )
+
+
+def of_numbers(
+    inner: st.SearchStrategy[p.Value], lists: st.SearchStrategy[p.Value]
+) -> st.SearchStrategy[p.Value]:
+    """Values that are calculated."""
+    return st.one_of(
+        st.builds(p.Aggregate, st.sampled_from(["min", "max", "sum"]), lists),
+        st.builds(p.Arithmetic, inner, st.sampled_from(["+", "-", "*", "/", "//", "%"]), inner),
+        st.builds(p.Round, inner, st.integers(0, 2).map(p.Number)),
+        inner.map(p.Absolute),
+        inner.map(p.NumberIn),
+    )
+
+
+@functools.cache
 def conditions(depth: int = 2) -> st.SearchStrategy[p.Condition]:
     operators = st.sampled_from(["==", "!=", "<", "<=", ">", ">=", "in"])
+    inside = values(1) if depth > 0 else values(0)
     simple = st.one_of(
-        st.builds(p.Holds, asks(1)), st.builds(p.Compare, values(1), operators, values(1))
+        st.builds(p.Holds, st.one_of(asks(1), inside)),
+        st.builds(p.Compare, inside, operators, inside),
     )
     if depth <= 0:
         return simple
@@ -89,6 +138,7 @@ def conditions(depth: int = 2) -> st.SearchStrategy[p.Condition]:
     return st.one_of(simple, inner.map(p.Not), several.map(p.Both), several.map(p.Either))
 
 
+@functools.cache
 @st.composite
 def calls(draw: st.DrawFn) -> p.Call:
     method = draw(st.sampled_from(sorted(METHODS)))
@@ -97,15 +147,19 @@ def calls(draw: st.DrawFn) -> p.Call:
     return p.Call(method, draw(arguments(method, 2, texts)), save_as)
 
 
+@functools.cache
 def steps(depth: int = 2, in_loop: bool = False) -> st.SearchStrategy[p.Step]:
     simple: list[st.SearchStrategy[p.Step]] = [
         calls(),
         st.builds(p.Remember, names, values()),
         st.builds(p.Collect, names, values(1)),
-        names.map(p.Increase),
+        st.builds(
+            p.Increase, names, st.one_of(st.none(), values(1)), st.one_of(st.none(), values(1))
+        ),
+        st.builds(p.SetItem, names, values(1), values(1)),
     ]
     if in_loop:
-        simple.append(st.just(p.End()))
+        simple += [st.just(p.End()), st.just(p.Continue())]
     if depth <= 0:
         return st.one_of(*simple)
     same = blocks(depth - 1, in_loop)
@@ -114,14 +168,15 @@ def steps(depth: int = 2, in_loop: bool = False) -> st.SearchStrategy[p.Step]:
         *simple,
         st.builds(p.If, conditions(1), same, same),
         st.builds(p.Repeat, st.one_of(numbers, names.map(p.Recall)), inside),
-        st.builds(p.ForEach, names, values(1), inside),
+        st.builds(p.ForEach, names, values(1), inside, st.one_of(st.none(), names)),
         st.builds(p.While, conditions(1), inside),
         st.builds(p.RepeatUntil, conditions(1), inside),
         st.builds(p.Forever, inside),
-        st.builds(p.Try, same, same),
+        st.builds(p.Try, same, same, st.one_of(st.none(), names)),
     )
 
 
+@functools.cache
 def blocks(depth: int, in_loop: bool) -> st.SearchStrategy[tuple[p.Step, ...]]:
     return st.lists(steps(depth, in_loop), max_size=3).map(tuple)
 
