@@ -464,5 +464,7 @@ def from_data(data: Any) -> Plan:
 
 
 def schema() -> dict[str, Any]:
-    """The JSON Schema of a plan."""
-    return msgspec.json.schema(Plan)
+    """The JSON Schema of a plan. It knows the robot's methods and their parameters."""
+    from grammar.schema import plan_schema  # which is made from what stands here
+
+    return plan_schema()
