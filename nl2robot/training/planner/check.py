@@ -13,14 +13,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from grammar.language import load_language
-from grammar.planning.mentions import mentions
 from grammar.planning.model.expansion import expanded
 from grammar.planning.model.prompt import hints, vocabulary
-from grammar.planning.model.recogniser import CLARIFY, REFUSE, Draft
+from grammar.planning.model.recogniser import CLARIFY, REFUSE, Partial
 from grammar.program import write_program
 from grammar.said import forget
-from grammar.understand import Reader
-from grammar.understanding import Context
 from nl2robot.deliberation.paper_robot import Event
 from nl2robot.deliberation.playing import played
 from nl2robot.deliberation.staging import scenes
@@ -35,13 +32,12 @@ def problems(item: Item, show: bool = False) -> Iterator[str]:
     lexicon = knowledge(item.world).lexicon(item.language)
     language = load_language(item.language)
     forget()
-    reader = Reader(item.say, lexicon, language, Context())
-    found = mentions(reader)
-    words = vocabulary(reader, found)
+    turn = item.turn
+    words = vocabulary(turn)
     if show:
-        print(f"\n{item.where} [{item.language}] {item.say}\n  ({hints(reader, found)})")
+        print(f"\n{item.where} [{item.language}] {item.say}\n  ({hints(turn)})")
         print("    " + item.do.replace("\n", "\n    "))
-    draft: Draft | None = Draft.begin(words)
+    draft: Partial | None = Partial.begin(words)
     for at, letter in enumerate(item.do):
         assert draft is not None
         draft = draft.extended(letter)
@@ -56,7 +52,7 @@ def problems(item: Item, show: bool = False) -> Iterator[str]:
         return
     plan = expanded(item.do, words.people, lexicon, language)
     program = write_program(plan)
-    for number, scene in enumerate(scenes(lexicon, [program]), 1):
+    for number, scene in enumerate(scenes(lexicon, [program], words.people), 1):
         course = played(program, scene)
         if show:
             print(f"  scene {number}: {_told(course.events)} ({course.end} {course.message})")

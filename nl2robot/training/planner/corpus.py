@@ -26,7 +26,11 @@ from typing import Any, Final
 
 import yaml
 
-from grammar.language import languages
+from grammar.language import languages, load_language
+from grammar.planning.model.expansion import program_of
+from grammar.planning.turn import Turn
+from grammar.reading import parse_program
+from grammar.understanding import Context
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from sim.world import load_world
@@ -54,6 +58,16 @@ class Item:
     say: str
     do: str
     after: Before | None = None
+
+    @property
+    def turn(self) -> Turn:
+        """The sentence as a planner gets it."""
+        lexicon = knowledge(self.world).lexicon(self.language)
+        language, context = load_language(self.language), Context()
+        if self.after is not None:
+            plan = parse_program(program_of(self.after.do, language), self.language)
+            context = Context(plan=plan, text=self.after.say)
+        return Turn(self.say, lexicon, language, context)
 
 
 @cache
