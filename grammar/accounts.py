@@ -196,10 +196,12 @@ def _without_marks(word: str, language: Language) -> str:
 
 def _alike(words: Set[str], known: Set[str]) -> bool:
     """Whether one of some words, or a form of it, is among those known."""
-    return not words.isdisjoint(known) or any(_same(one, other) for one in words for other in known)
+    return not words.isdisjoint(known) or any(
+        same_word(one, other) for one in words for other in known
+    )
 
 
-def _same(one: str, other: str) -> bool:
+def same_word(one: str, other: str) -> bool:
     """Whether two words may be forms of one: they begin alike."""
     least = max(SHORTEST, math.ceil(ALIKE * max(len(one), len(other))))
     return one[:least] == other[:least] and min(len(one), len(other)) >= least

@@ -29,6 +29,8 @@ class Context:
     """Where the thing was taken from."""
     question: Clarification | None = None
     """The question that waits for an answer."""
+    written: str = ""
+    """The program of the last plan as a language model wrote it, if one did."""
     before: Context | None = None
     """What was known when the last sentence was said, for it to be understood anew."""
     carried_out: bool = False

@@ -13,13 +13,14 @@ from grammar.language import load_language
 from grammar.samples import all_samples
 from grammar.vocabulary import vocabulary
 from nl2robot.knowledge import Knowledge
+from nl2robot.planners import AUTO
 from nl2robot.speech.audio import RATE, Audio, read
 from nl2robot.speech.hotword_words import WORDS
 from nl2robot.speech.listening import COMMANDS, Listener, Manner, has_speech
 from nl2robot.speech.recogniser import Decoding, Heard, choose, load
 from nl2robot.speech.streaming import Streaming
 from nl2robot.speech.vocabulary import Missing, missing_words
-from nl2robot.translation import Planner, Talk, Translation, translate
+from nl2robot.translation import Talk, Translation, translate
 
 LONGEST_CRY: Final = 3
 """Words: who wants the robot to stop says no more. "Go to the bus stop" is longer."""
@@ -99,9 +100,7 @@ class Ear:
         names = [item.name for items in (world.places, world.people) for item in items]
         return missing_words(self.recogniser, names)
 
-    def translate(
-        self, heard: Heard, planner: Planner = "auto", talk: Talk | None = None
-    ) -> Translation:
+    def translate(self, heard: Heard, planner: str = AUTO, talk: Talk | None = None) -> Translation:
         """The program for what was heard; nothing, and a question back, if that is in doubt."""
         translation = self._translate(heard.text, planner, None if heard.doubtful else talk)
         phrase = load_language(self.language).phrase
@@ -121,7 +120,5 @@ class Ear:
             suggestions=(heard.text,),
         )
 
-    def _translate(
-        self, text: str, planner: Planner = "auto", talk: Talk | None = None
-    ) -> Translation:
+    def _translate(self, text: str, planner: str = AUTO, talk: Talk | None = None) -> Translation:
         return translate(text, self.knowledge, self.language, planner, talk)

@@ -11,6 +11,7 @@ from typing import Any
 import msgspec
 
 from grammar.samples import samples
+from nl2robot.planners import names
 from nl2robot.runner import Runner
 from nl2robot.talks import Talks
 from nl2robot.translation import translate
@@ -83,7 +84,7 @@ def services(
                 # How long it may be is the grammar's business, which says so in words.
                 "utterance": {"type": "string"},
                 "language": _LANGUAGE,
-                "planner": {"enum": ["auto", "grammar", "model"]},
+                "planner": {"enum": names()},
                 "talk": {"type": ["string", "null"], "maxLength": 100},
             },
             "utterance",

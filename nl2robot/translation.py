@@ -13,31 +13,36 @@ from typing import TYPE_CHECKING, Any, Literal
 import msgspec
 
 from grammar.language import load_language
-from grammar.plan import Plan, calls, to_data
+from grammar.plan import calls, to_data
+from grammar.planning.planner import Answer, Drafts, Question, Refusal, Service, Watch
+from grammar.planning.turn import Turn
 from grammar.requests import ABOUT_RUNS, Request, agreed
-from grammar.understand import understand
-from grammar.understanding import Context, Understanding
+from grammar.understanding import Context
+from nl2robot.deliberation.deciding import Chosen, Offer, Open, decide
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.plain import visible
+from nl2robot.planners import AUTO, available, planner
 
 if TYPE_CHECKING:
     from nl2robot.history import History, Record
     from nl2robot.teaching import Pending, Reply
 
-Planner = Literal["auto", "grammar", "model"]
+
+Status = Literal["ok", "clarify", "rejected"]
 
 
 class Translation(msgspec.Struct, frozen=True, kw_only=True):
     """What became of an utterance; `to_json` gives the object of `translate --json`."""
 
     utterance: str
-    status: Literal["ok", "clarify", "rejected"]
+    status: Status
     program: str | None
     plan: dict[str, Any] | None
-    source: Literal["grammar", "model"] | None
-    """Which planner found the plan."""
+    source: str | None
+    """Which planner found the plan: "grammar", "model", or another."""
     confidence: float
+    """How likely it is that this was meant; calibrated: of all programs at 0.9, nine in ten are."""
     explanation: str
     """The program in plain words; empty if there is none."""
     message: str | None
@@ -46,6 +51,10 @@ class Translation(msgspec.Struct, frozen=True, kw_only=True):
     """Sentences that would be understood."""
     ms: float
     """Milliseconds it took."""
+    unused: tuple[str, ...] = ()
+    """Words of the utterance that the program makes nothing of."""
+    own: tuple[str, ...] = ()
+    """What the robot would say of a language model's own knowledge."""
     request: Request | None = None
     """What is asked of the application instead of the robot, such as to learn a routine; there
     is no program then, and the message is the answer."""
@@ -72,6 +81,8 @@ class Talk:
     context: Context | None = None
     pending: Pending | None = None
     """What waits for a yes."""
+    offers: tuple[Offer, ...] = ()
+    """Programs of which one was asked whether it was meant."""
     last: Translation | None = None
     """The last one with a program."""
     last_at: float = 0.0
@@ -98,82 +109,160 @@ def translate(
     utterance: str,
     knowledge: Knowledge,
     language: str = "en",
-    planner: Planner = "auto",
+    planner: str = AUTO,
     talk: Talk | None = None,
     history: History | None = None,
+    watch: Watch | None = None,
 ) -> Translation:
     """Understand an utterance and write it as a program. Never moves anything, never raises for
     words that are not understood: the status says so. A `talk` remembers it; `history` knows what
-    was run, for questions about it.
-    Raises `UserError` for a language or a planner that there is not."""
-    from grammar.language import UnknownLanguage
-    from grammar.program import write_program
-    from nl2robot.teaching import told
-
-    if planner == "model":
-        raise UserError(
-            "There is no model planner in this version."
-            " Leave --planner out, or say --planner grammar."
-        )
-    started = time.perf_counter()
-    talk = talk or Talk()
+    was run, for questions about it; `watch` is told how far it is, and may end it.
+    Raises `UserError` for a language or a planner that there is not, and
+    `grammar.planning.planner.Interrupted` when `watch` has ended it."""
+    started, watch, talk = time.perf_counter(), watch or Watch(), talk or Talk()
     answered = _settled(utterance, knowledge, talk)
     if answered is not None:
         return _answer(utterance, answered, None, started)
+    record = history.last() if history is not None else None
+    if talk.context is not None and talk.carried_out(record):
+        assert record is not None
+        origin = record.origin(knowledge.world)
+        talk.context = replace(talk.context, carried_out=True, origin=origin)
+    before = talk.context.text if talk.context else ""
+    turn = _turn(utterance, knowledge, language, talk.context)
+    chosen = _chosen(utterance, turn, talk)
+    answer = chosen or _planned(turn, knowledge, planner, watch)
+    if isinstance(answer, Refusal):
+        other = _in_another_language(utterance, knowledge, language)
+        turn, answer = other if other is not None else (turn, answer)
+    match answer:
+        case Service(request=request):
+            talk.context = answer.context
+            reply = _replied(request, knowledge, turn.language.code, before, talk, record)
+            talk.pending = reply.pending
+            return _answer(utterance, reply, request, started)
+        case Question() | Refusal():
+            talk.context = answer.context
+            message = _with_trouble(answer.message, knowledge)
+            status: Status = "clarify" if isinstance(answer, Question) else "rejected"
+            return _without_program(utterance, status, message, answer.suggestions, started)
+        case Open(question=question):
+            talk.offers = answer.offers
+            return _without_program(
+                utterance, "clarify", question.message, question.suggestions, started
+            )
+        case Chosen():
+            talk.context = answer.draft.context
+            translation = _with_program(utterance, turn, answer, started)
+            talk.note(translation)
+            return translation
+
+
+def _turn(utterance: str, knowledge: Knowledge, language: str, context: Context | None) -> Turn:
+    from grammar.language import UnknownLanguage
+
     try:
         lexicon = knowledge.lexicon(language)
-        record = history.last() if history is not None else None
-        if talk.context is not None and talk.carried_out(record):
-            assert record is not None
-            origin = record.origin(knowledge.world)
-            talk.context = replace(talk.context, carried_out=True, origin=origin)
-        understood = understand(utterance, lexicon, language, talk.context)
-        if understood.status == "rejected":
-            other = _in_another_language(utterance, knowledge, language)
-            if other is not None:
-                language, understood = other
+        return Turn(utterance, lexicon, load_language(language), context or Context())
     except UnknownLanguage as error:
         raise UserError(str(error)) from error
-    before = talk.context.text if talk.context else ""
-    talk.context = understood.context
-    if understood.request is not None:
-        answer = _replied(understood.request, knowledge, language, before, talk, record)
-        talk.pending = answer.pending
-        return _answer(utterance, answer, understood.request, started)
-    plan: Plan | None = understood.plan
-    program = write_program(plan) if plan else None
-    explanation = told(plan, lexicon, language) if plan else ""
-    translation = Translation(
+
+
+Decided = Service | Question | Refusal | Open | Chosen
+
+
+def _planned(turn: Turn, knowledge: Knowledge, name: str, watch: Watch) -> Decided:
+    """What the planner of this name makes of a turn. The rules come first where nobody has chosen:
+    what they know they know at once; what they do not, a language model may."""
+    if name != AUTO:
+        return _decided(turn, planner(name).plan(turn, watch), knowledge)
+    by_rules = _decided(turn, planner("grammar").plan(turn, watch), knowledge)
+    final = not isinstance(by_rules, Refusal) or by_rules.final
+    if final or not turn.tokens or not available("model"):
+        return by_rules
+    by_model = _decided(turn, planner("model").plan(turn, watch), knowledge)
+    if isinstance(by_model, Refusal) and not by_model.final:
+        return by_rules  # the rules say which word they do not know
+    return by_model
+
+
+def _decided(turn: Turn, answer: Answer, knowledge: Knowledge) -> Decided:
+    if not isinstance(answer, Drafts):
+        return answer
+    decided = decide(turn, answer.drafts, knowledge)
+    if isinstance(decided, Refusal):
+        return replace(decided, context=turn.context)
+    return decided
+
+
+def _chosen(utterance: str, turn: Turn, talk: Talk) -> Chosen | None:
+    """Which of two was chosen that were offered; None if this is no answer to that."""
+    offers, talk.offers = talk.offers, ()
+    if not offers:
+        return None
+    from robot_api.capabilities.matching import match_answer
+
+    said = match_answer(utterance, [each.told for each in offers], turn.language.code)
+    return next((each.chosen for each in offers if each.told == said), None)
+
+
+def _with_program(utterance: str, turn: Turn, chosen: Chosen, started: float) -> Translation:
+    from nl2robot.teaching import told
+
+    return Translation(
         utterance=utterance,
-        status=understood.status,
-        program=program,
-        plan=to_data(plan) if plan else None,
-        source="grammar" if plan else None,
-        confidence=understood.confidence,
-        explanation=explanation,
-        message=_with_trouble(understood.message, knowledge),
-        suggestions=understood.suggestions,
-        ms=round((time.perf_counter() - started) * 1000, 3),
+        status="ok",
+        program=chosen.considered.program,
+        plan=to_data(chosen.plan),
+        source=chosen.draft.planner,
+        confidence=chosen.confidence,
+        explanation=told(chosen.plan, turn.lexicon, turn.language.code),
+        message=None,
+        suggestions=[],
+        ms=_milliseconds(started),
+        unused=chosen.considered.checked.unused,
+        own=chosen.considered.checked.own,
     )
-    if program is not None:
-        talk.note(translation)
-    return translation
+
+
+def _without_program(
+    utterance: str, status: Status, message: str | None, suggestions: Sequence[str], started: float
+) -> Translation:
+    return Translation(
+        utterance=utterance,
+        status=status,
+        program=None,
+        plan=None,
+        source=None,
+        confidence=0.0,
+        explanation="",
+        message=message,
+        suggestions=list(suggestions),
+        ms=_milliseconds(started),
+    )
+
+
+def _milliseconds(started: float) -> float:
+    return round((time.perf_counter() - started) * 1000, 3)
 
 
 def _in_another_language(
     utterance: str, knowledge: Knowledge, language: str
-) -> tuple[str, Understanding] | None:
+) -> tuple[Turn, Chosen] | None:
     """Who wants to be spoken to in another language, or cries stop, may do so in that one: "sprich
-    Deutsch", "arrête". The language and what was understood; None for anything else."""
+    Deutsch", "arrête". What was understood in it; None for anything else."""
     from grammar.language import known_by_word
 
     for code in known_by_word(utterance):
         if code == language:
             continue
-        understood = understand(utterance, knowledge.lexicon(code), code)
-        made = {call.method for call in calls(understood.plan)} if understood.plan else set()
-        if made in ({"set_language"}, {"stop"}):
-            return code, understood
+        turn = _turn(utterance, knowledge, code, None)
+        decided = _decided(turn, planner("grammar").plan(turn, Watch()), knowledge)
+        made = (
+            {call.method for call in calls(decided.plan)} if isinstance(decided, Chosen) else set()
+        )
+        if isinstance(decided, Chosen) and made in ({"set_language"}, {"stop"}):
+            return turn, decided
     return None
 
 

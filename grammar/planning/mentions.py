@@ -7,13 +7,15 @@ seconds. Each of these is a mention, with the literal that a program would hold.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
 from grammar.chart import Chart, Node, TooMuch
 from grammar.discourse import Discourse, Thing
 from grammar.doubts import Ambiguous, NotUnderstood
+from grammar.lexicon import kind_of
 from grammar.plan import Ask, Text
 from grammar.slips import command_words
 from grammar.understand import Reader
@@ -69,6 +71,8 @@ class Mention:
     sort: Sort
     value: str
     """The literal: a name in the world's spelling, a noun phrase, a number in the robot's unit."""
+    words: str
+    """As it was said."""
     cost: float = 0.0
     """How far-fetched it is."""
 
@@ -77,7 +81,8 @@ def mentions(reader: Reader) -> tuple[Mention, ...]:
     """All mentions of a sentence, also those that exclude each other, in the order of their words;
     of the same words and sort the likeliest first."""
     found: dict[tuple[int, int, Sort, str], Mention] = {}
-    for mention in (*_listed(reader), *_read(reader)):
+    own = (*_listed(reader), *_read(reader), *_written_times(reader), *_single_units(reader))
+    for mention in (*own, *_tails(reader, own)):
         key = (mention.start, mention.end, mention.sort, mention.value)
         if key not in found or mention.cost < found[key].cost:
             found[key] = mention
@@ -89,7 +94,63 @@ def _listed(reader: Reader) -> Iterator[Mention]:
         for slot, sort in _LISTED.items():
             for end, cost, value in reader.slots.matches("{" + slot + "}", at):
                 for each in _values(value):
-                    yield Mention(at, end, sort, each, cost)
+                    yield Mention(at, end, sort, each, reader.words(at, end), cost)
+
+
+def _tails(reader: Reader, found: Sequence[Mention]) -> Iterator[Mention]:
+    """The places of which only the end of the name is said, behind others of their kind: "rooms 21
+    and 22"."""
+    before: list[tuple[int, str]] = [
+        (each.end, each.value) for each in found if each.sort in ("place", "kind")
+    ]
+    for at in range(1, len(reader.tokens)):
+        for end, cost, names in reader.slots.matches("{place_tail}", at):
+            for name in names if isinstance(names, tuple) else ():
+                alike = {
+                    each.name for each in reader.lexicon.places if kind_of(each) == kind_of(name)
+                }
+                alike.add(kind_of(name) or "")
+                if any(last in range(at - 2, at + 1) and value in alike for last, value in before):
+                    yield Mention(at, end, "place", name.name, reader.words(at, end), cost + 1.0)
+                    before.append((end, name.name))
+
+
+def _single_units(reader: Reader) -> Iterator[Mention]:
+    """Lengths of time that are said without a number: "every hour", "the next minute"."""
+    units: Mapping[str, float] = reader.language.numbers.get("units_of_time", {})
+    for at, token in enumerate(reader.tokens):
+        if token.norm in units:
+            words = reader.words(at, at + 1)
+            yield Mention(at, at + 1, "seconds", written(units[token.norm]), words, 1.0)
+            for number, start in _fractions_before(reader, at):
+                span = start, at + 1
+                value = written(number * units[token.norm])
+                yield Mention(*span, "seconds", value, reader.words(*span), 0.5)
+
+
+def _fractions_before(reader: Reader, at: int) -> Iterator[tuple[float, int]]:
+    """Numbers that stand up to two words before a unit: "a quarter of an hour"."""
+    for start in range(max(0, at - 4), at):
+        for end, _, value in reader.slots.matches("{number}", start):
+            if at - 2 <= end < at and 0 < value < 1:
+                yield value, start
+
+
+def _written_times(reader: Reader) -> Iterator[Mention]:
+    """Times that are written in figures as no rule reads them: "11.30", "11h30", "9h"."""
+    for match in _TIME.finditer(reader.text):
+        inside = [
+            at
+            for at, token in enumerate(reader.tokens)
+            if match.start() <= token.start and token.end <= match.end()
+        ]
+        hour, minute = int(match[1]), int(match[2] or match[3] or 0)
+        if inside and hour < 24 and minute < 60:
+            span = inside[0], inside[-1] + 1
+            yield Mention(*span, "time", f"{hour:02d}:{minute:02d}", reader.words(*span), 0.0)
+
+
+_TIME: Final = re.compile(r"(?<![\d.,:])(\d{1,2})(?:[.:](\d{2})|\s?h\s?(\d{2})?)(?![\d.,:])")
 
 
 def _values(value: Any) -> Iterator[str]:
@@ -129,7 +190,7 @@ def _meant(reader: Reader, chart: Chart, rule: str, at: int, end: int) -> Iterat
         return
     named = sort in ("place", "person") and bool(node.corrections) and _is_name(reader, value)
     if named or node.cost <= _DEAREST.get(sort, _DEAREST_QUANTITY):
-        yield Mention(at, end, sort, value, node.cost)
+        yield Mention(at, end, sort, value, reader.words(at, end), node.cost)
 
 
 def _is_name(reader: Reader, value: str) -> bool:

@@ -72,11 +72,14 @@ def add_language(parser: argparse.ArgumentParser) -> None:
 
 
 def add_planner(parser: argparse.ArgumentParser) -> None:
+    from nl2robot.planners import AUTO, names
+
     parser.add_argument(
         "--planner",
-        default="auto",
-        choices=("auto", "grammar", "model"),
-        help="what turns words into a plan (default: auto)",
+        default=AUTO,
+        choices=names(),
+        help="what turns words into a plan: rules, a language model, or (auto) the rules for what"
+        " they know and the model for the rest (default: auto)",
     )
 
 

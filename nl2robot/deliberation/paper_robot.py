@@ -130,7 +130,11 @@ class PaperRobot:
 
     # --- the methods
 
-    def goto(self, place: Any, y: Any = None, theta: Any = None) -> None:
+    def goto(self, place: Any = None, x: Any = None, y: Any = None, theta: Any = None) -> None:
+        if place is None:
+            self.place, self.partner = f"{x:g}, {y:g}", None
+            self._event("visits", self.place)
+            return
         name = str(place)
         if name != START and name not in self.scene.places:
             raise UnknownPlace(f"There is no place called {name}.")

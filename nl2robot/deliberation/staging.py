@@ -9,7 +9,7 @@ read from the drafts and from the names of the world; nothing has to be known of
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -37,18 +37,19 @@ class _Variation:
 
 
 VARIATIONS: Final = (
-    _Variation(),
-    _Variation(option=1, clock="16:40", battery=30, everywhere=True),
+    _Variation(everywhere=True),
+    _Variation(option=1, clock="16:40", battery=30),
     _Variation(people=False, things=False, option=1),
     _Variation(things=False, option=2, clock="20:15", battery=12),
     _Variation(people=False, option=3, everywhere=True),
 )
 
 
-def scenes(lexicon: Lexicon, programs: Iterable[str]) -> list[Scene]:
-    """A few scenes that tell these programs apart, as far as such scenes can."""
+def scenes(lexicon: Lexicon, programs: Iterable[str], people: Collection[str] = ()) -> list[Scene]:
+    """A few scenes that tell these programs apart, as far as such scenes can; `people` are whom the
+    sentence speaks of, by name or by what they are like."""
     calls = [call for program in programs for call in _calls(program)]
-    return [_scene(lexicon, calls, variation) for variation in VARIATIONS]
+    return [_scene(lexicon, calls, people, variation) for variation in VARIATIONS]
 
 
 _Call = tuple[str, dict[str, Any]]
@@ -76,19 +77,24 @@ def _fixed(node: ast.expr) -> Any:
         return None
 
 
-def _scene(lexicon: Lexicon, calls: list[_Call], how: _Variation) -> Scene:
+def _scene(
+    lexicon: Lexicon, calls: list[_Call], described: Collection[str], how: _Variation
+) -> Scene:
     places = {place.name: kind_of(place) or "" for place in lexicon.places}
     gone_to = list(dict.fromkeys(_places(calls, places)))
     people = _people(lexicon, gone_to, how)
-    things = _things(calls, lexicon, gone_to, people, how)
+    known = {*described} | {each.name for each in lexicon.people}
+    known |= {each.kind for each in lexicon.people if each.kind}
+    things = _things(calls, known, gone_to, how)
     stops = [START, *gone_to] if how.people else []
     arrivals = {
         place: [f"visitor {at * VISITORS + number}" for number in range(1, VISITORS + 1)]
         for at, place in enumerate(stops)
     }
     coming = [who for row in arrivals.values() for who in row]
-    traits = {each.name: _traits(each) for each in lexicon.people}
     sought = " ".join(sorted({*_words(calls)}))
+    traits = dict.fromkeys(people, f"person {sought}")
+    traits |= {each.name: _traits(each) for each in lexicon.people}
     return Scene(
         places=places,
         people=people,
@@ -131,29 +137,23 @@ def _called(place: Name) -> str:
 
 
 def _things(
-    calls: list[_Call],
-    lexicon: Lexicon,
-    gone_to: list[str],
-    people: Mapping[str, str],
-    how: _Variation,
+    calls: list[_Call], persons: Collection[str], gone_to: list[str], how: _Variation
 ) -> list[tuple[str, str]]:
     """Things that drafts look for, where they look for them."""
     if not how.things:
         return []
-    persons = {each.name for each in lexicon.people} | {each.kind for each in lexicon.people}
     sought = dict.fromkeys(
         given["thing"]
         for method, given in calls
         if method in _LOOKING and isinstance(given.get("thing"), str)
     )
-    stops = gone_to or [place.name for place in lexicon.places[-2:]]
-    rows = [START, *stops] if how.everywhere or not gone_to else stops
+    stops = [START, *gone_to]
     return [
         (thing, place)
         for thing in sought
         if thing not in persons
-        for number, place in enumerate(rows)
-        if how.everywhere or number % 2 == 0
+        for number, place in enumerate(stops)
+        if how.everywhere or number % 2 == 1 or len(stops) == 1
     ]
 
 

@@ -20,7 +20,6 @@ from typing import IO, Any, Final
 import msgspec
 
 from grammar.planning.model.request import Interrupted, Request, Unavailable, Written
-from grammar.planning.model.vocabulary import Vocabulary
 from nl2robot.language_model.messages import Cancel, Done, Failed, Growing, Order, Report, Write
 
 STARTS_WITHIN: Final = 60.0
@@ -62,7 +61,7 @@ class Process:
 
     def get_ready(self, prefix: str) -> None:
         """Load the model and have it read what stands before every sentence. Raises as `write`."""
-        self.write(Request(prefix=prefix, lead="", said="", tail="", words=Vocabulary()))
+        self.write(Request(prefix=prefix))
 
     def _written(
         self, number: int, request: Request, on_text: Callable[[str], None] | None

@@ -19,7 +19,7 @@ from typing import BinaryIO, Final
 import msgspec
 
 from grammar.planning.model.decoding import Decoder, Full
-from grammar.planning.model.recogniser import Draft
+from grammar.planning.model.recogniser import Partial
 from grammar.planning.model.request import Request
 from nl2robot.language_model.messages import (
     Cancel,
@@ -106,19 +106,19 @@ class Worker:
     def _write(self, order: Write) -> None:
         request = order.request
         begin = self._begun(request)
-        tokens = [
-            *self._model.tokens.encode(request.lead, control=True),
-            *self._model.tokens.encode(request.said),
-            *self._model.tokens.encode(request.tail, control=True),
-        ]
-        if not request.said:  # only to be ready
+        if not request.said:
             self.tell(Done(order.id, ()))
             return
+        tokens = [
+            token
+            for piece in request.said
+            for token in self._model.tokens.encode(piece.text, control=piece.marks)
+        ]
         [prompt] = self._model.read([(begin, tokens)])
         decoder = Decoder(_Reading(self._model))
         written = decoder.written(
             prompt,
-            Draft.begin(request.words),
+            Partial.begin(request.words),
             request.most,
             lambda text: self.tell(Growing(order.id, text)),
         )

@@ -40,7 +40,7 @@ TYPED_WRONG = [
     (["run", *WARD, "--speed", "fast", "wave"], "'fast' is not a number above 0"),
     (["run", *WARD, "--seed", "lucky", "wave"], "'lucky' is not a whole number"),
     (["run", *WARD, "--seed", "9" * 30, "wave"], "is not a whole number"),
-    (["run", *WARD, "--planner", "model", "wave"], "no model planner"),
+    (["run", *WARD, "--planner", "model", "wave"], "no language model"),
     (["run", *WARD, "--picture", "run.bmp", "wave"], ".svg, .png, .webp or .gif"),
     (["run", *WARD, "--picture", "", "wave"], ".svg, .png, .webp or .gif"),
     (["run", *WARD, "--picture", "/dev/null/run.png", "wave"], "cannot be saved"),
@@ -60,7 +60,7 @@ TYPED_WRONG = [
     (["log", "--replay"], "Say which run"),
     (["log", "1", "--picture", "run.png"], "Add --replay"),
     (["listen", "--wav", "nothing.wav"], "nl2robot models get en"),
-    (["models", "get", "xx"], "no speech model"),
+    (["models", "get", "xx"], "no model called"),
     (["test", "nothing.yaml"], "cannot be read"),
     (["dance"], "invalid choice"),
 ]
@@ -279,7 +279,12 @@ def test_a_program_file_is_listed_whatever_is_in_it(nl2robot, here) -> None:
     [
         ("program.translate", {"utterance": 7}, InvalidCall, "not of type 'string'"),
         ("program.translate", {}, InvalidCall, "utterance"),
-        ("program.translate", {"utterance": "go", "planner": "model"}, InvalidCall, "--planner"),
+        (
+            "program.translate",
+            {"utterance": "go", "planner": "model"},
+            InvalidCall,
+            "models get planner",
+        ),
         ("program.translate", {"utterance": "go", "language": "xx"}, InvalidCall, "no language"),
         ("program.translate", {"utterance": "x" * 300_000}, InvalidCall, "too long"),
         ("program.check", {"program": "x" * 100_000}, InvalidCall, "program.check"),

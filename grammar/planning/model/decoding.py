@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from itertools import islice
 from typing import Any, Final, Protocol
 
-from grammar.planning.model.recogniser import Draft
+from grammar.planning.model.recogniser import Partial
 from grammar.planning.model.request import Written
 
 LOOKED_AT: Final = 24
@@ -57,10 +57,10 @@ class Fork:
 
     branch: Any
     """What was read before it."""
-    draft: Draft
+    draft: Partial
     token: int
     """The other token."""
-    draft_after: Draft
+    draft_after: Partial
     score: float
     """The logarithm of the probability of all tokens up to it."""
     ends: bool = False
@@ -70,7 +70,7 @@ class Fork:
 @dataclass
 class _Growing:
     branch: Any
-    draft: Draft
+    draft: Partial
     score: float
     tokens: int = 0
     least: float = 0.0
@@ -92,7 +92,7 @@ class Decoder:
     def written(
         self,
         prompt: Any,
-        begun: Draft,
+        begun: Partial,
         most: int = 1,
         on_text: Callable[[str], None] | None = None,
     ) -> Iterator[Written]:
@@ -170,9 +170,9 @@ class Decoder:
         each.draft = draft
         each.pending = (token,)
 
-    def _choices(self, each: _Growing) -> list[tuple[int, float, Draft | None]]:
+    def _choices(self, each: _Growing) -> list[tuple[int, float, Partial | None]]:
         """The tokens that may follow, with the draft behind each; None behind the end."""
-        found: list[tuple[int, float, Draft | None]] = []
+        found: list[tuple[int, float, Partial | None]] = []
         for number, (token, score) in enumerate(islice(self.model.following(each.branch), FURTHER)):
             if number >= LOOKED_AT and found:
                 break

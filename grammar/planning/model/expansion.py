@@ -30,8 +30,8 @@ from grammar.plan import (
     Text,
     Value,
 )
-from grammar.planning.model.expressions import CALLS
-from grammar.reading import read_program
+from grammar.planning.model.expressions import CALLS, DAYS
+from grammar.reading import parse_program
 from grammar.speech import speech
 from grammar.tidy import BODIES
 
@@ -40,18 +40,51 @@ ANYBODY: Final = "person"
 _SEARCH: Final = "find"
 
 
-def program_of(text: str) -> str:
+def program_of(text: str, language: Language) -> str:
     """The dialect as Python that a robot's program is: with `robot.` before its methods."""
-    tree = ast.parse(text)
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in CALLS:
-            node.func = ast.Attribute(ast.Name("robot", ast.Load()), node.func.id, ast.Load())
+    tree = _Spelled(language).visit(ast.parse(text))
     return ast.unparse(ast.fix_missing_locations(tree)) + "\n"
 
 
+class _Spelled(ast.NodeTransformer):
+    """Writes out what is short in the dialect."""
+
+    def __init__(self, language: Language) -> None:
+        self.language = language
+
+    def visit_Compare(self, node: ast.Compare) -> ast.AST:
+        if _is_weekday(node.left):  # the clock names the days in English
+            node.left = ast.parse("robot.clock().weekday", mode="eval").body
+        return self.generic_visit(node)
+
+    def visit_Call(self, node: ast.Call) -> ast.AST:
+        self.generic_visit(node)
+        if not isinstance(node.func, ast.Name):
+            return node
+        if _is_weekday(node):
+            names = [spoken_name(self.language, day) for day in DAYS]
+            return ast.parse(f"weekday_called({names!r})", mode="eval").body
+        if node.func.id == "random_choice":
+            node.func = ast.Attribute(ast.Name("random", ast.Load()), "choice", ast.Load())
+        elif node.func.id in CALLS:
+            node.func = ast.Attribute(ast.Name("robot", ast.Load()), node.func.id, ast.Load())
+        return node
+
+
+def _is_weekday(node: ast.expr) -> bool:
+    return isinstance(node, ast.Call) and getattr(node.func, "id", None) == "weekday"
+
+
+def spoken_name(language: Language, day: str) -> str:
+    """What a language calls a day."""
+    names: dict[str, str] = language.speech.get("names", {})
+    return names.get(day, day)
+
+
 def expanded(text: str, people: Collection[str], lexicon: Lexicon, language: Language) -> Plan:
-    """The plan of what a model wrote; `people` are whom the sentence speaks of."""
-    plan = read_program(program_of(text), language.code).plan
+    """The plan of what a model wrote; `people` are whom the sentence speaks of. Raises `NotAPlan`
+    for what is no plan."""
+    plan = parse_program(program_of(text, language), language.code)
     return Expansion(people, lexicon, language).of(plan)
 
 

@@ -23,7 +23,8 @@ from grammar.planning.model.types import (
     Type,
     result_of,
 )
-from grammar.planning.model.vocabulary import FREE, NUMBERS, OPTIONS, Vocabulary, form, role
+from grammar.planning.model.vocabulary import Vocabulary, form
+from grammar.roles import FREE, NUMBERS, OPTIONS, role
 from robot_api.methods import METHODS, Parameter
 
 LONGEST_TEXT: Final = 300
@@ -78,7 +79,7 @@ class Reader:
     def numbers(self) -> tuple[str, ...]:
         """Those that may stand where nothing says what is counted."""
         words = self.words
-        return (*words.numbers, *words.minutes, *words.percents, "0", "1", "-1", "2")
+        return (*words.numbers, *words.minutes, *words.percents, "1", "-1", "2", "60", "100")
 
     @property
     def rest(self) -> str:
@@ -146,6 +147,18 @@ class Reader:
             self.at += 1
         self.at += 1
         return self.line[start : self.at - 1]
+
+    def quoted_words(self) -> None:
+        """Some words of the sentence, in quotation marks."""
+        self.expect(self.quote)
+        rest, _, behind = self.rest.partition(self.quote)
+        said = re.escape(rest)
+        ends = len(rest) < len(self.rest)
+        if rest[:1] == " " or not re.search(rf"\b{said}" + r"\b" * ends, self.words.said):
+            raise Dead
+        if not ends:
+            raise Unfinished
+        self.at = len(self.line) - len(behind)
 
     def literal(self, known: Sequence[str]) -> str:
         """One of these in quotation marks."""
@@ -539,6 +552,8 @@ class Reader:
             return self.numeric(parameter, known)
         if method in SEEING:
             known = (*known, *self.words.people)
+        if what in ("things", "people"):
+            known = (*known, *self.words.things, *self.words.phrases)
         if self.next() == self.quote:
             if not known:
                 raise Dead

@@ -1,6 +1,6 @@
 """Whether a text may still become a program of the dialect: what a language model is held to.
 
-    draft = Draft.begun(words)
+    draft = Partial.begun(words)
     draft = draft.extended('goto("phar')      # None if no program begins like this
     draft.completions                         # ('macy"',) if only one place begins so
     draft.is_whole                            # whether it could end here
@@ -57,7 +57,7 @@ class Block:
 
 
 @dataclass(frozen=True)
-class Draft:
+class Partial:
     """A program as far as it is written."""
 
     words: Vocabulary
@@ -74,7 +74,7 @@ class Draft:
     """Whether nothing may follow: a refusal, a question back."""
 
     @classmethod
-    def begin(cls, words: Vocabulary) -> Draft:
+    def begin(cls, words: Vocabulary) -> Partial:
         return cls(words)
 
     @property
@@ -90,10 +90,10 @@ class Draft:
         begun = whole.blocks[-1].empty or any(block.kind == "try" for block in whole.blocks)
         return whole.ended or not (begun or whole.unread)
 
-    def extended(self, text: str) -> Draft | None:
+    def extended(self, text: str) -> Partial | None:
         """The draft with more letters; None if no program begins like that."""
         *whole, rest = text.split("\n")
-        draft: Draft | None = self
+        draft: Partial | None = self
         for line in whole:
             assert draft is not None
             draft = replace(draft, begun=draft.begun + line)._with_line()
@@ -104,7 +104,7 @@ class Draft:
 
     # --- lines
 
-    def _with_begun(self, line: str) -> Draft | None:
+    def _with_begun(self, line: str) -> Partial | None:
         if not line:
             return replace(self, begun="", completions=())
         if self.ended or len(self.lines) >= MOST_LINES:
@@ -117,7 +117,7 @@ class Draft:
             return replace(self, begun=line, completions=unfinished.completions)
         return None  # a line is never at an end without its "\n"
 
-    def _with_line(self) -> Draft | None:
+    def _with_line(self) -> Partial | None:
         """The draft with the line that was begun at its end."""
         if self.ended or len(self.lines) >= MOST_LINES:
             return None
@@ -126,7 +126,7 @@ class Draft:
         except (Dead, Unfinished):
             return None
 
-    def _line(self, line: str) -> Draft:
+    def _line(self, line: str) -> Partial:
         """The draft behind a line, or what is wrong with it so far."""
         body = line.lstrip(" ")
         spaces = len(line) - len(body)
@@ -145,7 +145,7 @@ class Draft:
         needed = INDENT * (len(self.blocks) - 1)
         return (" " * (needed - spaces),) if self.blocks[-1].empty and spaces < needed else ()
 
-    def at_depth(self, depth: int, *, goes_on: bool) -> Draft:
+    def at_depth(self, depth: int, *, goes_on: bool) -> Partial:
         """Behind the ends of all blocks that are deeper; `goes_on`: the last of them belongs to a
         statement that has another branch."""
         draft = self
@@ -184,12 +184,12 @@ def _after(block: Block, names: Names) -> Names:
 class _Line(Reader):
     """One line of a draft, behind its spaces."""
 
-    def __init__(self, draft: Draft, line: str, at: int, depth: int) -> None:
+    def __init__(self, draft: Partial, line: str, at: int, depth: int) -> None:
         super().__init__(line, at, draft.names, draft.words)
         self.draft = draft
         self.depth = depth
 
-    def read(self) -> Draft:
+    def read(self) -> Partial:
         goes_on = self._goes_on()
         branch = self.choose(goes_on) if goes_on else ""
         last = self.draft.blocks[-1] if not branch else self.draft.blocks[self.depth + 1]
@@ -228,7 +228,7 @@ class _Line(Reader):
 
     # --- statements
 
-    def _statement(self, draft: Draft) -> Draft:
+    def _statement(self, draft: Partial) -> Partial:
         if not draft.lines and not self.depth and self._way_out():
             self.expect("\n")
             return replace(self._done(draft), ended=True)
@@ -268,7 +268,7 @@ class _Line(Reader):
                 self.expect(f"{way}(")
                 self.literal(reasons)
                 if self.choose((", ", ")")) == ", ":
-                    self.literal(self.words.phrases)
+                    self.quoted_words()
                     self.expect(")")
                 return True
         return False
@@ -293,14 +293,14 @@ class _Line(Reader):
             raise Unfinished
         return word
 
-    def _action(self, draft: Draft, method: str) -> Draft:
+    def _action(self, draft: Partial, method: str) -> Partial:
         result = self.call(method)
         if result.kind is not Kind.NOTHING and method not in ASIDE | {"do"}:
             raise Dead  # what was found out would be lost
         self.expect("\n")
         return self._done(draft)
 
-    def _loop(self, draft: Draft) -> Draft:
+    def _loop(self, draft: Partial) -> Partial:
         self.expect(" ")
         variable = self._new_name()
         second = self._new_name() if self.choose((" in ", ", ")) == ", " else ""
@@ -335,7 +335,7 @@ class _Line(Reader):
             raise Dead
         return word
 
-    def _change(self, draft: Draft, name: str) -> Draft:
+    def _change(self, draft: Partial, name: str) -> Partial:
         """A line that gives a name a value, or adds to one."""
         known = self.names.get(name)
         if known is None:
@@ -377,7 +377,7 @@ class _Line(Reader):
             raise Dead
         return joined
 
-    def _assigned(self, draft: Draft, name: str, known: Type | None) -> Draft:
+    def _assigned(self, draft: Partial, name: str, known: Type | None) -> Partial:
         start = self.at
         value = self._truth_or_value()
         self.expect("\n")
@@ -410,8 +410,8 @@ class _Line(Reader):
     # --- ends of lines
 
     def _done(
-        self, draft: Draft, names: Names | None = None, found_out: tuple[str, ...] = ()
-    ) -> Draft:
+        self, draft: Partial, names: Names | None = None, found_out: tuple[str, ...] = ()
+    ) -> Partial:
         *around, last = draft.blocks
         return replace(
             draft,
@@ -423,7 +423,7 @@ class _Line(Reader):
             completions=(),
         )
 
-    def _opened(self, draft: Draft, block: Block, names: Names | None = None) -> Draft:
+    def _opened(self, draft: Partial, block: Block, names: Names | None = None) -> Partial:
         self.expect("\n")
         if len(draft.blocks) > DEEPEST:
             raise Dead
@@ -431,4 +431,4 @@ class _Line(Reader):
         return replace(done, blocks=(*done.blocks, block))
 
 
-__all__ = ["CLARIFY", "REFUSE", "Block", "Draft"]
+__all__ = ["CLARIFY", "REFUSE", "Block", "Partial"]

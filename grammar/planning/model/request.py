@@ -11,18 +11,22 @@ import msgspec
 from grammar.planning.model.vocabulary import Vocabulary
 
 
+class Piece(msgspec.Struct, frozen=True):
+    """A part of what a model is told."""
+
+    text: str
+    marks: bool = False
+    """Whether words such as "<|im_start|>" are marks in it: never in what people have said."""
+
+
 class Request(msgspec.Struct, frozen=True, kw_only=True):
     """A program to be written."""
 
     prefix: str
     """What the model is told first, the same for every sentence, so that it is remembered."""
-    lead: str
-    """What stands before the person's words; words such as "<|im_start|>" are marks here."""
-    said: str
-    """The person's words: nothing in them is a mark."""
-    tail: str
-    """What stands behind them."""
-    words: Vocabulary
+    said: tuple[Piece, ...] = ()
+    """What it is told then; nothing, if it shall only get ready."""
+    words: Vocabulary = Vocabulary()
     most: int = 1
     """Programs that are wanted at most."""
 

@@ -10,7 +10,7 @@ from typing import Final
 
 import msgspec
 
-from robot_api.methods import METHODS, Method, Parameter
+from robot_api.methods import METHODS, Parameter
 
 
 class Vocabulary(msgspec.Struct, frozen=True, kw_only=True):
@@ -43,48 +43,13 @@ class Vocabulary(msgspec.Struct, frozen=True, kw_only=True):
     selectors: tuple[str, ...] = ()
     phrases: tuple[str, ...] = ()
     """Words of the sentence that may stand in a list."""
+    said: str = ""
+    """The sentence."""
 
 
-FREE: Final = "free"
-"""The role of a text that people hear or read."""
-OPTIONS: Final = "options"
-NUMBERS: Final = frozenset({"numbers", "seconds", "metres", "degrees", "percents"})
-
-_ROLES: Final = {
-    "place": "places",
-    "to": "places",
-    "kind": "kinds",
-    "person": "people",
-    "thing": "things",
-    "where": "furniture",
-    "contact": "contacts",
-    "skill": "skills",
-    "language": "languages",
-    "code": "languages",
-    "url": "urls",
-    "selector": "selectors",
-    "options": OPTIONS,
-    "seconds": "seconds",
-    "timeout": "seconds",
-    "metres": "metres",
-    "degrees": "degrees",
-    "percent": "percents",
-}
-_NAMES: Final = {"emotion": "emotions", "gesture": "gestures", "joint": "joints"}
-"""What `name` is of each method that has one."""
 _NEVER: Final = frozenset({"html", "timeout", "prompt"})
 """Parameters that only some methods offer to a model."""
 _OFFERED: Final = frozenset({("wait_for", "timeout"), ("touch", "prompt")})
-
-
-def role(method: Method, parameter: Parameter) -> str:
-    """What a parameter takes: the name of a field of `Vocabulary`, or one of the roles above."""
-    if parameter.name == "name":
-        return _NAMES[method.name]
-    known = _ROLES.get(parameter.name)
-    if known is not None:
-        return known
-    return FREE if "str" in parameter.kind.annotation else "numbers"
 
 
 def form(method: str) -> tuple[Parameter, ...]:

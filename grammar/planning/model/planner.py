@@ -1,0 +1,117 @@
+"""A language model as a planner: it knows how people talk, and writes what the rules do not
+know."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Final
+
+from grammar.normal import normal
+from grammar.planning.model.expansion import expanded, program_of
+from grammar.planning.model.prompt import request, vocabulary
+from grammar.planning.model.recogniser import CLARIFY, REFUSE
+from grammar.planning.model.request import Interrupted as WritingInterrupted
+from grammar.planning.model.request import Unavailable, Writer, Written
+from grammar.planning.planner import (
+    Answer,
+    Draft,
+    Drafts,
+    Interrupted,
+    Question,
+    Refusal,
+    Watch,
+)
+from grammar.planning.turn import Turn
+from grammar.reading import NotAPlan
+from grammar.understanding import Context
+
+NAME: Final = "model"
+MOST_DRAFTS: Final = 4
+LONGEST: Final = 600
+"""Characters of a sentence; more would take a model too long."""
+_WAY_OUT: Final = re.compile(rf'({REFUSE}|{CLARIFY})\("([^"]*)"(?:, "([^"]*)")?\)')
+
+
+class ModelPlanner:
+    """Has a `Writer` write programs, and makes plans of them."""
+
+    name = NAME
+
+    def __init__(self, writer: Writer) -> None:
+        self._writer = writer
+
+    def plan(self, turn: Turn, watch: Watch) -> Answer:
+        if len(turn.text) > LONGEST:
+            return Refusal(turn.language.phrase("too_long"))
+        watch.thinking()
+        asked = request(turn, turn.context.written, MOST_DRAFTS)
+        try:
+            with watch.cancelling(self._writer.cancel):
+                written = self._writer.write(asked, lambda text: watch.writing(_shown(text, turn)))
+        except WritingInterrupted as error:
+            raise Interrupted from error
+        except Unavailable as error:
+            return Refusal(str(error))
+        return self._answer(turn, written)
+
+    def _answer(self, turn: Turn, written: list[Written]) -> Answer:
+        """The plans of what was written; the way out if that is what was written first."""
+        total = sum(math.exp(each.score) for each in written)
+        drafts = []
+        for number, each in enumerate(written):
+            out = _WAY_OUT.match(each.text)
+            if out is not None and number == 0:
+                return _way_out(turn, *out.groups())
+            if out is not None:
+                continue
+            draft = _draft(turn, each, math.exp(each.score) / total)
+            if draft is not None:
+                drafts.append(draft)
+        if not drafts:
+            return Refusal(turn.language.phrase("not_understood_at_all"))
+        return Drafts(tuple(drafts))
+
+
+def _draft(turn: Turn, written: Written, share: float) -> Draft | None:
+    people = vocabulary(turn).people
+    try:
+        plan = normal(expanded(written.text, people, turn.lexicon, turn.language))
+    except NotAPlan:
+        return None
+    context = Context(
+        plan=plan, text=turn.text, before=turn.context.referents(), written=written.text
+    )
+    return Draft(plan, NAME, share, context, score=written.score, surest=written.surest)
+
+
+_SAME: Final = {
+    (REFUSE, "dangerous"): "no_harm",
+    (REFUSE, "medical"): "no_medicine",
+    (REFUSE, "no order"): "asks_nothing",
+}
+"""Reasons for which the language has words anyhow."""
+
+
+def _way_out(turn: Turn, way: str, reason: str, words: str | None) -> Answer:
+    """A refusal or a question back, in the words of the language."""
+    phrase = _SAME.get((way, reason), f"{way}_{reason}")
+    if words and f"{phrase}_of" in turn.language.phrases:
+        phrase = f"{phrase}_of"
+    message = turn.language.phrase(phrase, part=words or "")
+    if way == CLARIFY:
+        return Question(message, context=turn.context)
+    return Refusal(message, final=reason in ("dangerous", "medical"), context=turn.context)
+
+
+def _shown(text: str, turn: Turn) -> str:
+    """What was written so far, as a program that people see; only whole lines can be that."""
+    *whole, rest = text.split("\n")
+    lines: list[str] = []
+    for line in whole:
+        try:
+            lines.append(program_of(line.strip(), turn.language).strip())
+        except SyntaxError:  # "if ...:" alone is no program
+            lines.append(line.strip())
+        lines[-1] = line[: len(line) - len(line.lstrip())] + lines[-1]
+    return "\n".join([*lines, rest])

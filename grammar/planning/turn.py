@@ -1,0 +1,62 @@
+"""One thing that somebody says in a conversation: what every planner is given."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+from grammar.language import Language
+from grammar.lexicon import Lexicon
+from grammar.planning.mentions import Mention, mentions
+from grammar.tokens import Token
+from grammar.understand import Reader
+from grammar.understanding import Context
+
+
+@dataclass(frozen=True)
+class Turn:
+    text: str
+    lexicon: Lexicon
+    language: Language
+    context: Context = field(default_factory=Context)
+    """What was said and planned before."""
+
+    @cached_property
+    def reader(self) -> Reader:
+        return Reader(self.text, self.lexicon, self.language, self.context)
+
+    @property
+    def tokens(self) -> tuple[Token, ...]:
+        return self.reader.tokens
+
+    @cached_property
+    def mentions(self) -> tuple[Mention, ...]:
+        """What is spoken of, by the names and noun phrases of the language."""
+        return mentions(self.reader)
+
+    @cached_property
+    def before(self) -> Turn | None:
+        """What was said before, if this may go on with it."""
+        if self.context.plan is None or not self.context.text:
+            return None
+        return Turn(self.context.text, self.lexicon, self.language)
+
+    @cached_property
+    def called(self) -> tuple[Turn, ...]:
+        """The sentences of routines that are called by their names."""
+        return tuple(
+            Turn(routine.sentence, replace(self.lexicon, routines=()), self.language)
+            for at in range(len(self.tokens))
+            for _, _, routines in self.reader.slots.matches("{routine}", at)
+            for routine in routines
+        )
+
+    @property
+    def earlier(self) -> tuple[Turn, ...]:
+        """What was said at other times and counts here."""
+        return (*((self.before,) if self.before else ()), *self.called)
+
+    @cached_property
+    def spoken_of(self) -> tuple[Mention, ...]:
+        """The mentions of this turn, and of what counts besides."""
+        return (*self.mentions, *(each for turn in self.earlier for each in turn.mentions))
