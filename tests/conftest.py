@@ -2,10 +2,15 @@
 
 import logging
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
 
 import pytest
 from hypothesis import settings
+
+from grammar.planning.model.planner import ModelPlanner
+from nl2robot import planners
+from nl2robot.language_model.scripted import ScriptedWriter
 
 # A busy machine with two cores takes its time; how fast things are is measured, not tested.
 # In CI the examples are the same every time: what lands does not hang on luck; at home they are new
@@ -17,6 +22,22 @@ settings.load_profile("nl2robot")
 # What the rules do is tested without a language model that may be installed; who tests that asks
 # for it.
 os.environ["NL2ROBOT_LANGUAGE_MODEL"] = "none"
+
+
+@pytest.fixture
+def scripted(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., ScriptedWriter]]:
+    """Make a language model be there that knows its programs by heart: `scripted({words: [...]})`
+    gives the `ScriptedWriter`."""
+
+    def make(programs: Mapping[str, Sequence[str]], **how: Any) -> ScriptedWriter:
+        writer = ScriptedWriter(programs, **how)
+        planners.planner.cache_clear()
+        monkeypatch.setitem(planners.PLANNERS, "model", lambda: ModelPlanner(writer))
+        monkeypatch.setattr(planners, "available", lambda name: True)
+        return writer
+
+    yield make
+    planners.planner.cache_clear()
 
 
 class _Stumbled(logging.Handler):
