@@ -12,7 +12,7 @@ import json
 import re
 import secrets
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -22,6 +22,7 @@ from nl2robot.console.dialogues import Dialogues
 from nl2robot.console.outlook import outlook
 from nl2robot.console.part import Backstage, Part
 from nl2robot.console.run_view import run_view
+from nl2robot.console.thought_view import ThoughtView
 from nl2robot.console.visitor import texts
 from nl2robot.paths import data_folder
 from nl2robot.translation import Translation
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
 
 EDITED_AFTER: Final = 0.35
 """Seconds without a key until an edited program is reviewed."""
+GONE_AFTER: Final = 2.0
+"""Seconds without a connection after which nothing more is thought about for a page."""
 
 
 def part(backstage: Backstage) -> Part:
@@ -51,6 +54,10 @@ def part(backstage: Backstage) -> Part:
             with frame(backstage, "desk") as visit:
                 _Desk(backstage, dialogues, visit)
 
+    def close() -> None:
+        unsubscribe()
+        dialogues.close()
+
     return Part(
         services={
             "desk.run": service(
@@ -61,7 +68,7 @@ def part(backstage: Backstage) -> Part:
             )
         },
         pages=pages,
-        close=unsubscribe,
+        close=close,
     )
 
 
@@ -76,6 +83,7 @@ class _Desk:
         self.backstage = backstage
         self.visit = visit
         self.words = visit.words
+        self.threads = dialogues.threads
         self.dialogue = dialogues.of(_name(request.cookies.get("desk", "")), visit.language)
         visit.hand_over(
             {
@@ -92,8 +100,10 @@ class _Desk:
         self._shown: str | None = None
         """The program in the editor, as it was last set here or typed there."""
         self._path: list[list[float]] | None = None
+        self._dropped = self.dialogue.dropped
         self._build()
         if visit.role == "operator":
+            self._attend()
             for name, handler in self._handlers().items():
                 ui.on(name, handler)
             program = request.query_params.get("program")
@@ -108,16 +118,34 @@ class _Desk:
 
     def _follow(self) -> None:
         """Draw what changes in the dialogue, as long as the page is there."""
-        from nicegui import core, ui
+        from nicegui import ui
 
-        loop = core.loop
-        assert loop is not None
+        client, loop = ui.context.client, _loop()
 
         def changed() -> None:
             if not loop.is_closed():
                 loop.call_soon_threadsafe(self._draw)
 
-        ui.context.client.on_delete(self.dialogue.watch(changed))
+        client.on_delete(self.dialogue.watch(changed))
+        client.on_delete(self.dialogue.look_on(self.thought.grown))
+
+    def _attend(self) -> None:
+        """Be there for the dialogue as long as the browser is, and a little longer: a connection
+        may break for a moment, and a page may be loaded anew."""
+        from nicegui import ui
+
+        client, loop = ui.context.client, _loop()
+        there: list[Callable[[], None]] = []
+
+        def came() -> None:
+            there.append(self.dialogue.attend(self.visit.language))
+
+        def went() -> None:
+            if there:
+                loop.call_later(GONE_AFTER, self.threads.submit, there.pop())
+
+        client.on_connect(came)
+        client.on_disconnect(went)
 
     # --- what is there
 
@@ -130,9 +158,11 @@ class _Desk:
                 .classes("desk-talk card")
                 .props(f'aria-label="{self.words["conversation"]}"')
             ):
-                self.conversation = ui.html("", sanitize=False).props(
+                with ui.element("div").props(
                     'id="conversation" role="log" aria-live="polite" tabindex="0"'
-                )
+                ):
+                    self.conversation = ui.html("", sanitize=False).classes("lines")
+                    self.thought = ThoughtView(self.dialogue, self.words, _loop())
                 ui.html(_page("composer.html", visit=self.visit), sanitize=False)
             with ui.element("div").classes("desk-program"):
                 ui.html('<section id="run-panel" hidden></section>', sanitize=False)
@@ -160,6 +190,10 @@ class _Desk:
         self.conversation.set_content(
             _page("conversation.html", dialogue=dialogue, words=self.words, visit=self.visit)
         )
+        self.thought.draw()
+        if dialogue.dropped is not self._dropped:
+            self._dropped = dialogue.dropped
+            self._dispatch("thought-dropped", self._dropped and self._dropped.words)
         draft = dialogue.draft
         review = draft.review if draft else None
         language, knowledge = self.visit.language, self.backstage.runner.knowledge
@@ -188,18 +222,20 @@ class _Desk:
         if path == self._path:
             return
         self._path = path
-        detail = json.dumps(path)
+        self._dispatch("dry-run", path)
+
+    def _dispatch(self, name: str, detail: Any) -> None:
+        """Tell the page's scripts something."""
+        about = json.dumps({"detail": detail})
         self.panel.client.run_javascript(
-            f"document.dispatchEvent(new CustomEvent('dry-run', {{detail: {detail}}}))"
+            f"document.dispatchEvent(new CustomEvent({json.dumps(name)}, {about}))"
         )
 
     # --- what is done
 
     async def _do(self, act: Callable[..., None], *arguments: Any) -> None:
         """Do something that takes its time, in a thread of its own."""
-        from nicegui import run
-
-        await run.io_bound(act, *arguments)
+        await _loop().run_in_executor(self.threads, partial(act, *arguments))
 
     async def _edited(self, program: str) -> None:
         draft = self.dialogue.draft
@@ -224,6 +260,12 @@ class _Desk:
             translation = msgspec.convert(event.args["translation"], Translation)
             await self._do(dialogue.hear, words, translation, language, who, harmless)
 
+        async def ponder(event: GenericEventArguments) -> None:
+            await self._do(dialogue.ponder, str(event.args["text"]), language)
+
+        async def cancel(event: GenericEventArguments) -> None:
+            await self._do(dialogue.cancel, language)
+
         async def propose(event: GenericEventArguments) -> None:
             program, at_once = str(event.args["program"]), bool(event.args["at_once"])
             await self._do(dialogue.propose, program, language, who, at_once)
@@ -240,11 +282,21 @@ class _Desk:
         return {
             "desk-say": say,
             "desk-hear": hear,
+            "desk-ponder": ponder,
+            "desk-cancel": cancel,
             "desk-propose": propose,
             "desk-approve": approve,
             "desk-reject": reject,
             "desk-shade": shade,
         }
+
+
+def _loop() -> asyncio.AbstractEventLoop:
+    """The one that the pages live in."""
+    from nicegui import core
+
+    assert core.loop is not None
+    return core.loop
 
 
 def _name(kept: str) -> str:

@@ -2,7 +2,8 @@
 
 The main path as the page has it: `say` (understand, write) -> `review` -> `approve` -> the run.
 It lives at the server, so that a page that is reloaded finds it again; it knows nothing of pages.
-Its methods block as long as translation and dry run take, and may be called from any thread.
+Its methods block as long as translation and dry run take, and may be called from any thread. Only
+`cancel` does not: it ends a translation that a language model thinks about.
 """
 
 from __future__ import annotations
@@ -14,8 +15,10 @@ from typing import Final, Literal
 
 import msgspec
 
+from grammar.planning.planner import Interrupted
 from nl2robot.console.harmless import is_harmless
 from nl2robot.console.part import Backstage
+from nl2robot.console.thought import Thought
 from nl2robot.console.trouble import told
 from nl2robot.console.visitor import texts
 from nl2robot.errors import UserError
@@ -72,34 +75,83 @@ class Dialogue:
         """Of the conversation, for `Talks` and for the microphone."""
         self.lines: list[Line] = []
         self.draft: Draft | None = None
-        self.busy = False
+        self.thought: Thought | None = None
         """While words are being understood."""
+        self.dropped: Thought | None = None
+        """The last one that was cancelled, whose words somebody may want to send otherwise."""
         self.runs: set[int] = set()
         """Runs that were started here and are not over."""
         self._backstage = backstage
         self._watchers: list[Callable[[], None]] = []
+        self._onlookers: list[Callable[[], None]] = []
+        self._present = 0
+        self._state = threading.Lock()
+        """Around what changes while something is thought about."""
+        self._words = threading.Lock()
+        """Sentences are understood one after the other."""
         self._turn = threading.RLock()
-        """One thing is said or decided at a time."""
+        """One thing is decided at a time; also while something is thought about."""
 
     def watch(self, watcher: Callable[[], None]) -> Callable[[], None]:
         """Be told, from any thread, that something changed; returns what ends it."""
         self._watchers.append(watcher)
         return lambda: self._watchers.remove(watcher)
 
+    def look_on(self, onlooker: Callable[[], None]) -> Callable[[], None]:
+        """Be told, from any thread and often, that a thought has grown; returns what ends it."""
+        self._onlookers.append(onlooker)
+        return lambda: self._onlookers.remove(onlooker)
+
+    def attend(self, language: str) -> Callable[[], None]:
+        """Somebody is there from now on; returns what ends it. Nothing is thought about for
+        nobody."""
+        with self._state:
+            self._present += 1
+
+        def leave() -> None:
+            with self._state:
+                self._present -= 1
+                alone = self._present == 0
+            if alone:
+                self.cancel(language)
+
+        return leave
+
     # --- understand
 
     def say(self, words: str, language: str, who: str, harmless: bool = False) -> None:
         """Take what somebody typed. `harmless`: what does no harm need not be approved."""
-        with self._turn:
-            self._tell(Line("you", words), busy=True)
-            talk = self._backstage.talks.of(self.name)
-            runner = self._backstage.runner
+        thought = self._begin(Thought(words, self._grown), language)
+        self._tell(Line("you", words))
+        with self._words:
             try:
-                translation = translate(words, runner.knowledge, language, "auto", talk, runner)
+                translation = self._understood(thought, language)
             except UserError as error:
                 self._tell(Line("robot", str(error), "trouble"))
                 return
-            self._take(translation, None, language, who, harmless)
+            if translation is None:
+                self._drop(thought, language)
+                return
+            with self._turn:
+                self._take(translation, None, language, who, harmless)
+
+    def _understood(self, thought: Thought, language: str) -> Translation | None:
+        """What was made of a sentence; None if it was dropped, and then it is as if nobody had
+        said it."""
+        talk, runner = self._backstage.talks.of(self.name), self._backstage.runner
+        mine = talk.copy()
+        try:
+            made = translate(
+                thought.words, runner.knowledge, language, "auto", mine, runner, thought.watch
+            )
+        except Interrupted:
+            return None
+        finally:
+            wanted = self._end(thought)
+        if thought.deep and not wanted:  # cancelled when all was written
+            return None
+        talk.adopt(mine)
+        return made
 
     def hear(
         self,
@@ -110,9 +162,59 @@ class Dialogue:
         harmless: bool = False,
     ) -> None:
         """Take what the microphone heard, which was translated in this conversation."""
-        with self._turn:
+        thought = self.thought
+        if thought is not None and thought.heard:
+            self._end(thought)
+        else:
+            self.cancel(language)
             self._tell(Line("you", words))
+        with self._turn:
             self._take(translation, words, language, who, harmless)
+
+    def ponder(self, words: str, language: str) -> None:
+        """The microphone has heard this, and it is thought about where it was heard: `hear` tells
+        what came of it, or `cancel` that nothing will."""
+        self._begin(Thought(words, self._grown, heard=True), language)
+        self._tell(Line("you", words))
+
+    # --- think
+
+    def cancel(self, language: str) -> None:
+        """Drop the sentence that is thought about, if there is one."""
+        with self._state:
+            thought, self.thought = self.thought, None
+        if thought is None:
+            return
+        thought.cancel()
+        if thought.deep:
+            self._drop(thought, language)
+
+    def _begin(self, thought: Thought, language: str) -> Thought:
+        """Who says something new has done with what they said before."""
+        self.cancel(language)
+        with self._state:
+            self.thought = thought
+        return thought
+
+    def _end(self, thought: Thought) -> bool:
+        """It is no longer thought about. Whether anybody still wants to know what came of it."""
+        with self._state:
+            wanted = self.thought is thought
+            if wanted:
+                self.thought = None
+        self._grown()
+        return wanted
+
+    def _drop(self, thought: Thought, language: str) -> None:
+        with self._state:
+            told, thought.told_dropped = thought.told_dropped, True
+        if not told:
+            self.dropped = thought
+            self._tell(Line("robot", _said("thought_dropped", language)))
+
+    def _grown(self) -> None:
+        for onlooker in tuple(self._onlookers):
+            onlooker()
 
     def _take(
         self, translation: Translation, heard: str | None, language: str, who: str, harmless: bool
@@ -239,9 +341,9 @@ class Dialogue:
             text = " ".join(filter(None, (_said(f"ended_{state}", language), why)))
             self._tell(Line("robot", text, "done" if state == "done" else "trouble", run=run))
 
-    def _tell(self, line: Line, busy: bool = False) -> None:
-        self.lines = [*self.lines, line][-LINES_KEPT:]
-        self.busy = busy
+    def _tell(self, line: Line) -> None:
+        with self._state:  # what is said while another thing is thought about
+            self.lines = [*self.lines, line][-LINES_KEPT:]
         self._changed()
 
     def _changed(self) -> None:

@@ -7,6 +7,7 @@ import logging
 import threading
 from collections import OrderedDict
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 from typing import Any, Final
@@ -20,6 +21,8 @@ from nl2robot.translation import Translation
 
 IN_MEMORY: Final = 50
 IN_FILES: Final = 200
+THREADS: Final = 2 * IN_MEMORY
+"""At most; in each, a sentence is understood or something is decided."""
 
 _log = logging.getLogger(__name__)
 
@@ -51,6 +54,10 @@ class Dialogues:
         self._languages: dict[str, str] = {}
         self._written: dict[str, bytes] = {}
         self._writing = threading.Lock()
+        # Not the page's own few threads: who waits for a language model must not keep others from
+        # approving and editing.
+        self.threads = ThreadPoolExecutor(THREADS, "desk")
+        """For what takes its time."""
         self._forget_old_files()
 
     def of(self, name: str, language: str) -> Dialogue:
@@ -69,12 +76,25 @@ class Dialogues:
         return self._dialogues[name]
 
     def on_event(self, kind: str, data: Mapping[str, Any]) -> None:
-        """Tell whoever started a run that it is over."""
+        """Tell whoever started a run that it is over. When the robot is stopped, nothing more is
+        thought about, lest it moves on."""
+        if kind == "stopped":
+            self._cancel_all()
         if kind != "program" or data["what"] != "state" or data["state"] in ("running", "paused"):
             return
         for name, dialogue in tuple(self._dialogues.items()):
             language = self._languages.get(name, "en")
             dialogue.ended(data["run"], data["state"], data["message"], language)
+
+    def close(self) -> None:
+        """Nobody is left to whom anything could be told."""
+        self._cancel_all()
+        self.threads.shutdown(wait=False)
+
+    def _cancel_all(self) -> None:
+        for name, dialogue in tuple(self._dialogues.items()):
+            if dialogue.thought is not None:  # who stops the robot does not wait for it
+                self.threads.submit(dialogue.cancel, self._languages.get(name, "en"))
 
     # --- files
 

@@ -6,7 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -67,7 +67,12 @@ class Served:
 
 
 @contextmanager
-def serving(home: Path, *options: str, models: bool = False) -> Iterator[Served]:
+def serving(
+    home: Path,
+    *options: str,
+    models: bool = False,
+    program: Sequence[str] = ("-m", "nl2robot.cli", "serve"),
+) -> Iterator[Served]:
     """Serve with these options of `nl2robot serve`; `models`: with the speech models there are."""
     environment = {**os.environ, "NL2ROBOT_HOME": str(home)}
     if models:
@@ -79,7 +84,8 @@ def serving(home: Path, *options: str, models: bool = False) -> Iterator[Served]
             (home / "models").symlink_to(there)
     given = options if "--port" in options else ("--port", "0", *options)
     process = subprocess.Popen(
-        [sys.executable, "-m", "nl2robot.cli", "serve", *given],
+        [sys.executable, *program, *given],
+        stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
         env=environment,

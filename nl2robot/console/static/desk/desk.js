@@ -23,6 +23,7 @@ function openComposer(form) {
   const history = [...pageData.history];
   let at = history.length;
   let unsent = sessionStorage.getItem('unsent') ?? '';
+  let sent = null; // from here, the last of all
   line.value = unsent;
 
   const say = (text) => {
@@ -30,6 +31,7 @@ function openComposer(form) {
     if (!said) return;
     if (history.at(-1) !== said) history.push(said);
     at = history.length;
+    sent = said;
     tell('desk-say', {text: said, harmless: options().harmless});
   };
   form.addEventListener('submit', (event) => {
@@ -53,6 +55,15 @@ function openComposer(form) {
   document.addEventListener('click', (event) => {
     const button = event.target.closest('[data-say]');
     if (button) say(button.dataset.say);
+    if (event.target.closest('#cancel')) tell('desk-cancel');
+  });
+  // Who cancels wants to say it otherwise; what they have typed since then is theirs.
+  document.addEventListener('thought-dropped', ({detail: words}) => {
+    if (words !== sent || line.value) return;
+    line.value = unsent = words;
+    sent = null;
+    sessionStorage.setItem('unsent', unsent);
+    if (matchMedia('(pointer: fine)').matches) line.focus({preventScroll: true});
   });
   for (const [name, id] of Object.entries(OPTIONS)) {
     const box = document.getElementById(id);
@@ -89,9 +100,10 @@ function editedProgram() {
   return window.getElement(Number(editor.id.slice(1))).editor.state.doc.toString();
 }
 
-/** In the editor, Tab leads on to the decision, as everywhere: it would indent, and hold who has no
+/** The editor has no name of its own for who does not see it. In it, Tab leads on to the decision, as everywhere: it would indent, and hold who has no
  * mouse. What is too long to be sent is not taken. */
 function openEditor(editor) {
+  appears('.desk-editor .cm-content').then((text) => text.setAttribute('aria-label', words.program));
   editor.addEventListener('keydown', (event) => event.key === 'Tab' && event.stopPropagation(), {capture: true});
   editor.addEventListener(
     'paste',
@@ -122,7 +134,7 @@ function keepNewestInView(conversation) {
     atEnd = scrollHeight - scrollTop - clientHeight < 60;
   });
   const follow = () => atEnd && conversation.scrollTo({top: conversation.scrollHeight});
-  new MutationObserver(follow).observe(conversation, {childList: true, subtree: true});
+  new MutationObserver(follow).observe(conversation, {childList: true, subtree: true, attributeFilter: ['class']});
   follow();
 }
 
