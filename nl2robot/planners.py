@@ -92,6 +92,12 @@ def _found(codes: list[str], find: Callable[[str], Path | None]) -> Iterator[Pat
             yield folder
 
 
+def learned(code: str) -> Path | None:
+    """What this model has learned for this project: a file of `language_model.changes`."""
+    path = Path(__file__).parent / "data" / "learned" / f"{code}.npz"
+    return path if path.exists() else None
+
+
 @functools.cache
 def language_model() -> Process:
     """The language model's process, which begins when it is first asked to write."""
@@ -103,6 +109,6 @@ def language_model() -> Process:
         )
     from nl2robot.language_model.client import Process
 
-    process = Process(folder)
+    process = Process(folder, learned(folder.name))
     atexit.register(process.close)
     return process

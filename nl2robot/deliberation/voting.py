@@ -9,7 +9,7 @@ after what.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
@@ -20,7 +20,7 @@ from grammar.planning.model.prompt import ANYBODY
 from grammar.planning.planner import Draft
 from grammar.planning.turn import Turn
 from nl2robot.deliberation.considering import Considered, consider
-from nl2robot.deliberation.paper_robot import Event
+from nl2robot.deliberation.paper_robot import Event, Scene
 from nl2robot.deliberation.playing import Course, played
 from nl2robot.deliberation.staging import scenes
 from nl2robot.knowledge import Knowledge
@@ -98,6 +98,11 @@ def count(turn: Turn, drafts: Sequence[Draft], knowledge: Knowledge) -> Count:
     return Count(tuple(sorted(votes, key=lambda vote: -vote.share)), tuple(dropped))
 
 
+def same(turn: Turn, one: Considered, other: Considered) -> bool:
+    """Whether two do the same."""
+    return _same(*_tried(turn, (one, other)))
+
+
 def _vote(group: Sequence[Tried], total: float) -> Vote:
     drafts = tuple(each.considered for each in group)
     return Vote(drafts, sum(each.draft.probability for each in drafts) / total)
@@ -111,9 +116,16 @@ def _possible(each: Considered, knowledge: Knowledge) -> bool:
 def _tried(turn: Turn, considered: Sequence[Considered]) -> list[Tried]:
     people = {each.value for each in turn.spoken_of if each.sort == "person"} - {ANYBODY}
     stage = scenes(turn.lexicon, [each.program for each in considered], people)
-    return [
-        Tried(each, tuple(played(each.program, scene) for scene in stage)) for each in considered
-    ]
+    return [Tried(each, tuple(_courses(each.program, stage))) for each in considered]
+
+
+def _courses(program: str, stage: Sequence[Scene]) -> Iterator[Course]:
+    """What it does in each scene; if it fails in the first, that is all there is to know."""
+    for number, scene in enumerate(stage):
+        course = played(program, scene)
+        yield course
+        if number == 0 and course.end == "failed":
+            return
 
 
 def _noticed(course: Course) -> tuple[Event, ...]:

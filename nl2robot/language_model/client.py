@@ -32,8 +32,9 @@ class Process:
     """A `grammar.planning.model.request.Writer` whose model runs in another process; one sentence
     at a time."""
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
+    def __init__(self, folder: Path, learned: Path | None = None) -> None:
+        """`learned` is a file of `nl2robot.language_model.changes`."""
+        self._folders = [str(path) for path in (folder, learned) if path is not None]
         self._turn = threading.Lock()
         self._state = threading.Lock()
         self._running: subprocess.Popen[bytes] | None = None
@@ -121,7 +122,7 @@ class Process:
                 "The language model could not be started a moment ago."
                 " Try again in half a minute, or say it in other words."
             )
-        command = [sys.executable, "-m", "nl2robot.language_model.worker", str(self._folder)]
+        command = [sys.executable, "-m", "nl2robot.language_model.worker", *self._folders]
         process = subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
         )

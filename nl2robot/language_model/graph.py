@@ -7,6 +7,10 @@ The graph looks at one row of tokens, but what each of them sees is an input (`s
 its place (`places`): several continuations of one text can be read side by side, as a tree whose
 branches do not see each other, and share the text before them.
 
+What was learned for this project (`learned`) are inputs as well: changes of low rank to the
+products of the layers (LoRA: Hu et al., arXiv:2106.09685), so that they may be others without a
+new graph.
+
 Qwen2: Yang et al., Qwen2 Technical Report, arXiv:2407.10671.
 """
 
@@ -24,6 +28,8 @@ from nl2robot.language_model.weights import BLOCK, Blocks, Blocks4, Floats, Gguf
 
 LONGEST: Final = 4096
 """Tokens for whose places the rotations are worked out."""
+CHANGED: Final = ("qkv", "told", "gate", "up", "down")
+"""The products of a layer that may have learned something."""
 _ALIGNED: Final = 4096
 """Where a matrix may begin in the file of weights, to be mapped into memory."""
 _MICROSOFT: Final = "com.microsoft"
@@ -37,6 +43,8 @@ class _Graph:
     def __init__(self, data: BinaryIO, location: str) -> None:
         self.nodes: list[Any] = []
         self.constants: list[Any] = []
+        self.learned: list[Any] = []
+        """The inputs for what was learned."""
         self._data = data
         self._location = location
         self._sums: dict[str, str] = {}
@@ -89,6 +97,22 @@ class _Graph:
         corrected = self.product(sums, f"{name}.correction", correction)
         return self.node("Add", [product, corrected], f"{name}.corrected")
 
+    def changed(
+        self, of: str, layer: int, which: str, matrix: Blocks, bias: Floats | None = None
+    ) -> str:
+        """The same with what was learned for it."""
+        name = f"{layer}.{which}"
+        product = self.product(of, f"blk.{name}", matrix, bias)
+        rank, few = f"{name}.rank", of
+        shapes: dict[str, Sequence[int | str]] = {
+            "down": (matrix.columns, rank),
+            "up": (rank, matrix.rows),
+        }
+        for side, shape in shapes.items():
+            self.learned.append(_info(f"learned.{name}.{side}", TensorProto.FLOAT, shape))
+            few = self.node("MatMul", [few, f"learned.{name}.{side}"], f"blk.{name}.learned.{side}")
+        return self.node("Add", [product, few], f"blk.{name}.changed")
+
     def sums_of_blocks(self, of: str, blocks: int, filled: int) -> str:
         """The sum of each 32 numbers of a row, with zeros at the end up to `filled`."""
         if of not in self._sums:
@@ -132,6 +156,8 @@ def write_graph(file: GgufFile, kept: Sequence[int], path: Path) -> None:
         places      int64 (1, n)        their places in their text
         sees        float (1, 1, n, t)  0 for what a token sees, a very small number for the rest
         key_<l>, value_<l>              float (1, kv_heads, room, head_width), changed in place
+        learned.<l>.<product>.down      float (columns, rank)
+        learned.<l>.<product>.up        float (rank, rows); the products are those of `CHANGED`
     Outputs: scores float (1, r, len(kept)); new_key_<l>, new_value_<l>.
     """
     data = path.with_name(f"{path.name}.data")
@@ -173,7 +199,11 @@ def _model(file: GgufFile, kept: Sequence[int], graph: _Graph) -> Any:
     scores = _info("scores", TensorProto.FLOAT, [1, "asked", len(kept)])
     return helper.make_model(
         helper.make_graph(
-            graph.nodes, "qwen2", [*own, *inputs], [*outputs, scores], graph.constants
+            graph.nodes,
+            "qwen2",
+            [*own, *inputs, *graph.learned],
+            [*outputs, scores],
+            graph.constants,
         ),
         opset_imports=[helper.make_opsetid("", 18), helper.make_opsetid(_MICROSOFT, 1)],
         ir_version=10,
@@ -191,7 +221,7 @@ def _layer(graph: _Graph, file: GgufFile, layer: int, hidden: str, stream: str) 
         helper.make_node(
             "GroupQueryAttention",
             [
-                *(graph.product(hidden, f"{name}.qkv", asked, bias), "", ""),
+                *(graph.changed(hidden, layer, "qkv", asked, bias), "", ""),
                 *(f"key_{layer}", f"value_{layer}", "last", "total"),
                 *("cosines", "sines", "places", "sees"),
             ],
@@ -202,15 +232,15 @@ def _layer(graph: _Graph, file: GgufFile, layer: int, hidden: str, stream: str) 
             do_rotary=1,
         )
     )
-    told = graph.product(attended, f"{name}.told", file.matrix(f"{name}.attn_output.weight"))
+    told = graph.changed(attended, layer, "told", file.matrix(f"{name}.attn_output.weight"))
     weights = file.vector(f"{name}.ffn_norm.weight")
     hidden, stream = graph.normalised(told, stream, f"{name}.middle", weights, sizes.epsilon)
-    gate = graph.product(hidden, f"{name}.gate", file.matrix(f"{name}.ffn_gate.weight"))
-    up = graph.product(hidden, f"{name}.up", file.matrix(f"{name}.ffn_up.weight"))
+    gate = graph.changed(hidden, layer, "gate", file.matrix(f"{name}.ffn_gate.weight"))
+    up = graph.changed(hidden, layer, "up", file.matrix(f"{name}.ffn_up.weight"))
     # x * sigmoid(x)
     opened = graph.node("QuickGelu", [gate], f"{name}.opened", _MICROSOFT, alpha=1.0)
     gated = graph.node("Mul", [opened, up], f"{name}.gated")
-    down = graph.product(gated, f"{name}.down", file.matrix(f"{name}.ffn_down.weight"))
+    down = graph.changed(gated, layer, "down", file.matrix(f"{name}.ffn_down.weight"))
     after = f"blk.{layer + 1}.attn_norm" if layer + 1 < sizes.layers else "output_norm"
     weights = file.vector(f"{after}.weight")
     return graph.normalised(down, stream, f"{name}.out", weights, sizes.epsilon)

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grammar.planning.model.decoding import Full
+from nl2robot.language_model.changes import changes
 from nl2robot.language_model.files import GRAPH, LEVELS, SCALES, TOKENS
 from nl2robot.language_model.tokens import Tokens
 from nl2robot.language_model.weights import BLOCK, Floats
@@ -53,7 +54,15 @@ class Branch:
 class OnnxModel:
     """One model and what it has read. Not for several threads, but for `cancel`."""
 
-    def __init__(self, folder: Path, threads: int | None = None, room: int = ROOM) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        threads: int | None = None,
+        room: int = ROOM,
+        learned: Path | None = None,
+    ) -> None:
+        """`learned` is a file that `nl2robot.training.planner.train` has written for this model.
+        Raises `ValueError` if it is of another one."""
         import onnxruntime
 
         self.tokens = Tokens.load(folder / TOKENS)
@@ -78,6 +87,11 @@ class OnnxModel:
         self._bound = {
             name: onnxruntime.OrtValue.ortvalue_from_numpy(each)
             for name, each in self._kept.items()
+        }
+        inputs = {each.name: each.shape for each in self._session.get_inputs()}
+        self._learned = {
+            name: onnxruntime.OrtValue.ortvalue_from_numpy(each)
+            for name, each in changes(inputs, learned)
         }
         self._options = onnxruntime.RunOptions
         self.used = 0
@@ -137,6 +151,8 @@ class OnnxModel:
         for name, kept in self._bound.items():
             binding.bind_ortvalue_input(name, kept)
             binding.bind_ortvalue_output(f"new_{name}", kept)
+        for name, change in self._learned.items():
+            binding.bind_ortvalue_input(name, change)
         binding.bind_output("scores")
         self._run = self._options()
         try:

@@ -1,4 +1,5 @@
-"""The language model in a process of its own: `python -m nl2robot.language_model.worker FOLDER`.
+"""The language model in a process of its own: `python -m nl2robot.language_model.worker FOLDER
+[LEARNED]`.
 
 What the model computes must not hold up a robot's loop, and a model for which there is too little
 memory must not take a server with it. So it runs apart, with less right to the processor than
@@ -11,6 +12,7 @@ from __future__ import annotations
 import os
 import sys
 import threading
+import time
 from contextlib import suppress
 from pathlib import Path
 from queue import SimpleQueue
@@ -50,7 +52,7 @@ class _Reading:
 class Worker:
     """Does what it is told, one order after the other; only a cancellation overtakes."""
 
-    def __init__(self, folder: Path, out: BinaryIO) -> None:
+    def __init__(self, folder: Path, learned: Path | None, out: BinaryIO) -> None:
         self._folder = folder
         self._out = out
         self._encode = msgspec.json.Encoder().encode
@@ -58,7 +60,7 @@ class Worker:
         self._cancelled: set[int] = set()
         self._now: int | None = None
         self._lock = threading.Lock()
-        self._model = OnnxModel(folder)
+        self._model = OnnxModel(folder, learned=learned)
         self._prefix = ""
         self._begin: Branch | None = None
 
@@ -105,6 +107,7 @@ class Worker:
 
     def _write(self, order: Write) -> None:
         request = order.request
+        until = time.monotonic() + request.seconds
         begin = self._begun(request)
         if not request.said:
             self.tell(Done(order.id, ()))
@@ -121,6 +124,7 @@ class Worker:
             Partial.begin(request.words),
             request.most,
             lambda text: self.tell(Growing(order.id, text)),
+            lambda: time.monotonic() >= until,
         )
         self.tell(Done(order.id, tuple(written)))
 
@@ -140,7 +144,8 @@ def main() -> None:
     os.dup2(2, 1)
     with suppress(OSError, AttributeError):
         os.nice(NICENESS)
-    worker = Worker(Path(sys.argv[1]), out)
+    folder, *learned = map(Path, sys.argv[1:])
+    worker = Worker(folder, learned[0] if learned else None, out)
     threading.Thread(target=worker.listen, args=(sys.stdin.buffer,), daemon=True).start()
     with suppress(BrokenPipeError):
         worker.work()

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from grammar.planning.model.decoding import Full
+from nl2robot.language_model.changes import SCALE
 from nl2robot.language_model.files import FILES, GRAPH
 from nl2robot.language_model.install import Unreadable, install
 from nl2robot.language_model.model import Branch, Cancelled, OnnxModel
@@ -73,6 +74,43 @@ def test_branches_that_grow_side_by_side_do_not_see_each_other(
         alone = wanted(tiny, model, list(branch.tokens))
         assert np.abs(branch.scores - alone).max() < CLOSE
     assert right.tokens == (1, 40, 7, 50, 51, 52, 53)
+
+
+PARTS = {
+    "qkv": ("attn_q", "attn_k", "attn_v"),
+    "told": ("attn_output",),
+    "gate": ("ffn_gate",),
+    "up": ("ffn_up",),
+    "down": ("ffn_down",),
+}
+"""The matrices that a product of the graph is made of."""
+
+
+def test_what_was_learned_changes_the_products_as_it_says(folder: Path, tmp_path: Path) -> None:
+    tiny, random, learned = Tiny(), np.random.default_rng(7), {}
+    tiny.write(tmp_path / "same.gguf")
+    for product, parts in PARTS.items():
+        names = [f"blk.1.{part}.weight" for part in parts]
+        rows = [len(tiny.weights[name]) for name in names]
+        down = random.normal(0, 0.1, (3, tiny.weights[names[0]].shape[1])).astype(np.float16)
+        up = random.normal(0, 0.1, (sum(rows), 3)).astype(np.float16)
+        learned |= {f"1.{product}.down": down, f"1.{product}.up": up}
+        change = SCALE * up.astype(np.float32) @ down.astype(np.float32)
+        for name, part in zip(names, np.split(change, np.cumsum(rows)[:-1]), strict=True):
+            tiny.weights[name] = tiny.weights[name] + part
+    np.savez(tmp_path / "learned.npz", allow_pickle=False, **learned)
+    model = OnnxModel(folder, threads=1, room=64, learned=tmp_path / "learned.npz")
+    read = [1, 40, 7, 99, 12, 3]
+    [branch] = model.read([(Branch(), read)])
+    assert np.abs(branch.scores - wanted(tiny, model, read)).max() < CLOSE
+    [unlearned] = OnnxModel(folder, threads=1, room=64).read([(Branch(), read)])
+    assert np.abs(branch.scores - unlearned.scores).max() > 2 * CLOSE
+
+
+def test_what_another_model_has_learned_is_told(folder: Path, tmp_path: Path) -> None:
+    np.savez(tmp_path / "other.npz", allow_pickle=False, **{"0.qkv.down": np.zeros((8, 1536))})
+    with pytest.raises(ValueError, match=r"not learned by this model: 0\.qkv\.down"):
+        OnnxModel(folder, threads=1, room=64, learned=tmp_path / "other.npz")
 
 
 def test_the_likeliest_come_first_and_all_come_in_the_end(model: OnnxModel) -> None:

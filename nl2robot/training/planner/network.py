@@ -16,15 +16,13 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
+from nl2robot.language_model.changes import SCALE
+from nl2robot.language_model.graph import CHANGED
 from nl2robot.language_model.weights import GgufFile, Sizes
 
 RANK: Final = 8
-SCALE: Final = 2.0
-"""What a change counts: alpha / rank."""
 FIRST_CHANGED: Final = 4
 """The layer from which on there are changes: below, a text is only read."""
-CHANGED: Final = ("qkv", "told", "gate", "up", "down")
-"""The products of a layer, as in `nl2robot.language_model.graph`."""
 
 
 class Product(nn.Module):
