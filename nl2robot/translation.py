@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -14,7 +15,15 @@ import msgspec
 
 from grammar.language import load_language
 from grammar.plan import calls, to_data
-from grammar.planning.planner import Answer, Drafts, Question, Refusal, Service, Watch
+from grammar.planning.planner import (
+    Answer,
+    Drafts,
+    Interrupted,
+    Question,
+    Refusal,
+    Service,
+    Watch,
+)
 from grammar.planning.turn import Turn
 from grammar.requests import ABOUT_RUNS, Request, agreed
 from grammar.understanding import Context
@@ -65,7 +74,8 @@ class Translation(msgspec.Struct, frozen=True, kw_only=True):
     def readable(self, language: str = "en") -> str:
         """For people at a terminal: the program with its explanation, or why there is none."""
         if self.program is not None:
-            return visible(f"{self.program}# {self.explanation}\n")
+            told = [self.explanation, *self._authorship(language)]
+            return visible(self.program + "".join(f"# {line}\n" for line in told))
         lines = [self.message or ""]
         if self.suggestions:
             lines += [
@@ -73,6 +83,13 @@ class Translation(msgspec.Struct, frozen=True, kw_only=True):
                 *(f"  {phrase}" for phrase in self.suggestions),
             ]
         return visible("\n".join(lines))
+
+    def _authorship(self, language: str) -> list[str]:
+        if self.source == "grammar":  # nearly always, and the words take a moment to read
+            return []
+        from nl2robot.words import authorship
+
+        return list(authorship(self, language))
 
 
 class Talk:
@@ -87,6 +104,14 @@ class Talk:
     """The last one with a program."""
     last_at: float = 0.0
     """When that was: seconds since the epoch."""
+
+    def copy(self) -> Talk:
+        """For a translation that may be given up: only what comes of it is to be remembered."""
+        return copy(self)
+
+    def adopt(self, other: Talk) -> None:
+        """Remember what a copy does."""
+        vars(self).update(vars(other))
 
     def note(self, translation: Translation) -> None:
         """Remember a program, so that it is known when it was carried out."""
@@ -135,6 +160,8 @@ def translate(
     if isinstance(answer, Refusal):
         other = _in_another_language(utterance, knowledge, language)
         turn, answer = other if other is not None else (turn, answer)
+    if watch.cancelled:  # nobody waits for it, so nothing that is said later can refer to it
+        raise Interrupted
     match answer:
         case Service(request=request):
             talk.context = answer.context

@@ -3,6 +3,7 @@
 import logging
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -33,7 +34,7 @@ def scripted(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Scripted
         writer = ScriptedWriter(programs, **how)
         planners.planner.cache_clear()
         monkeypatch.setitem(planners.PLANNERS, "model", lambda: ModelPlanner(writer))
-        monkeypatch.setattr(planners, "available", lambda name: True)
+        monkeypatch.setattr(planners, "installed_model", lambda: Path("scripted"))
         return writer
 
     yield make

@@ -8,6 +8,7 @@ say, whoever made it; which of several is meant, for the application.
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -112,23 +113,28 @@ class Watch:
         self.writing = writing or _nothing_of
         self.cancelled = False
         self._on_cancel: list[Callable[[], None]] = []
+        # Held while a cancellation is at work, so that none comes late and hits who is next.
+        self._cancelling = threading.RLock()
 
     def cancel(self) -> None:
         """From any thread: who plans ends at once."""
-        self.cancelled = True
-        for each in tuple(self._on_cancel):
-            each()
+        with self._cancelling:
+            self.cancelled = True
+            for each in tuple(self._on_cancel):
+                each()
 
     @contextmanager
     def cancelling(self, what: Callable[[], None]) -> Iterator[None]:
         """While this lasts, a cancellation does this."""
-        self._on_cancel.append(what)
+        with self._cancelling:
+            self._on_cancel.append(what)
         try:
             if self.cancelled:
                 what()
             yield
         finally:
-            self._on_cancel.remove(what)
+            with self._cancelling:
+                self._on_cancel.remove(what)
 
 
 def _nothing() -> None:

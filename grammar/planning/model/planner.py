@@ -13,6 +13,7 @@ from grammar.planning.model.prompt import request, vocabulary
 from grammar.planning.model.recogniser import CLARIFY, REFUSE
 from grammar.planning.model.request import Interrupted as WritingInterrupted
 from grammar.planning.model.request import Unavailable, Writer, Written
+from grammar.planning.model.turns import Turns
 from grammar.planning.planner import (
     Answer,
     Draft,
@@ -40,6 +41,7 @@ class ModelPlanner:
 
     def __init__(self, writer: Writer) -> None:
         self._writer = writer
+        self._turns = Turns()
 
     def plan(self, turn: Turn, watch: Watch) -> Answer:
         if len(turn.text) > LONGEST:
@@ -47,13 +49,20 @@ class ModelPlanner:
         watch.thinking()
         asked = request(turn, turn.context.written, MOST_DRAFTS)
         try:
-            with watch.cancelling(self._writer.cancel):
-                written = self._writer.write(asked, lambda text: watch.writing(_shown(text, turn)))
+            with self._turns.taken(watch), watch.cancelling(self._writer.cancel):
+                written = self._writer.write(asked, lambda text: self._grown(text, turn, watch))
         except WritingInterrupted as error:
             raise Interrupted from error
         except Unavailable as error:
             return Refusal(str(error))
         return self._answer(turn, written)
+
+    def _grown(self, text: str, turn: Turn, watch: Watch) -> None:
+        """What was written so far."""
+        if watch.cancelled:  # a cancellation that came before the writer had begun was lost on it
+            self._writer.cancel()
+        else:
+            watch.writing(_shown(text, turn))
 
     def _answer(self, turn: Turn, written: list[Written]) -> Answer:
         """The plans of what was written; the way out if that is what was written first."""
