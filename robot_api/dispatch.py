@@ -44,6 +44,8 @@ class Job:
     """Whether it is a call of the robot, which ends with its connection, and not of a service."""
     moves: bool = False
     """Whether it can set the body in motion."""
+    fleeting: bool = False
+    """Whether it ends with its connection though it is one of a service."""
     stop: StopFlag = field(default_factory=StopFlag)
     _claim: threading.Lock = field(default_factory=threading.Lock)
 
@@ -87,10 +89,13 @@ class Dispatcher:
         self._stopper.do(lambda: self._stop(jobs, because, done))
 
     def drop(self, owner: object) -> None:
-        """Stop the robot calls of a connection that is gone; services go on."""
+        """Stop the robot calls of a connection that is gone; services go on, but for those that
+        are of no use without it."""
         because = "The connection to whoever asked for it was lost."
         with self._lock:
             robots = [job for job in self._jobs if job.robot]
+            fleeting = [job for job in self._jobs if job.fleeting and job.owner is owner]
+        self._stopper.do(lambda: _set_all(fleeting, because))
         lost = [job for job in robots if job.owner is owner]
         # A driver stops the whole robot; if others use it too, the flags must do.
         if any(job.moves for job in lost) and len(lost) == len(robots):

@@ -96,8 +96,8 @@ class Context:
 class Service:
     """A further method on the wire, such as `program.run`.
 
-    A service goes on when the connection that called it is lost; it ends when it is done, when the
-    call is cancelled, and when the robot is stopped.
+    A service goes on when the connection that called it is lost, unless it is `for_caller`; it ends
+    when it is done, when the call is cancelled, and when the robot is stopped.
     """
 
     handler: Callable[[dict[str, Any], Context], Any]
@@ -110,6 +110,8 @@ class Service:
     """The JSON Schema of its result."""
     observes: bool = False
     """Whether it only looks, so that observers may call it."""
+    for_caller: bool = False
+    """Whether it does nothing but make its result, and need not go on without the caller."""
 
 
 class Server:
@@ -297,7 +299,10 @@ class Server:
         name = call.method.removeprefix("robot.")
         method = METHODS.get(name) if name != call.method else None
         if method is None:
-            return Job(call.method, self._service(client, call), done, client, robot=False)
+            service = self.services.get(call.method)
+            fleeting = service is not None and service.for_caller
+            run_service = self._service(client, call)
+            return Job(call.method, run_service, done, client, robot=False, fleeting=fleeting)
 
         def run(stop: StopFlag) -> Any:
             return self.driver.call(name, call.arguments, stop)

@@ -244,6 +244,24 @@ def test_a_service_goes_on_when_its_client_leaves(driver: EmulatedDriver) -> Non
         assert ended.wait(SOON)
 
 
+def test_a_service_for_its_caller_alone_ends_when_they_leave(driver: EmulatedDriver) -> None:
+    started, ended = threading.Event(), threading.Event()
+
+    def think(params: dict[str, Any], context: Context) -> None:
+        started.set()
+        if context.stop.wait(SOON):
+            ended.set()
+
+    services = {"program.translate": Service(think, for_caller=True)}
+    with Server(driver, port=0, services=services) as server, Robot(server.address) as other:
+        wire = Wire(server.address)
+        wire.send("program.translate", id=1)
+        assert started.wait(SOON)
+        wire.socket.sock.close()
+        assert ended.wait(SOON)
+        assert other.battery() > 0
+
+
 # --- services and events
 
 GREET = Service(
