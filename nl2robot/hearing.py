@@ -10,6 +10,8 @@ import msgspec
 import numpy as np
 
 from grammar.language import load_language
+from grammar.planning.planner import Watch
+from grammar.planning.rules import NAME as RULES
 from grammar.samples import all_samples
 from grammar.vocabulary import vocabulary
 from nl2robot.knowledge import Knowledge
@@ -73,8 +75,9 @@ class Ear:
         )
 
     def program(self, text: str) -> str | None:
-        """What a command means when it is typed."""
-        return self._translate(text).program
+        """What a command means when it is typed, as far as the rules know. Asked of every few
+        syllables, which is no work for a language model."""
+        return self._by_rules(text).program
 
     def is_stop(self, text: str) -> bool:
         """Whether the words so far are a cry to stop: "stop", "please stop", "no, stop!"."""
@@ -88,7 +91,7 @@ class Ear:
         return program is not None and set(program.split()) == {"robot.stop()"}
 
     def _is_understood(self, text: str) -> bool:
-        translation = self._translate(text)
+        translation = self._by_rules(text)
         return translation.program is not None or translation.request is not None
 
     def deaf_to(self) -> list[Missing]:
@@ -100,9 +103,22 @@ class Ear:
         names = [item.name for items in (world.places, world.people) for item in items]
         return missing_words(self.recogniser, names)
 
-    def translate(self, heard: Heard, planner: str = AUTO, talk: Talk | None = None) -> Translation:
-        """The program for what was heard; nothing, and a question back, if that is in doubt."""
-        translation = self._translate(heard.text, planner, None if heard.doubtful else talk)
+    def translate(
+        self,
+        heard: Heard,
+        planner: str = AUTO,
+        talk: Talk | None = None,
+        watch: Watch | None = None,
+    ) -> Translation:
+        """The program for what was heard; nothing, and a question back, if that is in doubt. A
+        language model is asked only about what surely was said: it makes sense of anything.
+        Raises `grammar.planning.planner.Interrupted` when `watch` has ended it."""
+        if heard.doubtful or not heard.text:
+            translation = self._by_rules(heard.text)
+        else:
+            translation = translate(
+                heard.text, self.knowledge, self.language, planner, talk, watch=watch
+            )
         phrase = load_language(self.language).phrase
         if not heard.text:
             return msgspec.structs.replace(translation, message=phrase("heard_nothing"))
@@ -120,5 +136,5 @@ class Ear:
             suggestions=(heard.text,),
         )
 
-    def _translate(self, text: str, planner: str = AUTO, talk: Talk | None = None) -> Translation:
-        return translate(text, self.knowledge, self.language, planner, talk)
+    def _by_rules(self, text: str) -> Translation:
+        return translate(text, self.knowledge, self.language, RULES)

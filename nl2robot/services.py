@@ -5,22 +5,24 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import msgspec
 
+from grammar.planning.planner import Interrupted
 from grammar.samples import samples
 from nl2robot.planners import names
 from nl2robot.runner import Runner
 from nl2robot.talks import Talks
-from nl2robot.translation import translate
+from nl2robot.thinking import EVENT, Thought, published
+from nl2robot.translation import Translation, translate
 from nl2robot.voice_services import Microphones, voice_services
-from nl2robot.wire import an_object, service
-from robot_api.capabilities.sound import SILENT
+from nl2robot.wire import an_object, service, service_of_call
 from robot_api.driver import StopFlag
+from robot_api.errors import Stopped
 from robot_api.methods import MAX_TEXT
-from robot_api.server import Service
+from robot_api.server import Context, Service
 
 LONGEST_PROGRAM = 65_536
 SECONDS_TO_END = 2.0
@@ -36,25 +38,41 @@ _RUN = {"type": "integer", "minimum": 1}
 EVENTS: Mapping[str, str] = {
     "program": "what (state | line | call | result | print), run, state, line, message, and of a"
     " call number, method, arguments, of a result also result or error and seconds, of print text",
+    EVENT: "what (thinking | writing), talk, utterance, microphone if it was spoken, and of writing"
+    " text, the program so far: a language model is at work on a sentence; at most 10 a second."
+    " What was spoken only the microphone's client is told",
 }
-"""The events that the runner publishes."""
+"""The events that these services publish."""
 
 
-def services(
-    runner: Runner, talks: Talks, give_way: Callable[[], None] = SILENT.give_way
-) -> dict[str, Service]:
-    """The methods to register with a `robot_api.server.Server`. `give_way` is called when a client
-    whose microphone does not hear the robot speaks to it."""
+def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str, Service]:
+    """The methods to register with a `robot_api.server.Server`."""
 
-    def translated(p: Mapping[str, Any]) -> Any:
-        return translate(
-            p["utterance"],
-            runner.knowledge,
-            p.get("language", "en"),
-            p.get("planner", "auto"),
-            talks.of(p.get("talk")),
-            runner,
+    def translated(p: Mapping[str, Any], context: Context) -> Translation:
+        """Ends at once when nobody waits for it any more, whatever a model is at."""
+        talk, utterance = p.get("talk"), p["utterance"]
+        remembered = talks.of(talk)
+        mine = remembered.copy()
+        thought = Thought(
+            lambda watch: translate(
+                utterance,
+                runner.knowledge,
+                p.get("language", "en"),
+                p.get("planner", "auto"),
+                mine,
+                runner,
+                watch,
+            ),
+            published(context.publish, {"talk": talk, "utterance": utterance}),
         )
+        context.stop.on_set(thought.give_up)
+        try:
+            translation = thought.result()
+        except Interrupted:
+            context.stop.check()
+            raise Stopped("The sentence was given up.") from None
+        remembered.adopt(mine)
+        return translation
 
     def approved(p: Mapping[str, Any]) -> Any:
         return runner.approve(p["program"], p["sha256"], p["by"], **_rest(p, "program sha256 by"))
@@ -74,12 +92,12 @@ def services(
     def listed(p: Mapping[str, Any]) -> Any:
         return runner.log.runs(p.get("last", 20))
 
-    microphones = Microphones(lambda: runner.knowledge, talks.of, give_way)
     return {
         **voice_services(microphones),
-        "program.translate": service(
+        "program.translate": service_of_call(
             translated,
-            "Turn words into a program; moves nothing.",
+            "Turn words into a program; moves nothing. A language model may take seconds: events"
+            " of the kind translation tell how far it is, and the call can be cancelled.",
             {
                 # How long it may be is the grammar's business, which says so in words.
                 "utterance": {"type": "string"},
@@ -88,6 +106,7 @@ def services(
                 "talk": {"type": ["string", "null"], "maxLength": 100},
             },
             "utterance",
+            for_caller=True,
         ),
         "program.phrases": service(
             lambda p: samples(

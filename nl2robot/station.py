@@ -23,6 +23,7 @@ from nl2robot.runlog import LogError, RunLog
 from nl2robot.runner import Runner
 from nl2robot.services import EVENTS, services
 from nl2robot.talks import Talks
+from nl2robot.voice_services import Microphones
 from robot_api.capabilities.sound import SILENT
 from robot_api.client import Robot
 from robot_api.driver import Driver, Event
@@ -269,6 +270,7 @@ def _open(
     )
 
     talks = Talks()
+    microphones = Microphones(lambda: runner.knowledge, talks.of, give_way, publish)
     backstage = Backstage(
         driver=driver,
         runner=runner,
@@ -282,18 +284,24 @@ def _open(
 
     def on_event(kind: str, data: Event) -> None:
         if kind == "stopped":
+            microphones.give_up()
             runner.stop(str(data.get("because", "The robot was stopped.")))
         backstage.tell(kind, data)
+
+    def on_left(connection: str) -> None:
+        microphones.give_up(connection)
+        if added:
+            added.left(connection)
 
     server = Server(
         driver,
         host=host,
         port=port,
         token=token,
-        services={**services(runner, talks, give_way), **(added.services if added else {})},
+        services={**services(runner, talks, microphones), **(added.services if added else {})},
         events={**EVENTS, **(added.events if added else {})},
         pages=added.pages() if added else None,
-        on_left=added.left if added else None,
+        on_left=on_left,
     )
     unsubscribe = driver.subscribe(on_event)
     try:

@@ -23,10 +23,23 @@ def service(
 ) -> Service:
     """A method whose params are an object of these properties; a `UserError` is the caller's.
     One that `observes` only looks."""
+    return service_of_call(lambda p, context: handler(p), doc, properties, required, observes)
+
+
+def service_of_call(
+    handler: Callable[[Mapping[str, Any], CallContext], Any],
+    doc: str,
+    properties: dict[str, Any] | None = None,
+    required: str = "",
+    observes: bool = False,
+    for_caller: bool = False,
+) -> Service:
+    """The same for a handler that wants to know who called, or whether they still wait: one
+    `for_caller` ends with their connection."""
 
     def handle(parameters: dict[str, Any], context: CallContext) -> Any:
         try:
-            return msgspec.to_builtins(handler(parameters))
+            return msgspec.to_builtins(handler(parameters, context))
         except (UserError, UnknownLanguage) as error:
             raise InvalidCall(str(error)) from error
 
@@ -35,6 +48,7 @@ def service(
         params=an_object(properties or {}, required),
         doc=doc,
         observes=observes,
+        for_caller=for_caller,
     )
 
 
