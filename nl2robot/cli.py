@@ -56,6 +56,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if "--debug" in given:
             traceback.print_exc()
         sentence, status = _explained(error)
+        if arguments is None and status == ExitStatus.INTERRUPTED:
+            # It ends; whoever presses Ctrl-C twice wants no more than that.
+            signal.signal(signal.SIGINT, signal.SIG_IGN)
         print(sentence, file=sys.stderr)
     _let_go_of_output()
     return status

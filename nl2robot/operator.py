@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
@@ -9,9 +10,10 @@ import msgspec
 
 from nl2robot.review import Review
 from nl2robot.runner import Approval, Status
+from nl2robot.thinking import EVENT, OnProgress, Progress
 from nl2robot.translation import Translation
 from robot_api.client import Robot
-from robot_api.errors import Stopped
+from robot_api.errors import InvalidCall, Stopped
 
 T = TypeVar("T")
 
@@ -26,18 +28,51 @@ class Operator:
     def __init__(self, robot: Robot, name: str) -> None:
         self.robot = robot
         self.name = name
+        # Who is told how far a language model is, by conversation and sentence.
+        self._waiting: dict[tuple[str | None, str], OnProgress] = {}
+        self._is_told = False
 
     def translate(
-        self, utterance: str, language: str = "en", planner: str = "auto", talk: str | None = None
+        self,
+        utterance: str,
+        language: str = "en",
+        planner: str = "auto",
+        talk: str | None = None,
+        on_progress: OnProgress | None = None,
     ) -> Translation:
-        """`talk` names a conversation: "no, the pharmacy" refers to what was said in it."""
+        """`talk` names a conversation: "no, the pharmacy" refers to what was said in it. A language
+        model may take seconds: `on_progress` is told, from another thread, and Ctrl-C or `give_up`
+        ends it. Raises `Stopped` then, and where somebody stops the robot meanwhile."""
         parameters = {
             "utterance": utterance,
             "language": language,
             "planner": planner,
             "talk": talk,
         }
-        return self._request("program.translate", parameters, Translation)
+        if on_progress is None:
+            return self._request("program.translate", parameters, Translation)
+        self._have_me_told()
+        self._waiting[talk, utterance] = on_progress
+        try:
+            return self._request("program.translate", parameters, Translation)
+        finally:
+            self._waiting.pop((talk, utterance), None)
+
+    def give_up(self) -> None:
+        """Wait no longer for what was asked of the server. From any thread; returns at once."""
+        self.robot.cancel()
+
+    def _have_me_told(self) -> None:
+        """Of what language models are at, from now on."""
+        if not self._is_told:
+            with contextlib.suppress(InvalidCall):  # a server that has none to tell of
+                self.robot.subscribe(EVENT, self._tell)
+            self._is_told = True
+
+    def _tell(self, kind: str, data: Mapping[str, Any]) -> None:
+        waiting = self._waiting.get((data.get("talk"), data.get("utterance", "")))
+        if waiting is not None:
+            waiting(Progress(data["what"], data.get("text", "")))
 
     def phrases(self, language: str = "en") -> dict[str, list[str]]:
         """What can be said here: sentences by topic."""

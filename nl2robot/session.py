@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import secrets
 import threading
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
 
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.operator import Operator
@@ -18,8 +18,11 @@ from nl2robot.review import Review
 from nl2robot.runner import Approval, Status
 from nl2robot.terminal import Decision, Terminal
 from nl2robot.translation import Translation
-from robot_api.errors import LostConnection
+from nl2robot.waiting import GivenUp
+from robot_api.errors import LostConnection, Stopped
 from sandbox.limits import MAX_PROGRAM
+
+T = TypeVar("T")
 
 STOP = "robot.stop()\n"
 MOST_QUESTIONS = 5
@@ -61,7 +64,11 @@ class Session:
 
     def perform(self, utterance: str, heard: str | None = None) -> ExitStatus:
         """Understand an utterance, have its program approved, run it."""
-        translation = self.understand(utterance)
+        try:
+            translation = self.understand(utterance)
+        except GivenUp as given_up:
+            self.terminal.show_given_up()
+            return given_up.status
         if translation.program is None:
             self._show_answer(translation)
             return ExitStatus.OK if translation.status == "ok" else ExitStatus.NOT_UNDERSTOOD
@@ -76,7 +83,8 @@ class Session:
         return self._typed.pop(0) if self._typed else None
 
     def understand(self, utterance: str) -> Translation:
-        """Translate, asking back while a question is open and somebody is there to answer."""
+        """Translate, asking back while a question is open and somebody is there to answer. Raises
+        `GivenUp`."""
         translation = self._translate(utterance)
         if translation.status == "clarify" and translation.request and self.approve_all:
             self._show_answer(translation)
@@ -108,14 +116,13 @@ class Session:
         """Review a program, have it approved, run it. A correction instead of a decision makes
         another program of it, which is reviewed in its place."""
         while True:
-            explanation = translation.explanation if translation else ""
             if len(program.encode()) > MAX_PROGRAM:
                 raise UserError(
                     f"The program is longer than {MAX_PROGRAM // 1000} kB. Make it shorter."
                 )
             review = self.operator.check(program, self.language)
             edited = translation is None or program != translation.program
-            self.terminal.show_review(review, "" if edited else explanation)
+            self.terminal.show_review(review, None if edited else translation)
             if self.approve_all and not review.acceptable:
                 self.terminal.console.print(self.terminal.words["cannot_be_approved"])
                 return ExitStatus.NOT_APPROVED
@@ -126,7 +133,11 @@ class Session:
                 program = self.terminal.edit(program)
                 continue
             if decision is None:
-                changed = self.understand(said)
+                try:
+                    changed = self.understand(said)
+                except GivenUp:
+                    self.terminal.show_given_up()
+                    continue
                 if changed.program is not None and changed.program != STOP:
                     translation, program = changed, changed.program
                     continue
@@ -184,17 +195,22 @@ class Session:
         """Wait for the end of a run, with an open ear where somebody may type meanwhile."""
         if not self.listens:
             return self.operator.wait(run)
-        ended: list[Status] = []
+        return self._with_an_open_ear(lambda: self.operator.wait(run))
+
+    def _with_an_open_ear(self, wait: Callable[[], T]) -> T:
+        """Wait for something, and see to what is said or typed meanwhile."""
+        ended: list[T] = []
         failed: list[BaseException] = []
 
-        def wait() -> None:
+        def run() -> None:
             try:
-                ended.append(self.operator.wait(run))
+                ended.append(wait())
             except BaseException as error:  # noqa: BLE001 - raised again below
                 failed.append(error)
 
-        waiting = threading.Thread(target=wait, name=f"wait for run {run}", daemon=True)
+        waiting = threading.Thread(target=run, name="waiting", daemon=True)
         waiting.start()
+        waiting.join(LOOK_EVERY)
         while waiting.is_alive():
             line = self.terminal.typed(LOOK_EVERY)
             if line and waiting.is_alive():
@@ -206,11 +222,13 @@ class Session:
         return ended[0]
 
     def _answer_meanwhile(self, line: str) -> None:
-        """What is typed while a program runs: a stop at once, answers to questions about it; the
-        rest waits for its turn."""
+        """What is typed while a program runs, or is thought of: a stop at once, answers to
+        questions about it; the rest waits for its turn. Only the rules are asked, who answer at
+        once: a language model may be at work on another sentence."""
+        from grammar.planning.rules import NAME as RULES
         from grammar.requests import ABOUT_RUNS
 
-        heard = self.operator.translate(line, self.language, self.planner)
+        heard = self.operator.translate(line, self.language, RULES)
         if heard.program == STOP:
             self.operator.stop()
         elif heard.request is not None and heard.request.kind in ABOUT_RUNS:
@@ -239,4 +257,18 @@ class Session:
             self.terminal.speak(code)
 
     def _translate(self, utterance: str) -> Translation:
-        return self.operator.translate(utterance, self.language, self.planner, self._talk)
+        """Raises `GivenUp` if Ctrl-C or a stop ends it while a language model works."""
+        with self.terminal.waiting() as waiting:
+
+            def ask() -> Translation:
+                return self.operator.translate(
+                    utterance, self.language, self.planner, self._talk, waiting
+                )
+
+            try:
+                return self._with_an_open_ear(ask) if self.terminal.hears else ask()
+            except (KeyboardInterrupt, Stopped) as error:
+                self.operator.give_up()
+                if isinstance(error, KeyboardInterrupt) and not waiting.begun:
+                    raise
+                raise GivenUp(self.language) from error

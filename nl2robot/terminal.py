@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import functools
 import os
 import select
 import shlex
@@ -28,12 +27,15 @@ from nl2robot.plain import visible
 from nl2robot.rehearsal import DryRun
 from nl2robot.review import Review
 from nl2robot.translation import Translation
+from nl2robot.waiting import Waiting
+from nl2robot.words import authorship, words_in
 
 if TYPE_CHECKING:
     from nl2robot.operator import Operator
 
 Decision = Literal["approve", "edit", "reject"]
-DATA = Path(__file__).parent / "data" / "terminal.yaml"
+
+__all__ = ["Decision", "Terminal", "answers", "duration", "words_in"]
 
 NARROWEST = 20
 """Columns; a terminal that says it has fewer does not know."""
@@ -56,6 +58,9 @@ class Terminal:
     heard: str | None = None
     """What the last line sounded like, if it was spoken."""
 
+    hears = False
+    """Whether somebody may say "stop" at any time, and is to be listened to."""
+
     @property
     def somebody_is_there(self) -> bool:
         return sys.stdin.isatty()
@@ -69,6 +74,13 @@ class Terminal:
         """Somebody operates a robot from here; what it does may matter to how lines are read."""
 
     # --- before the run
+
+    def waiting(self) -> Waiting:
+        """What to show while a sentence is understood, should that take long."""
+        return Waiting(self.language, self.console)
+
+    def show_given_up(self) -> None:
+        self.console.print(self.words["given_up"], markup=False)
 
     def show_refusal(self, translation: Translation) -> None:
         """Say why there is no program, and what could be said instead."""
@@ -102,10 +114,15 @@ class Terminal:
             )
         )
 
-    def show_review(self, review: Review, explanation: str) -> None:
+    def show_review(self, review: Review, translation: Translation | None = None) -> None:
+        """`translation` is what made the program, if it stands as it was made."""
         self.show_program(review.program)
-        if explanation:
-            self.console.print(f"[bold]{self.words['in_words']}[/] {_plain(explanation)}")
+        if translation is not None:
+            for sentence in authorship(translation, self.language):
+                self.console.print(f"[yellow]{_plain(sentence)}[/]")
+        if translation is not None and translation.explanation:
+            explanation = _plain(translation.explanation)
+            self.console.print(f"[bold]{self.words['in_words']}[/] {explanation}")
         elif review.reading:
             self.console.print(f"[bold]{self.words['in_words']}[/]")
             for told in review.reading:
@@ -254,16 +271,6 @@ def answers(language: str) -> frozenset[str]:
     """What may be answered when a program is to be approved, in words."""
     ways = words_in(language)["answers"].values()
     return frozenset(way for those in ways for way in those if len(way) > 1)
-
-
-@functools.cache
-def words_in(language: str) -> Mapping[str, Any]:
-    """What the terminal says in a language; in English where it does not speak that."""
-    import yaml
-
-    words: dict[str, dict[str, Any]] = yaml.safe_load(DATA.read_text(encoding="utf-8"))
-    found: Mapping[str, Any] = words.get(language, words["en"])
-    return found
 
 
 def _plain(text: str) -> str:

@@ -34,6 +34,8 @@ CLEAR = "\r\x1b[K"
 class VoiceTerminal(Terminal):
     """Takes lines from a microphone and from the keyboard, whichever comes first."""
 
+    hears = True
+
     def __init__(
         self,
         blocks: Iterable[Samples],

@@ -17,7 +17,8 @@ from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.models import lacking_beside, need
 from nl2robot.routines import open_routines
-from nl2robot.terminal import words_in
+from nl2robot.waiting import GivenUp, thought_aloud
+from nl2robot.words import words_in
 
 if TYPE_CHECKING:
     from nl2robot.speech.audio import Audio, Samples
@@ -103,7 +104,10 @@ class _Commands:
         self._print(self._ear.understood(speech.heard))
 
     def _print(self, heard: Heard) -> None:
-        translation = self._ear.translate(heard, self._options.planner)
+        translation = thought_aloud(
+            lambda watch: self._ear.translate(heard, self._options.planner, watch=watch),
+            self._options.lang,
+        )
         if self._options.json:
             data = {**msgspec.to_builtins(translation), "heard": heard.text}
             print(json.dumps(data, ensure_ascii=False), flush=True)
@@ -157,6 +161,8 @@ def recordings(files: Sequence[str], hearing: Hearing) -> int:
     for file in files:
         try:
             hearing.recording(read(file))
+        except GivenUp:
+            raise
         except UserError as error:
             print(error, file=sys.stderr)
             status = error.status

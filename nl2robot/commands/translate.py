@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import argparse
 import sys
+from functools import partial
 
+from grammar.planning.planner import Watch
 from nl2robot.commands.options import add_language, add_planner, add_world, names_of, words
 from nl2robot.errors import ExitStatus
 from nl2robot.knowledge import Knowledge
 from nl2robot.routines import open_routines
-from nl2robot.translation import translate
+from nl2robot.translation import Translation, translate
+from nl2robot.waiting import thought_aloud
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -28,9 +31,15 @@ def run(options: argparse.Namespace) -> int:
         (line.rstrip("\n") for line in sys.stdin) if options.words == "-" else iter([options.words])
     )
     for line in lines:
-        translation = translate(line, knowledge, options.lang, options.planner)
+        translation = thought_aloud(partial(_translated, line, knowledge, options), options.lang)
         print(
             translation.to_json() if options.json else translation.readable(options.lang),
             flush=True,
         )
     return ExitStatus.OK
+
+
+def _translated(
+    line: str, knowledge: Knowledge, options: argparse.Namespace, watch: Watch
+) -> Translation:
+    return translate(line, knowledge, options.lang, options.planner, watch=watch)

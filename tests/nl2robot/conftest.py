@@ -11,6 +11,7 @@ import subprocess
 import sys
 import termios
 import time
+from collections.abc import Sequence
 
 import pytest
 
@@ -101,7 +102,12 @@ class Command:
     closed and its output in a pipe."""
 
     def __init__(
-        self, arguments: tuple[str, ...], at_terminal: bool, largest_file: int | None, editor: str
+        self,
+        arguments: tuple[str, ...],
+        at_terminal: bool,
+        largest_file: int | None,
+        editor: str,
+        program: Sequence[str] = NL2ROBOT,
     ) -> None:
         self.output = ""
         self._read_to = 0
@@ -116,7 +122,7 @@ class Command:
                 resource.setrlimit(resource.RLIMIT_FSIZE, (largest_file, largest_file))
 
         self.process = subprocess.Popen(
-            [*NL2ROBOT, *arguments],
+            [*program, *arguments],
             stdin=theirs if at_terminal else subprocess.DEVNULL,
             stdout=theirs,
             stderr=theirs,
@@ -188,8 +194,9 @@ def start():
             at_terminal: bool = False,
             largest_file: int | None = None,
             editor: str = "false",
+            program: Sequence[str] = NL2ROBOT,
         ) -> Command:
-            command = Command(arguments, at_terminal, largest_file, editor)
+            command = Command(arguments, at_terminal, largest_file, editor, program)
             stop.callback(command.close)
             return command
 

@@ -240,7 +240,7 @@ def test_all_languages_have_the_same_texts() -> None:
 
 def test_the_terminal_shows_them_on_their_lines(capsys) -> None:
     terminal = Terminal(Console(width=120, highlight=False), "de")
-    terminal.show_review(reviewed("robot.drive(1.5, 0, 1)", language="de"), "")
+    terminal.show_review(reviewed("robot.drive(1.5, 0, 1)", language="de"))
     assert "Risiko, Zeile 1: 1.5 m/s ist schneller, als" in capsys.readouterr().out
 
 
