@@ -124,7 +124,11 @@ class Process:
             )
         command = [sys.executable, "-m", "nl2robot.language_model.worker", *self._folders]
         process = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,  # Ctrl-C gives up a sentence; the model is loaded for the next
         )
         with self._state:
             self._running = process

@@ -92,7 +92,9 @@ class Worker:
         while (order := self.orders.get()) is not None:
             with self._lock:
                 self._now = order.id
-                if order.id not in self._cancelled:
+                if order.id in self._cancelled:  # before it was begun
+                    self._model.cancel()
+                else:
                     self._model.resume()
             try:
                 self._write(order)
