@@ -55,10 +55,11 @@ def _weights() -> Mapping[str, Mapping[str, float]]:
 
 
 def confidence(turn: Turn, vote: Vote, count: Count) -> float:
-    """The probability that the first draft of a vote is what was meant."""
+    """The probability that the first draft of a vote is what was meant: its share of the votes, as
+    long as nothing is known of its planner."""
     weights = _weights().get(vote.first.draft.planner)
     if weights is None:
-        return vote.first.draft.probability
+        return min(1.0, vote.share)
     known = features(turn, vote, count)
     total = weights["bias"] + sum(weights.get(name, 0.0) * value for name, value in known.items())
     return 1 / (1 + math.exp(-max(-30.0, min(30.0, total))))

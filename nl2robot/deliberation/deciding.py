@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -12,6 +12,7 @@ from grammar.naming import naming
 from grammar.plan import Plan
 from grammar.planning.planner import Draft, Question, Refusal
 from grammar.planning.turn import Turn
+from grammar.speech import speech
 from nl2robot.deliberation.considering import Considered, consider
 from nl2robot.knowledge import Knowledge
 
@@ -19,6 +20,10 @@ ACCEPTED: Final = 0.5
 """From this probability on a program is shown as understood."""
 CLOSE: Final = 0.6
 """A second that has so much of the votes of the first makes a question of them."""
+LONGEST: Final = 160
+"""Characters of what is offered: nobody listens to more."""
+CLAUSE: Final = ":"
+"""Ends a line that says when, or how often, the lines below it are done."""
 
 
 @dataclass(frozen=True)
@@ -97,16 +102,53 @@ def _refused(turn: Turn, dropped: Sequence[Considered]) -> Refusal:
 
 
 def _either(turn: Turn, one: Chosen, other: Chosen) -> Open | None:
-    """The question which of two is meant, by the first thing that they do differently."""
+    """The question which of two is meant, by the first thing that they do differently; None if no
+    short question tells them apart."""
     called = naming(turn.lexicon, turn.language).called
     lines = [
         [text for _, text in explain_steps(each.plan, turn.language.code, called)]
         for each in (one, other)
     ]
-    mine = [line for line in lines[0] if line not in lines[1]]
-    theirs = [line for line in lines[1] if line not in lines[0]]
-    if not mine or not theirs:
+    mine, theirs = _difference(*lines)
+    if not mine or not theirs:  # one does more than the other, or the same in another order
+        mine, theirs = (_whole(each, turn.language.code) for each in lines)
+    if mine == theirs or max(len(mine), len(theirs)) > LONGEST:
         return None
-    message = turn.language.phrase("shall_i_either", one=mine[0], other=theirs[0])
-    question = Question(message, (mine[0], theirs[0]), turn.context)
-    return Open(question, (Offer(mine[0], one), Offer(theirs[0], other)))
+    message = turn.language.phrase("shall_i_either", one=mine, other=theirs)
+    question = Question(message, (mine, theirs), turn.context)
+    return Open(question, (Offer(mine, one), Offer(theirs, other)))
+
+
+def _difference(mine: Sequence[str], theirs: Sequence[str]) -> tuple[str, str]:
+    """What two do differently first; "" for one that does nothing that the other does not."""
+    told = [
+        next((_done(own[at:]) for at, line in enumerate(own) if line not in others), "")
+        for own, others in ((mine, theirs), (theirs, mine))
+    ]
+    return told[0], told[1]
+
+
+def _done(lines: Sequence[str]) -> str:
+    """What is done first, and when if that is told before: "wave, if I see a person"."""
+    return next(_deeds(lines), "")
+
+
+def _whole(lines: Sequence[str], language: str) -> str:
+    """All that is done, in one breath."""
+    words = speech(language)
+    joining = words.joining
+    *first, last = [*_deeds(lines)] or [words.sentences["nothing"]]
+    if len(first) < 2:
+        return joining["two"].join([*first, last])
+    return joining["comma"].join(first) + joining["last"] + last
+
+
+def _deeds(lines: Sequence[str]) -> Iterator[str]:
+    """What is done, with the clause that stands right before it."""
+    clauses: list[str] = []
+    for line in lines:
+        if line.endswith(CLAUSE):
+            clauses.append(line.removesuffix(CLAUSE))
+        else:
+            yield ", ".join([line, *clauses])
+            clauses = []

@@ -20,6 +20,8 @@ START = "start"
 """Where the command is given: where the operator stands."""
 OPERATOR = "operator"
 MOST_EVENTS = 400
+LOOKED_AGAIN = 5.0
+"""Minutes between two looks of somebody who waits for the same again and again."""
 
 
 class Over(Stopped):
@@ -53,7 +55,8 @@ class Scene:
     """Of somebody: a text, a list of texts, or texts by patterns of the questions."""
     option: int | None = None
     """Which of the answers that are offered people give of whom nothing else is said, from 0 on;
-    who is offered none names this number."""
+    who is offered none gives one of `replies`, or names this number."""
+    replies: Sequence[str] = ()
     arrivals: dict[str, list[str]] = field(default_factory=dict)
     """Who comes to a place, one after the other, while somebody waits there."""
     traits: Mapping[str, str] = field(default_factory=dict)
@@ -62,16 +65,26 @@ class Scene:
     weekday: str = "Tuesday"
     date: str = "2026-11-24"
     battery: int = 80
+    hurried: bool = False
+    """Whether time flies while the robot waits for the same again and again, and that is one
+    event."""
 
 
 def words_of(phrase: str) -> set[str]:
-    """The words of a noun phrase, singular, without those that say nothing."""
-    found = re.findall(r"[\w'.-]+", phrase.lower())
-    return {_singular(word) for word in found} - _SILENT
+    """The words of a noun phrase, singular, without those that say nothing: a bottle of water is
+    water, but a bottle is a bottle."""
+    words = _all_words(phrase)
+    return words - _SILENT - _AMOUNTS or words & _AMOUNTS
 
 
-_SILENT = {"a", "an", "the", "any", "some", "my", "in", "of", "all", "other", "bottle", "piece"}
-_PERSON = {"person", "somebody", "someone", "anyone", "anybody", "everybody", "human", "people"}
+def _all_words(phrase: str) -> set[str]:
+    return {_singular(word) for word in re.findall(r"[\w'.-]+", phrase.lower())}
+
+
+_SILENT = {"a", "an", "the", "any", "some", "my", "in", "of", "all", "other"}
+_AMOUNTS = {"bottle", "piece"}
+PERSON = {"person", "somebody", "someone", "anyone", "anybody", "everybody", "human", "people"}
+"""Words for anybody."""
 
 
 def _singular(word: str) -> str:
@@ -102,11 +115,11 @@ class PaperRobot:
     # --- looking
 
     def _is(self, phrase: str, person: str) -> bool:
-        traits = set(self.scene.traits.get(person, "").split())
+        traits = _all_words(self.scene.traits.get(person, ""))
         wanted = words_of(phrase)
         if wanted <= words_of(person):
             return True
-        return bool(wanted) and wanted <= traits | words_of(person) | _PERSON
+        return bool(wanted) and wanted <= traits | words_of(person) | PERSON
 
     def _people_here(self, phrase: str = "person") -> list[str]:
         return [
@@ -120,11 +133,14 @@ class PaperRobot:
         return [
             what
             for what, where in self.things
-            if where == self.place and (wanted <= words_of(what) or wanted & {"thing", "object"})
+            if where == self.place and (wanted <= _all_words(what) or wanted & {"thing", "object"})
         ]
 
     def _event(self, kind: str, what: object, whom: str = "") -> None:
-        self.events.append(Event(kind, str(what), self.place, whom))
+        event = Event(kind, str(what), self.place, whom)
+        if self.scene.hurried and kind == "waits" and self.events[-1:] == [event]:
+            return
+        self.events.append(event)
         if len(self.events) > MOST_EVENTS:
             raise Over
 
@@ -136,7 +152,8 @@ class PaperRobot:
             self._event("visits", self.place)
             return
         name = str(place)
-        if name != START and name not in self.scene.places:
+        known = isinstance(place, Location)  # the robot has been there
+        if not known and name != START and name not in self.scene.places:
             raise UnknownPlace(f"There is no place called {name}.")
         self.place = name
         self.partner = None
@@ -221,7 +238,8 @@ class PaperRobot:
         whom = self._one(person)
         self._event("asks", question, whom)
         if self.scene.option is not None and whom not in self.scene.answers:
-            return options[self.scene.option % len(options)] if options else str(self.scene.option)
+            offered = options or self.scene.replies or [str(self.scene.option)]
+            return offered[self.scene.option % len(offered)]
         answer = self._answer(whom, str(question))
         if not options:
             return answer
@@ -289,7 +307,7 @@ class PaperRobot:
         self._event("takes", here[0])
 
     def _let_go(self, thing: object) -> str:
-        held = [each for each in self.held if words_of(str(thing)) <= words_of(each)]
+        held = [each for each in self.held if words_of(str(thing)) <= _all_words(each)]
         if not held:
             raise NotPossible(f"I do not hold {thing}.")
         self.held.remove(held[0])
@@ -324,8 +342,11 @@ class PaperRobot:
     # --- the rest
 
     def wait(self, seconds: float) -> None:
-        self.minutes += seconds / 60
+        before = len(self.events)
         self._event("waits", f"{seconds:g} s")
+        self.minutes += seconds / 60
+        if len(self.events) == before:  # time flies to the next full five minutes
+            self.minutes += -self.minutes % LOOKED_AGAIN
         self.people_at.update(dict.fromkeys(self._coming()[:1], self.place))
 
     def clock(self) -> Clock:
@@ -340,8 +361,24 @@ class PaperRobot:
         self._event("does", "scan")
         return "4006381333931"
 
+    def read_text(self, selector: str) -> str:
+        self._event("does", f"read_text {selector}")
+        return "text"
+
+    def log(self, lines: int = 20) -> list[str]:
+        return ["10:00 The robot stands."][:lines]
+
     def call(self, contact: str) -> None:
         self._event("calls", contact)
 
     def __getattr__(self, name: str) -> Any:
-        return lambda *values, **named: self._event("does", f"{name} {values} {named}")
+        def does(*values: object, **named: object) -> None:
+            given = {key: _plain(named[key]) for key in sorted(named)}
+            self._event("does", f"{name} {values} {given}")
+
+        return does
+
+
+def _plain(value: object) -> object:
+    """A value so that 2 and 2.0 are told alike."""
+    return float(value) if isinstance(value, int) else value

@@ -138,9 +138,10 @@ def _noticed(course: Course) -> tuple[Event, ...]:
 
 
 def _same(one: Tried, other: Tried) -> bool:
-    return all(
+    ends = [[course.end for course in each.courses] for each in (one, other)]
+    return ends[0] == ends[1] and all(
         _happens_alike(mine, theirs) for mine, theirs in zip(one.traces, other.traces, strict=True)
-    ) and [course.end for course in one.courses] == [course.end for course in other.courses]
+    )
 
 
 def _happens_alike(one: Iterable[Event], other: Iterable[Event]) -> bool:
