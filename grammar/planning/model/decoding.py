@@ -1,8 +1,8 @@
 """How a program is written, token by token: only what may still become one, several in doubt.
 
-The likeliest program is written first. Wherever another token would have been nearly as likely,
-another draft may be begun there later, so that drafts differ where the model is in doubt and share
-all that they have in common.
+The program of the likeliest tokens is written first. Wherever another token would have been nearly
+as likely, another draft may be begun there later, so that drafts differ where the model is in doubt
+and share all that they have in common.
 """
 
 from __future__ import annotations
@@ -63,6 +63,10 @@ class Fork:
     draft_after: Partial
     score: float
     """The logarithm of the probability of all tokens up to it."""
+    tokens: int
+    """How many these are."""
+    least: float
+    """The logarithm of the probability of the least likely of them."""
     ends: bool = False
     """Whether the program would have ended here."""
 
@@ -95,40 +99,65 @@ class Decoder:
         begun: Partial,
         most: int = 1,
         on_text: Callable[[str], None] | None = None,
+        enough: Callable[[], bool] | None = None,
     ) -> Iterator[Written]:
-        """Up to `most` different programs, the likeliest first; `prompt` is the branch behind which
-        they are written. `on_text` is told the first one as it grows."""
-        best = -math.inf
-        for written in self._grown([_Growing(prompt, begun, 0.0)], on_text):
-            best = written.score
-            yield written
-        likely = [fork for fork in self.forks if fork.score > best - LEAST_LIKELY]
-        others = sorted(likely, key=lambda fork: -fork.score)[: most - 1]
+        """Up to `most` different programs: first the one that is written by taking the likeliest
+        token each time, then the others, the likeliest first; none if that one comes to nothing.
+        `prompt` is the branch behind which they are written. `on_text` is told the first one as it
+        grows. Once there was `enough`, no token is written any more."""
         self.forks = []
-        yield from self._grown([self._begun(fork) for fork in others], None, best - LEAST_LIKELY)
+        enough = enough or _never
+        first = next(self._grown([_Growing(prompt, begun, 0.0)], enough, on_text), None)
+        if first is None:
+            return  # its beginnings are no programs that anybody wants
+        yield first
+        least = first.score - LEAST_LIKELY
+        others = [self._begun(fork) for fork in self._likeliest(first.text, least, most - 1)]
+        known = {first.text}
+        for written in sorted(self._grown(others, enough, least=least), key=_by_score):
+            if written.text not in known:
+                known.add(written.text)
+                yield written
+
+    def _likeliest(self, text: str, least: float, most: int) -> list[Fork]:
+        """The likeliest places at which another program than this one begins."""
+        forks = [
+            fork
+            for fork in self.forks
+            if fork.score > least and (fork.ends or not text.startswith(fork.draft_after.text))
+        ]
+        return sorted(forks, key=_by_score)[:most]
 
     def _begun(self, fork: Fork) -> _Growing:
-        growing = _Growing(fork.branch, fork.draft_after, fork.score, pending=(fork.token,))
-        growing.done = fork.ends
-        return growing
+        return _Growing(
+            fork.branch,
+            fork.draft_after,
+            fork.score,
+            fork.tokens,
+            fork.least,
+            pending=(fork.token,),
+            done=fork.ends,
+        )
 
     def _grown(
         self,
         growing: list[_Growing],
-        on_text: Callable[[str], None] | None,
+        enough: Callable[[], bool],
+        on_text: Callable[[str], None] | None = None,
         least: float = -math.inf,
     ) -> Iterator[Written]:
         """Write all these to their ends, side by side, but for what becomes less likely than
-        `least`."""
+        `least`, and what is not at its end when there was `enough`."""
+        alone = len(growing) == 1 and least == -math.inf
         for each in growing:
             if not each.pending and not each.done:
-                self._step(each, fork=on_text is not None)
+                self._step(each, fork=alone)
         while True:
+            growing[:] = [each for each in growing if not each.dead and each.score > least]
             for each in [each for each in growing if each.done]:
                 growing.remove(each)
                 yield Written(each.draft.text, each.score, math.exp(each.least), each.tokens)
-            growing[:] = [each for each in growing if not each.dead and each.score > least]
-            if not growing:
+            if not growing or enough():
                 return
             try:
                 branches = self.model.read([(each.branch, each.pending) for each in growing])
@@ -137,7 +166,7 @@ class Decoder:
             self.steps += 1
             for each, branch in zip(growing, branches, strict=True):
                 each.branch = branch
-                self._step(each, fork=len(growing) == 1)
+                self._step(each, fork=alone)
                 if on_text is not None:
                     on_text(each.draft.text)
 
@@ -147,7 +176,8 @@ class Decoder:
         if not choices or each.tokens >= MOST_TOKENS:
             each.dead = True
             return
-        total = math.log(sum(math.exp(score) for _, score, _ in choices))
+        top = max(score for _, score, _ in choices)
+        total = top + math.log(sum(math.exp(score - top) for _, score, _ in choices))
         (token, score, draft), *others = choices
         if fork:
             for other, less, after in others[:3]:
@@ -158,6 +188,8 @@ class Decoder:
                         other,
                         after or each.draft,
                         each.score + less - total,
+                        each.tokens + (after is not None),
+                        min(each.least, less - total),
                         after is None,
                     )
                 )
@@ -185,6 +217,14 @@ class Decoder:
             if draft is not None:
                 found.append((token, score, draft))
         return found
+
+
+def _by_score(scored: Fork | Written) -> float:
+    return -scored.score
+
+
+def _never() -> bool:
+    return False
 
 
 __all__ = ["Decoder", "Fork", "Full", "LanguageModel"]

@@ -8,11 +8,12 @@ course that no model has to write each time.
 from __future__ import annotations
 
 import ast
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from typing import Final
 
 import msgspec
 
+from grammar.identifiers import Identifiers, all_names, names_in
 from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.naming import naming
@@ -31,9 +32,9 @@ from grammar.plan import (
     Value,
 )
 from grammar.planning.model.expressions import CALLS, DAYS
-from grammar.reading import parse_program
+from grammar.reading import NotAPlan, parse_program
 from grammar.speech import speech
-from grammar.tidy import BODIES
+from grammar.tidy import BODIES, nodes
 
 START: Final = "start"
 ANYBODY: Final = "person"
@@ -41,20 +42,46 @@ _SEARCH: Final = "find"
 
 
 def program_of(text: str, language: Language) -> str:
-    """The dialect as Python that a robot's program is: with `robot.` before its methods."""
-    tree = _Spelled(language).visit(ast.parse(text))
-    return ast.unparse(ast.fix_missing_locations(tree)) + "\n"
+    """The dialect as Python that a robot's program is: with `robot.` before its methods. Raises
+    `NotAPlan` for what is no Python."""
+    try:
+        tree = ast.parse(text)
+        spelled = _Spelled(language, tree).visit(tree)
+        return ast.unparse(ast.fix_missing_locations(spelled)) + "\n"
+    except SyntaxError as error:
+        raise NotAPlan(
+            error.lineno or 1, f"Python does not understand this: {error.msg}."
+        ) from error
+    except (ValueError, RecursionError, MemoryError) as error:
+        raise NotAPlan(1, "Python does not understand this.") from error
 
 
 class _Spelled(ast.NodeTransformer):
     """Writes out what is short in the dialect."""
 
-    def __init__(self, language: Language) -> None:
+    def __init__(self, language: Language, tree: ast.AST) -> None:
         self.language = language
+        self.days = {
+            target.id
+            for node in ast.walk(tree)
+            if isinstance(node, ast.Assign) and _is_weekday(node.value)
+            for target in node.targets
+            if isinstance(target, ast.Name)
+        }
+        """Names of days, as people call them."""
 
     def visit_Compare(self, node: ast.Compare) -> ast.AST:
-        if _is_weekday(node.left):  # the clock names the days in English
-            node.left = ast.parse("robot.clock().weekday", mode="eval").body
+        sides = [node.left, *node.comparators]
+        if any(_is_weekday(side) for side in sides):  # the clock names the days in English
+            sides = [
+                ast.parse("robot.clock().weekday", mode="eval").body if _is_weekday(side) else side
+                for side in sides
+            ]
+        elif any(isinstance(side, ast.Name) and side.id in self.days for side in sides):
+            for part in (part for side in sides for part in ast.walk(side)):
+                if isinstance(part, ast.Constant) and part.value in DAYS:
+                    part.value = spoken_name(self.language, part.value)
+        node.left, *node.comparators = sides
         return self.generic_visit(node)
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
@@ -88,6 +115,29 @@ def expanded(text: str, people: Collection[str], lexicon: Lexicon, language: Lan
     return Expansion(people, lexicon, language).of(plan)
 
 
+def _name_of_start(plan: Plan) -> str:
+    """A name for the place where the robot starts: that of the plan, if it has one, and else one
+    that stands for nothing else."""
+    for node in nodes(plan.steps):
+        is_place = isinstance(node, Call) and node.method == "location"
+        if not is_place and not isinstance(node, Recall) and START in names_in(node).values():
+            names = Identifiers()
+            for name in all_names(plan):
+                names.of(name)
+            return names.spare(START)
+    return START
+
+
+def _is_kept(steps: Sequence[Step], name: str) -> bool:
+    """Whether the plan itself gives this name before it is used."""
+    for step in steps:
+        if isinstance(step, Call) and step.save_as == name:
+            return True
+        if any(isinstance(node, Recall) and node.name == name for node in nodes((step,))):
+            return False
+    return False
+
+
 class Expansion:
     """What goes without saying, said."""
 
@@ -96,12 +146,13 @@ class Expansion:
         self.lexicon = lexicon
         self.language = language
         self.returns = False
+        self.start = START
 
     def of(self, plan: Plan) -> Plan:
+        self.start = _name_of_start(plan)
         steps = self.steps(plan.steps, in_loop=False, names={})
-        keeps = any(isinstance(step, Call) and step.save_as == START for step in steps)
-        if self.returns and not keeps:
-            steps = (Call("location", save_as=START), *steps)
+        if self.returns and not _is_kept(steps, self.start):
+            steps = (Call("location", save_as=self.start), *steps)
         return msgspec.structs.replace(plan, steps=steps)
 
     def steps(
@@ -155,6 +206,6 @@ class Expansion:
         spoken = called(name) if known else speech(self.language.code).nouns.the(called(name))
         told = self.language.phrase("not_found", thing=spoken)
         return (
-            Call("goto", {"place": Recall(START)}),
+            Call("goto", {"place": Recall(self.start)}),
             Call("say", {"text": Text(told)}),
         )

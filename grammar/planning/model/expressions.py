@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import keyword
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 from functools import cached_property
 from typing import Final
 
@@ -34,16 +36,22 @@ DAYS: Final = ("Monday", "Tuesday", "Wednesday", "Thursday", "Friday", "Saturday
 NOT_OFFERED: Final = frozenset({"stop", "log"})
 """Methods that no model is asked for."""
 CALLS: Final = tuple(name for name in METHODS if name not in NOT_OFFERED)
+TELLING: Final = tuple(name for name in CALLS if result_of(name) != NOTHING)
+"""Those of the others that tell something."""
 SEEING: Final = frozenset({"sees", "count", "find", "describe", "wait_for"})
 """Methods whose thing may be a person."""
 FUNCTIONS: Final = (
     *("len", "sum", "max", "min", "round", "sorted"),
     *("number_in", "percent", "minutes_since", "random_choice", "weekday"),
 )
-KEYWORDS: Final = frozenset({*keyword.kwlist, "robot"})
-"""Names that are no names."""
-_WORD: Final = re.compile(r"[A-Za-z_]\w*")
-_DIGITS: Final = re.compile(r"-?[\d.]*")
+KEYWORDS: Final = frozenset({*keyword.kwlist, "robot", "random", "range", "weekday_called"})
+"""Names that are no names, or that a program needs for something else."""
+INNERMOST: Final = 8
+"""How many brackets may stand in one another."""
+_WORD: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_DIGITS: Final = re.compile(r"-?[0-9.]*")
+_WORDS: Final = re.compile(r"\w+")
+_PARTS: Final = re.compile(r"[^\0 ]+")
 _ORDERS: Final = (" <= ", " >= ", " < ", " > ")
 _EQUAL: Final = (" == ", " != ")
 _WITHIN: Final = (" not in ", " in ")
@@ -61,6 +69,42 @@ class Unfinished(Exception):
         self.completions = tuple(completions)
 
 
+def is_plain(letter: str) -> bool:
+    """Whether a letter may stand in a text as it is."""
+    return letter != "\\" and (letter.isprintable() or letter in "\u00a0\u202f")
+
+
+def _compared_with(left: Type) -> tuple[str, ...]:
+    """How a value can be compared."""
+    if left.kind is Kind.NUMBER:
+        return *_ORDERS, *_EQUAL
+    if left.is_text:
+        return *_ORDERS, *_EQUAL, *_WITHIN
+    return _EQUAL if left.kind in (Kind.LOCATION, Kind.TRUTH) else ()
+
+
+def fixed(text: str) -> Type:
+    """The type of a text that the program says; of none, anything may become."""
+    return replace(TEXT, written=frozenset({text} - {""}))
+
+
+def _is_of(text: str, known: Iterable[str]) -> bool:
+    """Whether a text consists of words of those that are known, the last of which may only be
+    begun; "\\0" stands for any."""
+    words = [word.lower() for each in known for word in _WORDS.findall(each)]
+    *whole, last = [word.lower() for word in _PARTS.findall(text)] or [""]
+    if not text.endswith(last):
+        whole, last = [*whole, last], ""
+    return all(word in words for word in whole) and any(word.startswith(last) for word in words)
+
+
+def _added_to(left: Type) -> tuple[str, ...]:
+    """What can be done to a value, but for products."""
+    if left.kind is Kind.NUMBER:
+        return " + ", " - "
+    return (" + ",) if left.is_text or left.kind is Kind.LIST else ()
+
+
 class Reader:
     """Reads a line from a place on, where some names are known."""
 
@@ -72,6 +116,19 @@ class Reader:
         self.used: set[str] = set()
         """Names whose values were used."""
         self.quote = '"'
+        self.deep = 0
+        """In how many brackets this stands."""
+
+    @contextmanager
+    def bracket(self) -> Iterator[None]:
+        """While this lasts, what is read stands in one more."""
+        if self.deep >= INNERMOST:
+            raise Dead
+        self.deep += 1
+        try:
+            yield
+        finally:
+            self.deep -= 1
 
     # --- letters
 
@@ -142,7 +199,7 @@ class Reader:
         self.expect(self.quote)
         start = self.at
         while (letter := self.next()) != self.quote:
-            if letter in "\\\n{}" or self.at - start >= longest:
+            if letter in '"{}' or not is_plain(letter) or self.at - start >= longest:
                 raise Dead
             self.at += 1
         self.at += 1
@@ -161,8 +218,10 @@ class Reader:
         self.at = len(self.line) - len(behind)
 
     def literal(self, known: Sequence[str]) -> str:
-        """One of these in quotation marks."""
-        chosen = self.choose([f"{self.quote}{each}{self.quote}" for each in known])
+        """One of these in quotation marks, of those that can stand in them."""
+        quotes = {'"', self.quote}
+        plain = [each for each in known if all(map(is_plain, each)) and not quotes & {*each}]
+        chosen = self.choose([f"{self.quote}{each}{self.quote}" for each in plain])
         return chosen[1:-1]
 
     # --- conditions
@@ -180,10 +239,13 @@ class Reader:
     def negation(self) -> None:
         if self.starts("not "):
             self.at += len("not ")
+            if self.starts("not "):
+                raise Dead
             self.negation()
         elif self.next() == "(":
             self.at += 1
-            self.condition()
+            with self.bracket():
+                self.condition()
             self.expect(")")
         else:
             self.comparison()
@@ -198,7 +260,7 @@ class Reader:
     def comparison(self) -> Type:
         """A value, alone or compared with another; alone it must be able to be true or not."""
         left = self.value()
-        operator = self.maybe(*_ORDERS, *_EQUAL, *_WITHIN)
+        operator = self.maybe(*_compared_with(left))
         if not operator:
             if left.kind in (Kind.PLACE, Kind.PERSON, Kind.LOCATION, Kind.NOTHING):
                 raise Dead
@@ -250,14 +312,14 @@ class Reader:
 
     def value(self) -> Type:
         left = self.product()
-        while operator := self.maybe(" + ", " - "):
+        while operator := self.maybe(*_added_to(left)):
             right = self.product()
             left = self.combined(left, operator, right)
         return left
 
     def product(self) -> Type:
         left = self.atom()
-        while operator := self.maybe(" * ", " / ", " // ", " % "):
+        while left.kind is Kind.NUMBER and (operator := self.maybe(" * ", " / ", " // ", " % ")):
             left = self.combined(left, operator, self.atom())
         return left
 
@@ -265,7 +327,7 @@ class Reader:
         if left.kind is right.kind is Kind.NUMBER:
             return NUMBER
         if operator == " + " and left.is_text and right.is_text:
-            return TEXT
+            return replace(TEXT, made=True)
         if operator == " + " and left.kind is right.kind is Kind.LIST:
             return left.joined(right) or NOTHING
         raise Dead
@@ -273,8 +335,7 @@ class Reader:
     def atom(self) -> Type:
         letter = self.next()
         if letter == self.quote:
-            self.text()
-            return TEXT
+            return fixed(self.text())
         if letter == "[":
             return self.listed()
         if letter == "{":
@@ -282,7 +343,8 @@ class Reader:
             return Type(Kind.RECORD)
         if letter == "(":
             self.at += 1
-            inner = self.value()
+            with self.bracket():
+                inner = self.value()
             self.expect(")")
             return inner
         if letter.isdigit() or letter == "-":
@@ -290,7 +352,7 @@ class Reader:
             return NUMBER
         if self.quote == '"' and self.starts('f"'):
             self.filled_text()
-            return TEXT
+            return replace(TEXT, made=True)
         return self.named()
 
     def number(
@@ -309,25 +371,39 @@ class Reader:
             raise Dead
         self.at += len(written)
 
-    def filled_text(self) -> None:
-        """A text with values in braces."""
+    def filled_text(self, known: Iterable[str] | None = None) -> None:
+        """A text with values in braces; between them only words of those that are `known`, if that
+        is said, and at least one value."""
         self.expect('f"')
-        start = self.at
+        start, filled, said = self.at, False, ""
         while (letter := self.next()) != '"':
-            if letter in "\\\n}" or self.at - start >= LONGEST_TEXT:
+            if letter == "}" or not is_plain(letter) or self.at - start >= LONGEST_TEXT:
                 raise Dead
             self.at += 1
             if letter == "{":
-                self.quote = "'"
-                if self.value().kind is Kind.NOTHING:
-                    raise Dead
-                self.quote = '"'
-                self.expect("}")
+                self.filling()
+                filled = True
+            said += "\0" if letter == "{" else letter
+            if known is not None and not _is_of(said, known):
+                raise Dead
+        if known is not None and not (filled and _is_of(f"{said} ", known)):
+            raise Dead
         self.at += 1
+
+    def filling(self) -> None:
+        """A value in braces, behind the first of them."""
+        if self.next() == "{":
+            raise Dead  # two are one that is spoken
+        self.quote = "'"
+        with self.bracket():
+            if self.value().kind is Kind.NOTHING:
+                raise Dead
+        self.quote = '"'
+        self.expect("}")
 
     def named(self) -> Type:
         """What begins with a name: a value that is known, or a call."""
-        word = self.word((*self.names, *CALLS, *FUNCTIONS, "True", "False"))
+        word = self.word((*self.names, *TELLING, *FUNCTIONS, "True", "False"))
         if word in ("True", "False"):
             return TRUTH
         if word in self.names and not self.is_called(word):
@@ -350,7 +426,7 @@ class Reader:
             if of.kind in (Kind.LIST, Kind.RECORD) and self.maybe("["):
                 of = self.entry(of)
             elif of.is_text and self.maybe(".lower()"):
-                continue
+                of = replace(of, written=frozenset(map(str.lower, of.written)))
             elif of.kind is Kind.RECORD and self.maybe(".values()"):
                 of = Type(Kind.LIST, of=of.of)
             elif of.kind is Kind.LIST and self.maybe(".count("):
@@ -380,8 +456,9 @@ class Reader:
         self.expect("(")
         if name == "weekday":
             self.expect(")")
-            return TEXT
-        given = self.value()
+            return Type(Kind.TEXT, DAYS)
+        with self.bracket():
+            given = self.value()
         match name:
             case "len" if given.kind in (Kind.LIST, Kind.RECORD):
                 found = NUMBER
@@ -402,8 +479,8 @@ class Reader:
                 found = given
             case "max" | "min" if given.kind is Kind.RECORD:
                 found = self.best(given)
-            case "max" | "min" if given.kind is Kind.LIST:
-                found = given.of or NUMBER
+            case "max" | "min" if given.kind is Kind.LIST and given.of in (None, NUMBER):
+                found = NUMBER
             case "max" | "min" if given.kind is Kind.NUMBER:
                 self.another_number()
                 found = NUMBER
@@ -421,6 +498,8 @@ class Reader:
         """Which key of a record has the highest value: `max(votes, key=votes.get)`."""
         before = self.line[: self.at]
         name = before[before.rindex("(") + 1 :]
+        if name not in self.names:
+            raise Dead
         self.expect(f", key={name}.get")
         return record.keys or TEXT
 
@@ -432,7 +511,7 @@ class Reader:
         if self.maybe("]"):
             return Type(Kind.LIST)
         items: list[str] = []
-        numbers = False
+        others: Type | None = None
         while True:
             if self.next() == self.quote:
                 start = self.at
@@ -441,16 +520,30 @@ class Reader:
                 else:
                     self.literal(self.items())
                 items.append(self.line[start + 1 : self.at - 1])
-            elif self.next().isdigit():
-                self.number(self.numbers)
-                numbers = True
             else:
-                self.named()
+                others = self.together(others, self.item())
             if self.choose((", ", "]")) == "]":
                 break
-        if numbers:
-            return Type(Kind.LIST, of=NUMBER)
-        return Type(Kind.LIST, of=self.sort_of(items))
+        if items:
+            others = self.together(others, self.sort_of(items))
+        return Type(Kind.LIST, of=others)
+
+    def item(self) -> Type:
+        """What stands in a list and is no fixed text."""
+        if self.next().isdigit():
+            self.number(self.numbers)
+            return NUMBER
+        found = self.named()
+        if found.kind in (Kind.NOTHING, Kind.LIST, Kind.RECORD, Kind.TRUTH):
+            raise Dead
+        return found
+
+    def together(self, known: Type | None, new: Type) -> Type:
+        """What stands together in a list."""
+        joined = new if known is None else known.joined(new)
+        if joined is None:
+            raise Dead
+        return joined
 
     def items(self) -> tuple[str, ...]:
         words = self.words
@@ -458,11 +551,12 @@ class Reader:
         return tuple(dict.fromkeys(known))
 
     def sort_of(self, items: Sequence[str]) -> Type:
+        kind = Kind.TEXT
         if items and all(each in self.words.places for each in items):
-            return Type(Kind.PLACE, tuple(items))
-        if items and all(each in self.words.people for each in items):
-            return Type(Kind.PERSON, tuple(items))
-        return Type(Kind.TEXT, tuple(items))
+            kind = Kind.PLACE
+        elif items and all(each in self.words.people for each in items):
+            kind = Kind.PERSON
+        return Type(kind, tuple(items), written=frozenset(items))
 
     def options(self) -> Type:
         """The answers that a question offers, or the list that holds them."""
@@ -559,11 +653,12 @@ class Reader:
                 raise Dead
             self.literal(known)
             return TEXT
-        if what == "things" and self.starts("f"):
-            self.filled_text()
+        if what == "things" and self.quote == '"' and self.starts('f"'):
+            self.filled_text((self.words.said, *known))
             return TEXT
         given = self.value()
         fits = given.is_text or (what == "places" and given.kind is Kind.LOCATION)
+        fits = fits and given.named(known)
         strange = {"places": PERSON.kind, "people": PLACE.kind}.get(what)
         if not fits or given.kind is strange:
             raise Dead

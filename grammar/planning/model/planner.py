@@ -66,20 +66,27 @@ class ModelPlanner:
 
     def _answer(self, turn: Turn, written: list[Written]) -> Answer:
         """The plans of what was written; the way out if that is what was written first."""
-        total = sum(math.exp(each.score) for each in written)
+        shares = _shares([each.score for each in written])
         drafts = []
-        for number, each in enumerate(written):
+        for number, (each, share) in enumerate(zip(written, shares, strict=True)):
             out = _WAY_OUT.match(each.text)
             if out is not None and number == 0:
                 return _way_out(turn, *out.groups())
             if out is not None:
                 continue
-            draft = _draft(turn, each, math.exp(each.score) / total)
+            draft = _draft(turn, each, share)
             if draft is not None:
                 drafts.append(draft)
         if not drafts:
             return Refusal(turn.language.phrase("not_understood_at_all"))
         return Drafts(tuple(drafts))
+
+
+def _shares(scores: list[float]) -> list[float]:
+    """How likely each is among all, by the logarithms of their probabilities."""
+    best = max((score for score in scores if math.isfinite(score)), default=0.0)
+    weights = [math.exp(score - best) if score <= best else 0.0 for score in scores]
+    return [weight / (sum(weights) or 1.0) for weight in weights]
 
 
 def _draft(turn: Turn, written: Written, share: float) -> Draft | None:
@@ -120,7 +127,7 @@ def _shown(text: str, turn: Turn) -> str:
     for line in whole:
         try:
             lines.append(program_of(line.strip(), turn.language).strip())
-        except SyntaxError:  # "if ...:" alone is no program
+        except NotAPlan:  # "if ...:" alone is no program
             lines.append(line.strip())
         lines[-1] = line[: len(line) - len(line.lstrip())] + lines[-1]
     return "\n".join([*lines, rest])

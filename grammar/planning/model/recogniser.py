@@ -23,13 +23,14 @@ from grammar.planning.model.expressions import (
     Reader,
     Unfinished,
 )
-from grammar.planning.model.types import NUMBER, TEXT, Kind, Type
+from grammar.planning.model.types import NUMBER, TEXT, Kind, Type, result_of
 from grammar.planning.model.vocabulary import Vocabulary
 from robot_api.methods import METHODS
 
 INDENT: Final = 4
 DEEPEST: Final = 6
 MOST_LINES: Final = 60
+LONGEST_LINE: Final = 600
 ASIDE: Final = frozenset({"ask", "find", "wait_for", "answer"})
 """Methods with a result that may go unheeded."""
 REFUSE: Final = "refuse"
@@ -53,7 +54,8 @@ class Block:
     before: Names = field(default_factory=dict)
     """What was known before the statement that it is a part of."""
     ways: tuple[Names, ...] = ()
-    """What is known at the end of each branch of this statement before it."""
+    """What is known at the end of each branch of this statement before it; of a loop, where it is
+    left."""
 
 
 @dataclass(frozen=True)
@@ -128,6 +130,8 @@ class Partial:
 
     def _line(self, line: str) -> Partial:
         """The draft behind a line, or what is wrong with it so far."""
+        if len(line) > LONGEST_LINE:
+            raise Dead
         body = line.lstrip(" ")
         spaces = len(line) - len(body)
         if not body:
@@ -165,11 +169,12 @@ class Partial:
 
 def _after(block: Block, names: Names) -> Names:
     """What is known behind a statement whose last block ends."""
-    if block.kind == "while True":  # it is gone through at least once
-        return names
-    ways = [*block.ways, names]
-    if block.kind not in ("else", "except"):
-        ways.append(block.before)
+    if block.kind == "while True":  # only a break ends it
+        ways = [*block.ways] or [names]
+    else:
+        ways = [*block.ways, names]
+        if block.kind not in ("else", "except"):
+            ways.append(block.before)
     known: Names = {}
     for name in ways[0]:
         types = [way.get(name) for way in ways]
@@ -257,9 +262,16 @@ class _Line(Reader):
                 if not draft.in_loop:
                     raise Dead
                 self.expect("\n")
-                return self._done(draft)
+                return self._done(self._left(draft) if word == "break" else draft)
             case _:
                 return self._change(draft, word)
+
+    def _left(self, draft: Partial) -> Partial:
+        """With what is known where the innermost loop is left."""
+        blocks = [*draft.blocks]
+        at = max(at for at, block in enumerate(blocks) if block.kind in _LOOPS)
+        blocks[at] = replace(blocks[at], ways=(*blocks[at].ways, draft.names))
+        return replace(draft, blocks=tuple(blocks))
 
     def _way_out(self) -> bool:
         """Whether it is no program but a refusal or a question back."""
@@ -294,9 +306,9 @@ class _Line(Reader):
         return word
 
     def _action(self, draft: Partial, method: str) -> Partial:
-        result = self.call(method)
-        if result.kind is not Kind.NOTHING and method not in ASIDE | {"do"}:
+        if result_of(method).kind is not Kind.NOTHING and method not in ASIDE | {"do"}:
             raise Dead  # what was found out would be lost
+        self.call(method)
         self.expect("\n")
         return self._done(draft)
 
@@ -331,7 +343,7 @@ class _Line(Reader):
 
     def _new_name(self) -> str:
         word = self.word()
-        if word in KEYWORDS or word in FUNCTIONS or not word.islower():
+        if word in KEYWORDS or word in FUNCTIONS or not word.islower() or word[0] == "_":
             raise Dead
         return word
 
@@ -365,7 +377,7 @@ class _Line(Reader):
                 value = self._fitting(known.of, self.value())
                 if adds and value.kind is not Kind.NUMBER:
                     raise Dead
-                changed = replace(known, of=value, keys=known.keys or keys)
+                changed = replace(known, of=value, keys=self._fitting(known.keys, keys))
             case _:
                 return self._assigned(draft, name, known)
         self.expect("\n")

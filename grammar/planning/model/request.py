@@ -4,11 +4,14 @@ another process."""
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import Final, Protocol
 
 import msgspec
 
 from grammar.planning.model.vocabulary import Vocabulary
+
+SECONDS: Final = 20.0
+"""How long people wait for a program."""
 
 
 class Piece(msgspec.Struct, frozen=True):
@@ -29,6 +32,8 @@ class Request(msgspec.Struct, frozen=True, kw_only=True):
     words: Vocabulary = Vocabulary()
     most: int = 1
     """Programs that are wanted at most."""
+    seconds: float = SECONDS
+    """After how long no further token is written."""
 
 
 class Written(msgspec.Struct, frozen=True):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import enum
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -31,26 +32,39 @@ class Type:
     empty."""
     keys: Type | None = None
     """Of a record."""
+    written: frozenset[str] = frozenset()
+    """Of a text, all that it may be because the program says so; not what is heard or found."""
+    made: bool = False
+    """Whether the program may have put the text together."""
 
     @property
     def is_text(self) -> bool:
         return self.kind in (Kind.TEXT, Kind.PLACE, Kind.PERSON)
+
+    def named(self, known: Collection[str]) -> bool:
+        """Whether it is none but these, as far as the program has a say in it."""
+        return not self.made and self.written <= {*known}
 
     def joined(self, other: Type) -> Type | None:
         """What is either of them; None if that makes no sense."""
         if self == other:
             return self
         if self.is_text and other.is_text:
-            return TEXT
+            return replace(TEXT, written=self.written | other.written, made=self.made or other.made)
         if self.kind is other.kind and self.kind in (Kind.LIST, Kind.RECORD):
             of = self.of or other.of
             if self.of and other.of:
                 of = self.of.joined(other.of)
-            return replace(self, of=of, keys=self.keys or other.keys)
+            keys = self.keys or other.keys
+            if self.keys and other.keys:
+                keys = self.keys.joined(other.keys)
+            return replace(self, of=of, keys=keys)
         if self.kind is other.kind:
             return Type(self.kind)
         travels = {Kind.LOCATION, Kind.PLACE, Kind.TEXT}
-        return LOCATION if {self.kind, other.kind} <= travels else None
+        if not {self.kind, other.kind} <= travels:
+            return None
+        return replace(LOCATION, written=self.written | other.written, made=self.made or other.made)
 
 
 TEXT: Final = Type(Kind.TEXT)
