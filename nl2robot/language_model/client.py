@@ -2,7 +2,8 @@
 
 The process is begun when it is first needed and stays. If it dies (too little memory, killed), the
 sentence at hand gets no program from it, and the next one begins a new process; one that dies at
-every start is not tried again for a while.
+every start is not tried again for a while. Who cancels is free at once, whatever the process does:
+it loads on, and what it still says of that sentence is not listened to.
 """
 
 from __future__ import annotations
@@ -12,20 +13,31 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import IO, Any, Final
+from queue import Empty, SimpleQueue
+from typing import IO, Final, NamedTuple
 
 import msgspec
 
 from grammar.planning.model.request import Interrupted, Request, Unavailable, Written
-from nl2robot.language_model.messages import Cancel, Done, Failed, Growing, Order, Report, Write
+from nl2robot.language_model.messages import Cancel, Done, Failed, Growing, Ready, Report, Write
 
 STARTS_WITHIN: Final = 60.0
 """Seconds that loading the model may take."""
 LEFT_ALONE: Final = 30.0
 """Seconds after a start that failed, before the next is tried."""
+ENDS_WITHIN: Final = 5.0
+SILENT: Final = 300.0
+"""Seconds without a word after which a process counts as stuck: reading what stands before every
+sentence for the first time may take minutes."""
+
+
+class _GivenUp(NamedTuple):
+    """Nobody waits for this sentence any more."""
+
+    id: int
 
 
 class Process:
@@ -37,13 +49,11 @@ class Process:
         self._folders = [str(path) for path in (folder, learned) if path is not None]
         self._turn = threading.Lock()
         self._state = threading.Lock()
-        self._running: subprocess.Popen[bytes] | None = None
+        self._running: _Worker | None = None
         self._numbers = itertools.count(1)
         self._now: int | None = None
         self._cancelled = False
         self._not_before = 0.0
-        self._encode = msgspec.json.Encoder().encode
-        self._decode = msgspec.json.Decoder(Report).decode
 
     # --- writing
 
@@ -67,81 +77,84 @@ class Process:
     def _written(
         self, number: int, request: Request, on_text: Callable[[str], None] | None
     ) -> list[Written]:
-        self._send(Write(number, request))
-        while True:
-            match self._heard():
-                case Growing(id=mine, text=text) if mine == number:
-                    if on_text is not None:
-                        on_text(text)
-                case Done(id=mine, written=written) if mine == number:
-                    return list(written)
-                case Failed(id=mine) if mine == number:
-                    raise Interrupted
-                case _:
-                    continue  # of a sentence before
+        try:
+            order = msgspec.json.encode(Write(number, request))
+        except UnicodeEncodeError:
+            return []  # half a letter, such as a broken terminal sends: no model can read that
+        worker = self._ready(number)
+        self._send(worker, order)
+        try:
+            while True:
+                match self._heard(worker, number, SILENT):
+                    case Growing(id=mine, text=text) if mine == number:
+                        if on_text is not None:
+                            on_text(text)
+                    case Done(id=mine, written=written) if mine == number:
+                        # What was written first need not be what turned out the likeliest.
+                        return sorted(written, key=lambda each: -each.score)
+                    case Failed(id=mine, cancelled=cancelled) if mine == number:
+                        raise Interrupted if cancelled else self._lost()
+                    case _:
+                        continue  # of a sentence before
+        except (Interrupted, Unavailable):
+            raise
+        except BaseException:  # who looks on, or Ctrl-C: nobody needs the rest
+            worker.cancel(number)
+            raise
 
     def cancel(self) -> None:
         with self._state:
             self._cancelled = True
-            number, process = self._now, self._running
-        if number is not None and process is not None:
-            with suppress(OSError, ValueError):
-                self._put(process, Cancel(number))
+            number, worker = self._now, self._running
+        if number is not None and worker is not None:
+            worker.reports.put(_GivenUp(number))
+            worker.cancel(number)
 
     # --- the process
 
-    def _send(self, order: Order) -> None:
-        process = self._process()
+    def _send(self, worker: _Worker, order: bytes) -> None:
         try:
-            self._put(process, order)
+            worker.put(order)
         except (OSError, ValueError) as error:
             raise self._lost() from error
 
-    def _put(self, process: subprocess.Popen[bytes], order: Order) -> None:
-        stream = _stream(process.stdin)
-        with self._state:
-            stream.write(self._encode(order) + b"\n")
-            stream.flush()
-
-    def _heard(self) -> Any:
-        process = self._running
-        line = _stream(process.stdout).readline() if process is not None else b""
-        with self._state:
-            cancelled = self._cancelled
-        if not line:
-            lost = self._lost()
-            raise Interrupted if cancelled else lost
-        return self._decode(line)
-
-    def _process(self) -> subprocess.Popen[bytes]:
-        running = self._running
-        if running is not None and running.poll() is None:
-            return running
-        if time.monotonic() < self._not_before:
-            raise Unavailable(
-                "The language model could not be started a moment ago."
-                " Try again in half a minute, or say it in other words."
-            )
-        command = [sys.executable, "-m", "nl2robot.language_model.worker", *self._folders]
-        process = subprocess.Popen(
-            command,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            start_new_session=True,  # Ctrl-C gives up a sentence; the model is loaded for the next
-        )
-        with self._state:
-            self._running = process
-        patience = threading.Timer(STARTS_WITHIN, process.kill)
-        patience.daemon = True
-        patience.start()
-        try:
-            if not _stream(process.stdout).readline():
-                self._not_before = time.monotonic() + LEFT_ALONE
+    def _heard(self, worker: _Worker, number: int, patience: float) -> Report:
+        """What it says next. Raises `Interrupted` when this sentence is given up."""
+        while True:
+            try:
+                report = worker.reports.get(timeout=max(0.0, patience))
+            except Empty:
+                report = None  # it is stuck
+            if report is None:
                 raise self._lost()
-        finally:
-            patience.cancel()
-        return process
+            if not isinstance(report, _GivenUp):
+                return report
+            if report.id == number:
+                raise Interrupted
+
+    def _ready(self, number: int) -> _Worker:
+        """The process with its model loaded; begun if there is none."""
+        worker = self._running
+        if worker is None or not worker.is_alive:
+            self.close()
+            if time.monotonic() < self._not_before:
+                raise Unavailable(
+                    "The language model could not be started a moment ago."
+                    " Try again in half a minute, or say it in other words."
+                )
+            worker = _Worker(self._folders)
+            with self._state:
+                self._running = worker
+                if self._cancelled:
+                    raise Interrupted
+        while not worker.is_ready:
+            try:
+                left = worker.begun + STARTS_WITHIN - time.monotonic()
+                worker.is_ready = isinstance(self._heard(worker, number, left), Ready)
+            except Unavailable:
+                self._not_before = time.monotonic() + LEFT_ALONE
+                raise
+        return worker
 
     def _lost(self) -> Unavailable:
         """The process is gone, or has to go."""
@@ -154,12 +167,64 @@ class Process:
     def close(self) -> None:
         """End the process, if there is one."""
         with self._state:
-            process, self._running = self._running, None
-        if process is None:
-            return
-        process.kill()
-        process.wait()
-        for stream in (process.stdin, process.stdout):
+            worker, self._running = self._running, None
+        if worker is not None:
+            worker.close()
+
+
+class _Worker:
+    """One process, and what it says."""
+
+    def __init__(self, folders: Sequence[str]) -> None:
+        self.begun = time.monotonic()
+        self.is_ready = False
+        """Whether it has loaded its model."""
+        self.reports: SimpleQueue[Report | _GivenUp | None] = SimpleQueue()
+        """None: it says nothing more."""
+        self._pipe = threading.Lock()
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "nl2robot.language_model.worker", *folders],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,  # Ctrl-C gives up a sentence; the model is loaded for the next
+        )
+        self._listener = threading.Thread(
+            target=self._listen, args=(_stream(self._process.stdout),), daemon=True
+        )
+        self._listener.start()
+
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
+    @property
+    def is_alive(self) -> bool:
+        return self._process.poll() is None
+
+    def put(self, order: bytes) -> None:
+        """Raises `OSError` or `ValueError` if nobody is there any more."""
+        stream = _stream(self._process.stdin)
+        with self._pipe:
+            stream.write(order + b"\n")
+            stream.flush()
+
+    def cancel(self, number: int) -> None:
+        with suppress(OSError, ValueError):
+            self.put(msgspec.json.encode(Cancel(number)))
+
+    def _listen(self, stream: IO[bytes]) -> None:
+        decode = msgspec.json.Decoder(Report).decode
+        with suppress(OSError, ValueError):  # it is closed, or talks nonsense
+            for line in stream:
+                self.reports.put(decode(line))
+        self.reports.put(None)
+
+    def close(self) -> None:
+        self._process.kill()
+        self._process.wait()
+        self._listener.join(ENDS_WITHIN)
+        for stream in (self._process.stdin, self._process.stdout):
             with suppress(OSError):
                 _stream(stream).close()
 
