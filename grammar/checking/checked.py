@@ -18,10 +18,11 @@ from grammar.checking.deeds import (
     ROUND,
     UNTIL,
     deeds,
+    said_anyhow,
 )
 from grammar.checking.evidence import Evidence, evidence_of
 from grammar.checking.names import misplaced, unbound
-from grammar.checking.sources import ANYBODY, Source, Sources, content_left
+from grammar.checking.sources import ANYBODY, Source, Sources, content_left, sort_of
 from grammar.checking.words import Weighty, content, weighty, words_of
 from grammar.plan import Ask, Call, Items, Plan
 from grammar.planning.mentions import Mention
@@ -63,6 +64,8 @@ _ANSWERING_IF: Final = frozenset(
 _GOING_ROUND: Final = frozenset({ROUND, REPEATS, UNTIL, "people", "places", "wait_for"})
 _FEW: Final = 12
 """Of a number up to this one, a round or a list may be what was counted."""
+_SURE: Final = 0.5
+"""The cost of a mention that is no guess."""
 _NAMES: Final = frozenset({"place", "person", "contact"})
 
 
@@ -125,6 +128,7 @@ class _Check:
             yield Objection("senseless", senseless.value, self.language.phrase(senseless.value))
         yield from (Objection("invented", each.text) for each in self.sources.invented)
         yield from self.too_much_of_its_own()
+        yield from self.turned_round()
         yield from self.unheeded()
         yield from (Objection("unasked", each) for each in self.unasked() if each in GRAVE)
 
@@ -170,6 +174,18 @@ class _Check:
             if len(each.own) >= MOST_OWN and len(each.own) > SHARE_OF_OWN * words:
                 yield Objection("invented", " ".join(each.own))
 
+    def turned_round(self) -> Iterator[Objection]:
+        """A "not" that nobody has said, in words that are said in any case."""
+        negations = self.weighty.negations
+        heard = {word for words in self.sources.heard.values() for word in words}
+        denied = heard & (negations | self.sources.settled)
+        if self.turn.earlier or self.sources.left_to_the_robot or denied:
+            return
+        for text in said_anyhow(self.plan):
+            for word in self.language.tokens_of(text):
+                if word in negations:
+                    yield Objection("invented", word)
+
     def unasked(self) -> list[str]:
         """Methods that no word speaks for; but a word of which nothing is known may mean one."""
         if self.turn.before is not None:
@@ -204,6 +220,7 @@ class _Check:
     def unheeded(self) -> Iterator[Objection]:
         yield from self.unheeded_names()
         yield from self.unheeded_numbers()
+        yield from self.unheeded_quantities()
         yield from self.unheeded_turns()
 
     def unheeded_names(self) -> Iterator[Objection]:
@@ -213,7 +230,7 @@ class _Check:
             span = {*range(each.start, each.end)}
             if each.value not in known or self.used & span or each.end in self.taken_back:
                 continue
-            if self.matters(each.start):
+            if self.matters(each.start) or self.goes_on(each):
                 yield Objection("unheeded", each.words)
 
     @cached_property
@@ -232,11 +249,43 @@ class _Check:
             if not (few and (self.deeds & _GOING_ROUND or self.lists())):  # "all three wards"
                 yield Objection("unheeded", token.norm)
 
+    def unheeded_quantities(self) -> Iterator[Objection]:
+        """Lengths, angles, languages and the like that were said, where the plan has one of its own
+        choice."""
+        found = self.sources.found
+        chosen = {sort_of(each.literal) for each in found if each.origin == "default"}
+        if UNTIL in self.deeds:
+            chosen -= {"seconds"}  # between two looks
+        heeded = {sort_of(each.literal) for each in found if each.origin != "default"}
+        for each in self.turn.mentions:
+            if each.sort in chosen - heeded and each.cost < _SURE and self.is_meant(each):
+                yield Objection("unheeded", each.words)
+
+    def is_meant(self, mention: Mention) -> bool:
+        """Whether it is a number, or a name, and nothing in the plan comes from it."""
+        at = range(mention.start, mention.end)
+        number = any(each.sort == "number" and each.start in at for each in self.turn.mentions)
+        named = number or mention.sort in ("language", "gesture", "times")
+        return named and self.used.isdisjoint(at)
+
     def matters(self, at: int) -> bool:
         """Whether a word stands in a clause of which the plan makes something: of a remark, nothing
         need be made."""
         start, end = next((s, e) for s, e in self.clauses if s <= at < e)
         return any(place in self.used for place in range(start, end) if place != at)
+
+    def goes_on(self, mention: Mention) -> bool:
+        """Whether a clause has no word of its own besides a name, so that it goes on with the one
+        before, of which the plan makes something: "go to the kitchen and then to the laundry"."""
+        inside = {*range(mention.start, mention.end)}
+        words = {at for at, _ in content(self.turn.tokens, self.language)}
+        *before, (start, end) = [each for each in self.clauses if each[0] <= mention.start]
+        clause = {*range(start, end)}
+        joined = self.norm(start) in self.language.words_called("joins")
+        if not joined or not inside <= clause or clause & words - inside or "places" in self.deeds:
+            return False
+        behind = [each for each in before if words.intersection(range(*each))]
+        return bool(behind) and not self.used.isdisjoint(range(*behind[-1]))
 
     def speaks(self, at: int) -> bool:
         """Whether a word speaks for a deed of the plan."""
@@ -255,7 +304,7 @@ class _Check:
 
     def certain(self, sorts: frozenset[str]) -> Iterator[Mention]:
         """Mentions that are no part of a longer one and no guess."""
-        found = [each for each in self.turn.mentions if each.sort in sorts and each.cost < 0.5]
+        found = [each for each in self.turn.mentions if each.sort in sorts and each.cost < _SURE]
         for each in found:
             span = {*range(each.start, each.end)}
             if not any(span < {*range(other.start, other.end)} for other in found if other != each):

@@ -3,6 +3,7 @@ counts."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 from grammar.plan import (
@@ -12,6 +13,7 @@ from grammar.plan import (
     Compare,
     ForEach,
     Forever,
+    Holds,
     If,
     Increase,
     Not,
@@ -19,6 +21,8 @@ from grammar.plan import (
     Plan,
     Repeat,
     RepeatUntil,
+    Step,
+    Text,
     Try,
     While,
 )
@@ -33,6 +37,24 @@ COUNTS: Final = "counts"
 COLLECTS: Final = "collects"
 COMPARES: Final = "compares numbers"
 NEGATES: Final = "negates"
+
+
+def said_anyhow(plan: Plan) -> Iterator[str]:
+    """What is said or shown whatever the robot finds out, but for whether it finds somebody."""
+    yield from _said(plan.steps)
+
+
+def _said(steps: Sequence[Step]) -> Iterator[str]:
+    for step in steps:
+        match step:
+            case Call(method="say" | "show", arguments={"text": text}):
+                yield from (node.value for node in nodes(text) if isinstance(node, Text))
+            case If(condition=Holds(value=Ask(method="find")), then=then):
+                yield from _said(then)
+            case Repeat() | ForEach() | Forever():
+                yield from _said(step.steps)
+            case _:
+                continue
 
 
 def deeds(plan: Plan) -> frozenset[str]:

@@ -188,8 +188,29 @@ class Sources:
         if known is None:
             return frozenset()
         kinds = {kind_of(known)} | {series_of(each) for each in (known.name, *known.aliases)}
-        return _tokens_of(
-            each for each in self.turn.spoken_of if each.sort == "kind" and each.value in kinds
+        return _tokens_of(each for each in self.kinds_spoken_of if each.value in kinds)
+
+    @cached_property
+    def kinds_spoken_of(self) -> tuple[Mention, ...]:
+        """Kinds of places, but for those that are only a part of a name: "waiting room"."""
+        names = [
+            (turn, each.start, each.end)
+            for turn in (self.turn, *self.turn.earlier)
+            for each in turn.mentions
+            if each.sort == "place" and each.cost < 0.5
+        ]
+        return tuple(
+            each
+            for turn in (self.turn, *self.turn.earlier)
+            for each in turn.mentions
+            if each.sort == "kind"
+            and not any(
+                turn is other
+                and start <= each.start
+                and each.end <= end
+                and end - start > each.end - each.start
+                for other, start, end in names
+            )
         )
 
     def words(self, text: str) -> frozenset[int] | None:
@@ -260,6 +281,8 @@ class Sources:
             for each in self.turn.spoken_of
             if each.sort in ("person", "thing", "place") and each.value != ANYBODY
         }
+        if any(each.sort == "times" and each.cost == 0.0 for each in self.turn.mentions):
+            return None
         return Source(literal, "default") if value <= len(named) else None
 
     # --- words
@@ -279,10 +302,10 @@ class Sources:
     @cached_property
     def _options(self) -> frozenset[str]:
         offered = (each for each in literals(self.plan) if each.role == OPTIONS)
-        return frozenset(each.text.lower() for each in offered) | self._settled
+        return frozenset(each.text.lower() for each in offered) | self.settled
 
     @cached_property
-    def _settled(self) -> frozenset[str]:
+    def settled(self) -> frozenset[str]:
         """Answers that are always possible: "yes", "no"."""
         data = self.language.speech.get("free_text", {})
         return frozenset(str(each).lower() for each in data.get("settled", ()))
@@ -303,7 +326,7 @@ class Sources:
         """What is said, asked or shown: in words that were said, and such as any robot says."""
         tokens: set[int] = set()
         own: list[str] = []
-        for word in words_of(literal.text, self.language):
+        for word in sorted(words_of(literal.text, self.language)):
             at = self.said(word) | self.figure(word)
             tokens |= at
             if not (at or self.is_common(word) or alike({word}, self.heard_before)):
@@ -314,7 +337,7 @@ class Sources:
 
     def is_common(self, word: str) -> bool:
         """Whether a robot says such a word of itself: "could", "nobody", "yes"."""
-        common = word in idle(self.language) or word in self._settled or len(word) < 2
+        common = word in idle(self.language) or word in self.settled or len(word) < 2
         return common or word in self._reported or word in words_of_phrases(self.language)
 
     @cached_property
@@ -331,6 +354,13 @@ class Sources:
             if each.value == word or (each.sort == "time" and word in each.value)
             for at in range(each.start, each.end)
         }
+
+
+def sort_of(literal: Literal) -> str | None:
+    """What sort of mention a literal is that nobody needs to say."""
+    if literal.role == COUNTED:
+        return "times"
+    return _SORTS.get(literal.role) if literal.role in NUMBERS | _LEFT_TO_THE_ROBOT else None
 
 
 def _tokens_of(found: Iterable[Mention]) -> frozenset[int]:

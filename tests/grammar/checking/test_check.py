@@ -1,0 +1,171 @@
+"""A program that does what somebody on the ward ordered passes the check; one that does something
+else does not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from grammar.checking import check
+from grammar.language import load_language
+from grammar.normal import normal
+from grammar.plan import Plan
+from grammar.planning.model.expansion import expanded
+from grammar.planning.turn import Turn
+from grammar.understanding import Context
+from tests.grammar.checking import orders
+from tests.grammar.checking.orders import ORDERS, Order
+from tests.grammar.ward import WARD
+
+each_order = pytest.mark.parametrize("order", ORDERS, ids=str)
+
+
+def kinds(order: Order, does: str) -> set[str]:
+    return {each.kind for each in order.checked(does).objections}
+
+
+@each_order
+def test_what_was_ordered_passes(order: Order) -> None:
+    assert order.checked().objections == ()
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        orders.elsewhere,
+        orders.with_another,
+        orders.with_other_numbers,
+        orders.with_an_invented_message,
+        orders.with_a_grave_deed,
+    ],
+)
+@each_order
+def test_what_nobody_ordered_is_objected_to(
+    order: Order, wrong: Callable[[Order], Iterator[str]]
+) -> None:
+    for does in wrong(order):
+        assert not order.checked(does).sound, does
+
+
+def test_the_objection_says_what_was_invented() -> None:
+    order = Order("en", "go to the pharmacy", 'goto("laundry")')
+    [first, *_] = order.checked().objections
+    assert (first.kind, first.about) == ("invented", "laundry")
+
+
+def test_what_is_left_out_is_told_of_by_its_words() -> None:
+    order = Order("en", "take the red cup from the kitchen to Alice", 'find("Alice")')
+    checked = order.checked()
+    assert {"red", "cup", "kitchen"} & {*checked.unused}
+    assert checked.doubts or not checked.sound
+
+
+@pytest.mark.parametrize(
+    ("language", "says", "does", "about"),
+    [
+        ("en", "go to the kitchen and then to the laundry", 'goto("kitchen")', "the laundry"),
+        ("en", "do not go to the kitchen", 'goto("kitchen")', "not"),
+        ("de", "Fahr nicht in die Küche.", 'goto("kitchen")', "nicht"),
+        ("fr", "Ne va pas à la cuisine.", 'goto("kitchen")', "pas"),
+        ("en", "if Bob is in the kitchen, go there", 'goto("kitchen")', "if"),
+        (
+            "en",
+            "go to every ward except ward 3",
+            'for room in places("ward"):\n    goto(room)',
+            "except",
+        ),
+        ("en", "go to the pharmacy at 3 pm", 'goto("pharmacy")', "3"),
+        ("en", "wait half an hour", "wait(30)", "half an hour"),
+        ("en", "speak French", 'set_language("de")', "French"),
+        ("en", "nod", 'gesture("wave")', "nod"),
+    ],
+)
+def test_words_that_turn_the_sense_must_show(
+    language: str, says: str, does: str, about: str
+) -> None:
+    objections = Order(language, says, does).checked().objections
+    assert ("unheeded", about) in {(each.kind, each.about) for each in objections}
+
+
+@pytest.mark.parametrize(
+    ("says", "does", "about"),
+    [
+        ("tell Bob that lunch is ready", 'say("Lunch is not ready.")', "not"),
+        ("tell Bob that lunch is ready", 'find("Bob")\nsay("Lunch is never ready.")', "never"),
+        ("put the red cup on the table", 'grab("red cup")\nput("red cup", "shelf")', "shelf"),
+        ("call my daughter", 'call("Dr Weber")', "Dr Weber"),
+        ("bring Alice the red cup", 'grab("stapler")\ngive("stapler")', "stapler"),
+        ("go to the pharmacy at 3 pm", 'while clock().time < "16:00":\n    wait(60)', "16:00"),
+        ("take Carol to radiology", 'goto("waiting room")\nguide("Carol", "radiology")', ""),
+    ],
+)
+def test_what_nobody_said_is_invented(says: str, does: str, about: str) -> None:
+    objections = Order("en", says, does).checked().objections
+    assert any(each.kind == "invented" and about in each.about for each in objections)
+
+
+def test_a_not_where_the_robot_has_looked_is_its_own_business() -> None:
+    order = Order(
+        "en",
+        "see whether Carol is in the waiting room and tell me",
+        'start = location()\nfound = find("Carol", "waiting room")\ngoto(start)\n'
+        'if found:\n    say("Carol is in the waiting room.")\n'
+        'else:\n    say("Carol is not in the waiting room.")',
+    )
+    assert order.checked().sound
+
+
+@pytest.mark.parametrize(
+    "says",
+    [
+        "could you please go to the pharmacy",
+        "hey robot, off to the pharmacy with you",
+        "go to the drugstore, thanks a lot",
+        "go to the pharmacy, will you?",
+    ],
+)
+def test_courtesies_ask_for_nothing(says: str) -> None:
+    assert Order("en", says, 'goto("pharmacy")').checked().sound
+
+
+def test_what_must_not_be_done_is_refused_whatever_the_program_is() -> None:
+    order = Order("en", "take Mrs Miller to the laundry by force", 'find("Mrs Miller")')
+    checked = order.checked()
+    assert {each.kind for each in checked.objections} >= {"refused"}
+    assert all(each.message for each in checked.objections if each.kind == "refused")
+
+
+def test_insults_are_not_said() -> None:
+    assert "refused" in kinds(ORDERS[5], 'find("Bob")\nsay("You stupid idiot.")')
+
+
+def test_what_was_planned_before_may_be_done_again() -> None:
+    language = load_language("en")
+    before = 'find("Bob")\nsay("Lunch is ready.")'
+    plan = normal(expanded(before, ["Bob"], WARD, language))
+    context = Context(plan=plan, text="tell Bob that lunch is ready")
+    order = Order("en", "and Alice too", 'find("Alice")\nsay("Lunch is ready.")')
+    assert order.checked(context=context).sound
+    assert order.checked().own == ("Lunch is ready.",)  # nobody has said so
+    assert order.checked(context=context).own == ()
+    other = order.checked('find("Alice")\nsay("Lunch is ready.")\ngoto("laundry")', context)
+    assert not other.sound
+
+
+def test_a_name_that_nothing_gives_is_told() -> None:
+    order = Order("en", "say hello", 'say("Hello")')
+    plan = normal(expanded('x = 1\nsay(f"{x}")', [], WARD, load_language("en")))
+    assert order.checked().sound
+    turn = Turn("say hello", WARD, load_language("en"))
+    objections = check(turn, Plan(plan.steps[1:])).objections
+    assert [each.about for each in objections if each.kind == "unbound"] == ["x"]
+
+
+def test_the_same_check_says_the_same_twice() -> None:
+    does = 'say("Beware of wild crocodiles, dangerous snakes and hungry lions.")'
+    order = Order("en", "say hello", does)
+    first, second = order.checked(), order.checked()
+    assert first.objections == second.objections
+    [own] = [each.about for each in first.objections if each.kind == "invented"]
+    assert own.split() == sorted(own.split())
