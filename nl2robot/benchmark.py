@@ -55,7 +55,7 @@ def _translate() -> Iterator[Figure]:
     times = [translate(sentence, knowledge).ms for sentence in sentences]
     what = f"{len(sentences)} sentences"
     yield Figure("translate", f"median of {what}", statistics.median(times), "ms", "5")
-    yield Figure("translate", f"p99 of {what}", _percentile(times, 99), "ms", "50")
+    yield Figure("translate", f"p99 of {what}", percentile(times, 99), "ms", "50")
     long_sentence = _of_words(60, sentences)
     times = [translate(long_sentence, knowledge).ms for _ in range(9)]
     yield Figure("translate", "a command of 60 words", statistics.median(times), "ms", "50")
@@ -208,7 +208,7 @@ def megabytes(pid: int) -> float:
     return int(status.split("VmRSS:")[1].split()[0]) / 1024
 
 
-def _percentile(values: Sequence[float], percent: int) -> float:
+def percentile(values: Sequence[float], percent: int) -> float:
     return statistics.quantiles(values, n=100)[percent - 1]
 
 

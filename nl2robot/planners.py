@@ -36,8 +36,9 @@ def _rules() -> Planner:
 
 def _model() -> Planner:
     from grammar.planning.model.planner import ModelPlanner
+    from nl2robot.deliberation.sufficing import will_do
 
-    return ModelPlanner(language_model())
+    return ModelPlanner(language_model(), will_do)
 
 
 PLANNERS: Final[dict[str, Callable[[], Planner]]] = {"grammar": _rules, "model": _model}

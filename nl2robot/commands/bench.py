@@ -1,22 +1,27 @@
 """`nl2robot bench`: how fast everything is on this machine, in one table; `nl2robot bench hearing`:
-how well it hears; `nl2robot bench console`: how fast the web console is, in a real browser."""
+how well it hears; `nl2robot bench console`: how fast the web console is, in a real browser;
+`nl2robot bench planner`: how fast the language model is."""
 
 from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from nl2robot.errors import ExitStatus
 
 if TYPE_CHECKING:
+    from nl2robot.benchmark import Figure
     from nl2robot.terminal import Terminal
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="as one JSON object")
     parser.add_argument(
-        "only", nargs="*", help="the parts to measure (default: all but hearing and console)"
+        "only",
+        nargs="*",
+        help="parts (default: all but hearing, console and planner)",
     )
     hearing = parser.add_argument_group(
         "hearing", "with the part hearing: commands and answers, synthesised and in noise"
@@ -38,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
     table = terminal.table("part", "what", "measured", "aim")
     results = []
     for part in options.only or PARTS:
-        for figure in measure(part):
+        for figure in _planner() if part == "planner" else measure(part):
             results.append(figure)
             table.add_row(figure.part, figure.what, figure.shown, figure.aim)
     if options.json:
@@ -46,6 +51,12 @@ def run(options: argparse.Namespace) -> int:
     else:
         terminal.console.print(table)
     return ExitStatus.OK
+
+
+def _planner() -> Iterator[Figure]:
+    from nl2robot.planner_benchmark import measure
+
+    return measure()
 
 
 def _console(options: argparse.Namespace, terminal: Terminal) -> int:

@@ -23,9 +23,12 @@ import msgspec
 
 from grammar.planning.model.request import Interrupted, Request, Unavailable, Written
 from nl2robot.language_model.messages import Cancel, Done, Failed, Growing, Ready, Report, Write
+from nl2robot.memory import free_megabytes, used_megabytes
 
 STARTS_WITHIN: Final = 60.0
 """Seconds that loading the model may take."""
+BESIDES_FILES: Final = 300
+"""Megabytes that a model needs besides what its files have."""
 LEFT_ALONE: Final = 30.0
 """Seconds after a start that failed, before the next is tried."""
 ENDS_WITHIN: Final = 5.0
@@ -142,6 +145,7 @@ class Process:
                     "The language model could not be started a moment ago."
                     " Try again in half a minute, or say it in other words."
                 )
+            self._need_memory()
             worker = _Worker(self._folders)
             with self._state:
                 self._running = worker
@@ -155,6 +159,24 @@ class Process:
                 self._not_before = time.monotonic() + LEFT_ALONE
                 raise
         return worker
+
+    def _need_memory(self) -> None:
+        """A process that the system kills for want of memory may take others with it: where there
+        is too little, none is begun. Raises `Unavailable`."""
+        needed = BESIDES_FILES + sum(
+            path.stat().st_size / 1e6 for path in Path(self._folders[0]).glob("*")
+        )
+        free = free_megabytes()
+        if free is not None and free < needed:
+            raise Unavailable(
+                f"The language model needs about {needed:.0f} MB of memory, and only {free:.0f} MB"
+                " are free. Close other programs, or say it in other words."
+            )
+
+    def memory(self) -> float | None:
+        """How many megabytes its process uses; None where there is none, or nobody knows."""
+        worker = self._running
+        return None if worker is None else used_megabytes(worker.pid)
 
     def _lost(self) -> Unavailable:
         """The process is gone, or has to go."""

@@ -113,6 +113,27 @@ class OnnxModel:
             return branches
         return self._read(pieces)
 
+    def read_along(self, branch: Branch, tokens: Sequence[int]) -> list[Branch]:
+        """Read a few tokens, at least one: the branch behind each of them. Raises as `read`."""
+        if self.used + len(tokens) > self.room:
+            raise Full
+        places = range(len(branch.tokens), len(branch.tokens) + len(tokens))
+        start = self.used
+        sees = np.full((1, 1, len(tokens), start + len(tokens)), _UNSEEN, np.float32)
+        for first, last in branch.spans:
+            sees[..., first:last] = 0
+        sees[0, 0, :, start:] = _earlier(len(tokens))
+        scores = self._computed([*tokens], [*range(len(tokens))], [*places], sees)
+        self.used += len(tokens)
+        return [
+            Branch(
+                (*branch.tokens, *tokens[: number + 1]),
+                branch.with_rows(start, start + number + 1),
+                row,
+            )
+            for number, row in enumerate(scores)
+        ]
+
     def _read(self, pieces: Sequence[tuple[Branch, Sequence[int]]]) -> list[Branch]:
         new = [token for _, tokens in pieces for token in tokens]
         total = self.used + len(new)
@@ -125,7 +146,7 @@ class OnnxModel:
             for start, end in branch.spans:
                 sees[..., first:last, start:end] = 0
             own = slice(self.used + first, self.used + last)
-            sees[0, 0, first:last, own] = np.triu(np.full((len(tokens),) * 2, _UNSEEN), 1)
+            sees[0, 0, first:last, own] = _earlier(len(tokens))
             places += range(len(branch.tokens), len(branch.tokens) + len(tokens))
             asked.append(last - 1)
             rows = branch.with_rows(own.start, own.stop)
@@ -213,3 +234,8 @@ class OnnxModel:
         for name, each in self._kept.items():
             each[:, :, :rows] = kept[name]
         self.used = rows
+
+
+def _earlier(tokens: int) -> NDArray[np.float64]:
+    """What each of some new tokens sees of them: itself and those before it."""
+    return np.triu(np.full((tokens, tokens), _UNSEEN), 1)

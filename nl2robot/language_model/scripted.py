@@ -35,7 +35,7 @@ class ScriptedWriter:
         self._cancelled = False
         if self.ill:
             raise Unavailable(self.ill)
-        programs = self._programs.get(request.words.said, ())
+        programs = self._programs.get(request.words.said, ())[: request.most]
         if programs and on_text is not None:
             lines = programs[0].splitlines(keepends=True)
             on_text(lines[0])

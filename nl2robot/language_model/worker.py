@@ -13,7 +13,10 @@ import os
 import sys
 import threading
 import time
+from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import dataclass
+from itertools import takewhile
 from pathlib import Path
 from queue import SimpleQueue
 from typing import BinaryIO, Final
@@ -22,7 +25,9 @@ import msgspec
 
 from grammar.planning.model.decoding import Decoder, Full
 from grammar.planning.model.recogniser import Partial
-from grammar.planning.model.request import Request
+from grammar.planning.model.request import Piece, Request, Written
+from grammar.planning.model.vocabulary import Vocabulary
+from nl2robot.language_model.habits import HABITS, Habits, guessed
 from nl2robot.language_model.messages import (
     Cancel,
     Done,
@@ -39,14 +44,34 @@ from nl2robot.language_model.remembered import remembered
 NICENESS: Final = 10
 
 
-class _Reading:
-    """The model as `grammar.planning.model.decoding.LanguageModel` wants it."""
+class Reading:
+    """The model as `grammar.planning.model.decoding.LanguageModel` wants it; without habits it
+    guesses nothing."""
 
-    def __init__(self, model: OnnxModel) -> None:
+    def __init__(self, model: OnnxModel, habits: Habits | None = HABITS) -> None:
+        self._tokens = model.tokens
         self.encode = model.tokens.encode
         self.text = model.tokens.text
         self.read = model.read
+        self.read_along = model.read_along
         self.following = model.following
+        self._habits = habits
+
+    def guess(self, branch: Branch, tokens: Sequence[int]) -> list[int]:
+        if self._habits is None:
+            return []
+        known = len(self._tokens)  # another model may have others
+        guesses = guessed(self._habits, (*branch.tokens, *tokens))
+        return list(takewhile(lambda token: token < known, guesses))
+
+
+@dataclass(frozen=True)
+class _Last:
+    """What was asked last, and the first program for it: whoever asks again wants others, too."""
+
+    asked: tuple[str, tuple[Piece, ...], Vocabulary]
+    decoder: Decoder
+    first: Written | None
 
 
 class Worker:
@@ -61,6 +86,8 @@ class Worker:
         self._now: int | None = None
         self._lock = threading.Lock()
         self._model = OnnxModel(folder, learned=learned)
+        self._reading = Reading(self._model)
+        self._last: _Last | None = None
         self._prefix = ""
         self._begin: Branch | None = None
 
@@ -109,26 +136,38 @@ class Worker:
 
     def _write(self, order: Write) -> None:
         request = order.request
-        until = time.monotonic() + request.seconds
-        begin = self._begun(request)
-        if not request.said:
+        until = _now() + request.seconds
+        last = self._last
+        if last is None or last.asked != (request.prefix, request.said, request.words):
+            last = self._last = None
+            last = self._first(order, until)
+        if last is None or last.first is None:
             self.tell(Done(order.id, ()))
             return
+        self._last = last
+        others = last.decoder.others(last.first, request.most - 1, lambda: _now() >= until)
+        self.tell(Done(order.id, (last.first, *others)))
+
+    def _first(self, order: Write, until: float) -> _Last | None:
+        """Write the first program; None if it was only to get ready for one."""
+        request = order.request
+        begin = self._begun(request)
+        if not request.said:
+            return None
         tokens = [
             token
             for piece in request.said
             for token in self._model.tokens.encode(piece.text, control=piece.marks)
         ]
         [prompt] = self._model.read([(begin, tokens)])
-        decoder = Decoder(_Reading(self._model))
-        written = decoder.written(
+        decoder = Decoder(self._reading)
+        first = decoder.first(
             prompt,
             Partial.begin(request.words),
-            request.most,
             lambda text: self.tell(Growing(order.id, text)),
-            lambda: time.monotonic() >= until,
+            lambda: _now() >= until,
         )
-        self.tell(Done(order.id, tuple(written)))
+        return _Last((request.prefix, request.said, request.words), decoder, first)
 
     def _begun(self, request: Request) -> Branch:
         """What is read before every sentence, and nothing behind it."""
@@ -138,6 +177,10 @@ class Worker:
             self._prefix = request.prefix
         self._model.forget(len(self._begin.tokens))
         return self._begin
+
+
+def _now() -> float:
+    return time.monotonic()
 
 
 def main() -> None:

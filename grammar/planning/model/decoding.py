@@ -3,6 +3,10 @@
 The program of the likeliest tokens is written first. Wherever another token would have been nearly
 as likely, another draft may be begun there later, so that drafts differ where the model is in doubt
 and share all that they have in common.
+
+A model reads several tokens in hardly more time than one. So how the first program goes on is
+guessed, and where the model would have chosen the same, it need not be asked again (speculative
+decoding: Leviathan et al., arXiv:2211.17192).
 """
 
 from __future__ import annotations
@@ -13,7 +17,7 @@ from dataclasses import dataclass, field
 from itertools import islice
 from typing import Any, Final, Protocol
 
-from grammar.planning.model.recogniser import Partial
+from grammar.planning.model.recogniser import CLARIFY, REFUSE, Partial
 from grammar.planning.model.request import Written
 
 LOOKED_AT: Final = 24
@@ -22,6 +26,7 @@ FURTHER: Final = 2000
 """Tokens that are looked through where none of these may follow."""
 MOST_TOKENS: Final = 320
 """Of one program."""
+WAYS_OUT: Final = (f"{REFUSE}(", f"{CLARIFY}(")
 LEAST_LIKELY: Final = 4.0
 """By how much less likely than the first another program may be, as a logarithm."""
 
@@ -44,6 +49,15 @@ class LanguageModel(Protocol):
     def read(self, pieces: Sequence[tuple[Any, Sequence[int]]]) -> list[Any]:
         """Read tokens behind each of some branches; the branches as they are then. Raises
         `Full`."""
+        ...
+
+    def read_along(self, branch: Any, tokens: Sequence[int]) -> list[Any]:
+        """Read tokens one behind the other: the branch behind each of them. Raises `Full`."""
+        ...
+
+    def guess(self, branch: Any, tokens: Sequence[int]) -> Sequence[int]:
+        """What probably comes after these tokens behind a branch; costs nothing if it is wrong but
+        a little time."""
         ...
 
     def following(self, branch: Any) -> Iterator[tuple[int, float]]:
@@ -105,16 +119,33 @@ class Decoder:
         token each time, then the others, the likeliest first; none if that one comes to nothing.
         `prompt` is the branch behind which they are written. `on_text` is told the first one as it
         grows. Once there was `enough`, no token is written any more."""
+        first = self.first(prompt, begun, on_text, enough)
+        if first is not None:  # else its beginnings are no programs that anybody wants
+            yield first
+            yield from self.others(first, most - 1, enough)
+
+    def first(
+        self,
+        prompt: Any,
+        begun: Partial,
+        on_text: Callable[[str], None] | None = None,
+        enough: Callable[[], bool] | None = None,
+    ) -> Written | None:
+        """The first of these."""
         self.forks = []
-        enough = enough or _never
-        first = next(self._grown([_Growing(prompt, begun, 0.0)], enough, on_text), None)
-        if first is None:
-            return  # its beginnings are no programs that anybody wants
-        yield first
+        growing = [_Growing(prompt, begun, 0.0)]
+        return next(self._grown(growing, enough or _never, on_text), None)
+
+    def others(
+        self, first: Written, most: int, enough: Callable[[], bool] | None = None
+    ) -> Iterator[Written]:
+        """The others, once the first is written."""
+        if first.text.startswith(WAYS_OUT):
+            return  # what else could be done is not asked
         least = first.score - LEAST_LIKELY
-        others = [self._begun(fork) for fork in self._likeliest(first.text, least, most - 1)]
+        others = [self._begun(fork) for fork in self._likeliest(first.text, least, most)]
         known = {first.text}
-        for written in sorted(self._grown(others, enough, least=least), key=_by_score):
+        for written in sorted(self._grown(others, enough or _never, least=least), key=_by_score):
             if written.text not in known:
                 known.add(written.text)
                 yield written
@@ -159,16 +190,31 @@ class Decoder:
                 yield Written(each.draft.text, each.score, math.exp(each.least), each.tokens)
             if not growing or enough():
                 return
+            self.steps += 1
             try:
+                if alone:
+                    self._read_on(growing[0], on_text)
+                    continue
                 branches = self.model.read([(each.branch, each.pending) for each in growing])
             except Full:
                 return  # a half-written program is none
-            self.steps += 1
             for each, branch in zip(growing, branches, strict=True):
                 each.branch = branch
-                self._step(each, fork=alone)
-                if on_text is not None:
-                    on_text(each.draft.text)
+                self._step(each, fork=False)
+
+    def _read_on(self, each: _Growing, on_text: Callable[[str], None] | None) -> None:
+        """Read what was chosen and how it may go on, and choose as long as that is what was
+        guessed."""
+        guesses = self.model.guess(each.branch, each.pending)
+        branches = self.model.read_along(each.branch, (*each.pending, *guesses))
+        behind = branches[len(each.pending) - 1 :]
+        for branch, guess in zip(behind, (*guesses, None), strict=True):
+            each.branch = branch
+            self._step(each, fork=True)
+            if on_text is not None:
+                on_text(each.draft.text)
+            if each.done or each.dead or each.pending != (guess,):
+                return
 
     def _step(self, each: _Growing, *, fork: bool) -> None:
         """Choose what follows; remember what else might."""

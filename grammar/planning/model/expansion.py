@@ -16,7 +16,7 @@ import msgspec
 from grammar.identifiers import Identifiers, all_names, names_in
 from grammar.language import Language
 from grammar.lexicon import Lexicon
-from grammar.naming import naming
+from grammar.naming import joined_up, naming
 from grammar.plan import (
     Ask,
     Call,
@@ -204,7 +204,7 @@ class Expansion:
         name = thing.value if isinstance(thing, Text) else ""
         known = any(person.name == name for person in self.lexicon.people)
         spoken = called(name) if known else speech(self.language.code).nouns.the(called(name))
-        told = self.language.phrase("not_found", thing=spoken)
+        told = joined_up(self.language.phrase("not_found", thing=spoken), self.language)
         return (
             Call("goto", {"place": Recall(self.start)}),
             Call("say", {"text": Text(told)}),

@@ -5,7 +5,10 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from typing import Final
+
+import msgspec
 
 from grammar.normal import normal
 from grammar.planning.model.expansion import expanded, program_of
@@ -39,23 +42,43 @@ class ModelPlanner:
 
     name = NAME
 
-    def __init__(self, writer: Writer) -> None:
+    def __init__(
+        self, writer: Writer, will_do: Callable[[Turn, Draft], bool] | None = None
+    ) -> None:
+        """`will_do` says of a first draft that no others are needed to know what is meant; without
+        it, there are always several."""
         self._writer = writer
+        self._will_do = will_do
         self._turns = Turns()
 
     def plan(self, turn: Turn, watch: Watch) -> Answer:
         if len(turn.text) > LONGEST:
             return Refusal(turn.language.phrase("too_long"))
         watch.thinking()
-        asked = request(turn, turn.context.written, MOST_DRAFTS)
         try:
             with self._turns.taken(watch), watch.cancelling(self._writer.cancel):
-                written = self._writer.write(asked, lambda text: self._grown(text, turn, watch))
+                written = self._written(turn, watch)
         except WritingInterrupted as error:
             raise Interrupted from error
         except Unavailable as error:
             return Refusal(str(error))
         return self._answer(turn, written)
+
+    def _written(self, turn: Turn, watch: Watch) -> list[Written]:
+        """One program, if that will do; else several."""
+
+        def grown(text: str) -> None:
+            self._grown(text, turn, watch)
+
+        several = request(turn, turn.context.written, MOST_DRAFTS)
+        if self._will_do is not None:
+            written = self._writer.write(msgspec.structs.replace(several, most=1), grown)
+            if not written or _WAY_OUT.match(written[0].text):
+                return written
+            draft = _draft(turn, written[0], 1.0)
+            if draft is not None and self._will_do(turn, draft):
+                return written
+        return self._writer.write(several, grown)
 
     def _grown(self, text: str, turn: Turn, watch: Watch) -> None:
         """What was written so far."""

@@ -50,7 +50,8 @@ class Written(msgspec.Struct, frozen=True):
 
 
 class Writer(Protocol):
-    """A language model at work, wherever it runs."""
+    """A language model at work, wherever it runs. Asked for more programs of the same sentence, it
+    goes on from where it was."""
 
     def write(
         self, request: Request, on_text: Callable[[str], None] | None = None
