@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import atexit
 import functools
+import importlib.util
 import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -71,7 +72,11 @@ def _others() -> dict[str, Callable[[], Planner]]:
 
 def available(name: str) -> bool:
     """Whether a planner can be used here."""
-    return name != "model" or installed_model() is not None
+    return name != "model" or (installed_model() is not None and _has_runtime())
+
+
+def _has_runtime() -> bool:
+    return importlib.util.find_spec("tiktoken") is not None
 
 
 def installed_model() -> Path | None:
@@ -107,6 +112,11 @@ def language_model() -> Process:
         raise UserError(
             "There is no language model here. Run `nl2robot models get planner-large` to fetch it"
             " (1.1 GB; `planner`: 0.5 GB), or say it as in `nl2robot phrases`."
+        )
+    if not _has_runtime():
+        raise UserError(
+            "The language model is here, but not what runs it. Run `pip install"
+            " 'nl2robot[planner]'`."
         )
     from nl2robot.language_model.client import Process
 

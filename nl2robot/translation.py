@@ -6,6 +6,7 @@ Kept light, because it must answer at once: it imports the grammar and the world
 from __future__ import annotations
 
 import time
+from collections import Counter
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import replace
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import msgspec
 
 from grammar.language import load_language
-from grammar.plan import calls, to_data
+from grammar.plan import Plan, calls, to_data
 from grammar.planning.planner import (
     Answer,
     Drafts,
@@ -37,6 +38,9 @@ if TYPE_CHECKING:
     from nl2robot.history import History, Record
     from nl2robot.teaching import Pending, Reply
 
+
+POLITE = 3
+"""Words that an answer may have besides those of what was offered."""
 
 Status = Literal["ok", "clarify", "rejected"]
 
@@ -156,10 +160,7 @@ def translate(
     before = talk.context.text if talk.context else ""
     turn = _turn(utterance, knowledge, language, talk.context)
     chosen = _chosen(utterance, turn, talk)
-    answer = chosen or _planned(turn, knowledge, planner, watch)
-    if isinstance(answer, Refusal):
-        other = _in_another_language(utterance, knowledge, language)
-        turn, answer = other if other is not None else (turn, answer)
+    turn, answer = (turn, chosen) if chosen else _planned(turn, knowledge, planner, watch)
     if watch.cancelled:  # nobody waits for it, so nothing that is said later can refer to it
         raise Interrupted
     match answer:
@@ -198,19 +199,38 @@ def _turn(utterance: str, knowledge: Knowledge, language: str, context: Context 
 Decided = Service | Question | Refusal | Open | Chosen
 
 
-def _planned(turn: Turn, knowledge: Knowledge, name: str, watch: Watch) -> Decided:
+def _planned(turn: Turn, knowledge: Knowledge, name: str, watch: Watch) -> tuple[Turn, Decided]:
     """What the planner of this name makes of a turn. The rules come first where nobody has chosen:
     what they know they know at once; what they do not, a language model may."""
-    if name != AUTO:
-        return _decided(turn, planner(name).plan(turn, watch), knowledge)
-    by_rules = _decided(turn, planner("grammar").plan(turn, watch), knowledge)
-    final = not isinstance(by_rules, Refusal) or by_rules.final
-    if final or not turn.tokens or not available("model"):
-        return by_rules
+    first = "grammar" if name == AUTO else name
+    decided = _decided(turn, planner(first).plan(turn, watch), knowledge)
+    if isinstance(decided, Refusal):
+        other = _in_another_language(turn.text, knowledge, turn.language.code)
+        if other is not None:
+            return other
+    if name != AUTO or not turn.tokens or not available("model"):
+        return turn, decided
+    open_ = isinstance(decided, Refusal) and not decided.final
+    if not open_ and not (isinstance(decided, Chosen) and _loses(turn, decided.plan)):
+        return turn, decided
     by_model = _decided(turn, planner("model").plan(turn, watch), knowledge)
     if isinstance(by_model, Refusal) and not by_model.final:
-        return by_rules  # the rules say which word they do not know
-    return by_model
+        return turn, decided  # the rules say which word they do not know
+    return turn, by_model
+
+
+def _loses(turn: Turn, plan: Plan) -> bool:
+    """Whether a plan for a sentence that says something only after another one ("and ward b?") does
+    less than that one's, which a language model wrote: rules know too little of what that was."""
+    last = turn.context.plan
+    if not turn.context.written or last is None:
+        return False
+    if not Counter(each.method for each in calls(last)) - Counter(
+        each.method for each in calls(plan)
+    ):
+        return False
+    alone = replace(turn, context=Context())
+    return not isinstance(planner("grammar").plan(alone, Watch()), Drafts)
 
 
 def _decided(turn: Turn, answer: Answer, knowledge: Knowledge) -> Decided:
@@ -229,6 +249,9 @@ def _chosen(utterance: str, turn: Turn, talk: Talk) -> Chosen | None:
         return None
     from robot_api.capabilities.matching import match_answer
 
+    longest = max(len(each.told.split()) for each in offers) + POLITE
+    if len(utterance.split()) > longest:  # it says more: another order
+        return None
     said = match_answer(utterance, [each.told for each in offers], turn.language.code)
     return next((each.chosen for each in offers if each.told == said), None)
 

@@ -14,6 +14,9 @@ NAME: Final = "grammar"
 _OPEN: Final = frozenset({"not_understood_at_all"})
 """Reasons of the rules that another planner may know better."""
 
+_MUST_NOT: Final = ("no_harm", "no_medicine", "dismissed")
+"""What is said where the rules have understood that nothing shall be done."""
+
 
 class RulesPlanner:
     """Understands what the rules can say, as a whole or not at all."""
@@ -40,6 +43,8 @@ def _is_final(turn: Turn, understood: Understanding) -> bool:
     business: not only because they do not understand it."""
     tokens = turn.tokens
     if not tokens or forbidden(tokens, turn.language) is not None:
+        return True
+    if understood.message in [turn.language.phrases.get(each) for each in _MUST_NOT]:
         return True
     reason = why_not(tokens, turn.language, turn.reader.names.called)
     return reason not in _OPEN and understood.message == turn.language.phrases.get(reason)

@@ -1,11 +1,13 @@
-"""`nl2robot demo`: what `make run` shows. A typed and a spoken command in the simulated hospital.
+"""`nl2robot demo`: what `make run` shows. A typed and a spoken command in the simulated hospital,
+and one that a language model plans.
 
-Asks nothing: this is the embedded simulator, and the two commands are known.
+Asks nothing: this is the embedded simulator, and the commands are known.
 """
 
 from __future__ import annotations
 
 import argparse
+import os
 from pathlib import Path
 
 from nl2robot.commands.options import open_log, user_name
@@ -23,6 +25,11 @@ TYPED = (
     " take them there and come back; do that three times,"
     " then say that three visitors have been shown the way"
 )
+PLANNED = (
+    "I am a bit worried about Alice, would you look in on her, ask how she is feeling"
+    " and tell me what she says"
+)
+"""What the rules do not know."""
 RECORDING = Path(__file__).parents[1] / "data" / "recordings" / "pharmacy.wav"
 
 
@@ -39,11 +46,14 @@ def run(options: argparse.Namespace) -> int:
     typed = _perform(terminal, log, TYPED, None, folder / "typed")
     heard = _hear(terminal)
     spoken = _perform(terminal, log, heard, heard, folder / "spoken") if heard else ExitStatus.OK
+    planned = ExitStatus.OK
+    if _has_model(terminal):
+        planned = _perform(terminal, log, PLANNED, None, folder / "planned")
     terminal.console.print(
         '\nNow in your own words: [bold].venv/bin/nl2robot run "bring the red cup to Alice"[/]'
         "\nIn the browser:         [bold].venv/bin/nl2robot serve --open[/]"
     )
-    return typed or spoken
+    return typed or spoken or planned
 
 
 def _perform(
@@ -78,3 +88,25 @@ def _hear(terminal: Terminal) -> str | None:
     ear = Ear(Knowledge(load_world(DEFAULT_WORLD)), "en")
     terminal.console.print(f"\nListening to {RECORDING.name} ...")
     return ear.hear(RECORDING).text
+
+
+def _has_model(terminal: Terminal) -> bool:
+    """Whether there is a language model, fetched if need be; told why where there is none."""
+    from nl2robot.download import shown
+    from nl2robot.models import LARGE, get
+    from nl2robot.planners import CHOSEN
+
+    chosen = os.environ.get(CHOSEN, LARGE)
+    if chosen == "none":
+        terminal.console.print(f"\nThe language model is left out, as {CHOSEN} says.")
+        return False
+    terminal.console.print(
+        f"\nThe language model ({CHOSEN}=none leaves it out) plans what the rules do not know."
+    )
+    try:
+        with shown() as progress:
+            get(chosen, progress)
+    except UserError as error:
+        terminal.console.print(f"It is left out. {error}", markup=False)
+        return False
+    return True

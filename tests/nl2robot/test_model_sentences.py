@@ -94,7 +94,6 @@ def test_what_the_rules_know_never_reaches_the_model(
 @pytest.mark.parametrize(
     ("language", "words"), [("en", "arrête"), ("en", "sprich Deutsch"), ("de", "speak English")]
 )
-@pytest.mark.xfail(reason="translation.py: the model comes before other languages", strict=True)
 def test_who_cries_stop_in_another_language_does_not_wait_for_the_model(
     language: str, words: str, scripted: Scripted
 ) -> None:
@@ -122,7 +121,6 @@ def test_what_is_refused_for_good_never_reaches_the_model(
         ("de", "gib Henry seine Medizin"),
     ],
 )
-@pytest.mark.xfail(reason="rules.py: a refusal that was understood is not final", strict=True)
 def test_medicine_that_the_rules_have_understood_never_reaches_the_model(
     language: str, words: str, scripted: Scripted
 ) -> None:
@@ -151,7 +149,6 @@ def test_control_of_a_conversation_never_reaches_the_model(
 @pytest.mark.parametrize(
     ("language", "words"), [("en", "never mind"), ("de", "vergiss es"), ("fr", "laisse tomber")]
 )
-@pytest.mark.xfail(reason="rules.py: a refusal that was understood is not final", strict=True)
 def test_nor_where_nothing_was_said_before(language: str, words: str, scripted: Scripted) -> None:
     writer = scripted(Anything('goto("ward b")\n'))
     said(words, language)
@@ -423,10 +420,9 @@ def test_another_order_leaves_the_question(scripted: Scripted) -> None:
     assert (answer.source, answer.program) == ("grammar", 'robot.goto("ward b")\n')
 
 
-@pytest.mark.xfail(reason="translation._chosen: an order with the words of an offer is one")
 def test_an_order_that_says_more_is_no_answer(scripted: Scripted) -> None:
     _, talk, _ = undecided(scripted, "en")
-    answer = said("go to ward b, say hello there to Henry and dock", talk=talk)
+    answer = said("go to ward b, say hello to Henry and come back", talk=talk)
     assert "ward b" in str(answer.program)
 
 

@@ -137,6 +137,8 @@ def _way_out(turn: Turn, way: str, reason: str, words: str | None) -> Answer:
     phrase = _SAME.get((way, reason), f"{way}_{reason}")
     if words and f"{phrase}_of" in turn.language.phrases:
         phrase = f"{phrase}_of"
+    if phrase not in turn.language.phrases:  # a reason that nobody knows
+        return Refusal(turn.language.phrase("not_understood_at_all"), context=turn.context)
     message = turn.language.phrase(phrase, part=words or "")
     if way == CLARIFY:
         return Question(message, context=turn.context)
