@@ -11,7 +11,8 @@ from typing import Final
 import msgspec
 
 from grammar.normal import normal
-from grammar.planning.model.expansion import expanded, program_of
+from grammar.planning.model.expansion import expanded
+from grammar.planning.model.expressions import CALLS
 from grammar.planning.model.prompt import request, vocabulary
 from grammar.planning.model.recogniser import CLARIFY, REFUSE
 from grammar.planning.model.request import Interrupted as WritingInterrupted
@@ -68,7 +69,7 @@ class ModelPlanner:
         """One program, if that will do; else several."""
 
         def grown(text: str) -> None:
-            self._grown(text, turn, watch)
+            self._grown(text, watch)
 
         several = request(turn, turn.context.written, MOST_DRAFTS)
         if self._will_do is not None:
@@ -80,12 +81,12 @@ class ModelPlanner:
                 return written
         return self._writer.write(several, grown)
 
-    def _grown(self, text: str, turn: Turn, watch: Watch) -> None:
+    def _grown(self, text: str, watch: Watch) -> None:
         """What was written so far."""
         if watch.cancelled:  # a cancellation that came before the writer had begun was lost on it
             self._writer.cancel()
         else:
-            watch.writing(_shown(text, turn))
+            watch.writing(_shown(text))
 
     def _answer(self, turn: Turn, written: list[Written]) -> Answer:
         """The plans of what was written; the way out if that is what was written first."""
@@ -145,14 +146,13 @@ def _way_out(turn: Turn, way: str, reason: str, words: str | None) -> Answer:
     return Refusal(message, final=reason in ("dangerous", "medical"), context=turn.context)
 
 
-def _shown(text: str, turn: Turn) -> str:
-    """What was written so far, as a program that people see; only whole lines can be that."""
-    *whole, rest = text.split("\n")
-    lines: list[str] = []
-    for line in whole:
-        try:
-            lines.append(program_of(line.strip(), turn.language).strip())
-        except NotAPlan:  # "if ...:" alone is no program
-            lines.append(line.strip())
-        lines[-1] = line[: len(line) - len(line.lstrip())] + lines[-1]
-    return "\n".join([*lines, rest])
+_QUOTED: Final = re.compile(r'("(?:[^"\\]|\\.)*"?)')
+_CALLED: Final = re.compile(rf"(?<![\w.])({'|'.join(sorted(CALLS))})(?=\()")
+
+
+def _shown(text: str) -> str:
+    """What was written so far, as people see programs."""
+    parts = _QUOTED.split(text)  # every other part is quoted
+    return "".join(
+        part if number % 2 else _CALLED.sub(r"robot.\1", part) for number, part in enumerate(parts)
+    )

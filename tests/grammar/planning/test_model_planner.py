@@ -119,7 +119,7 @@ def test_whoever_waits_sees_what_is_written(scripted: Scripted) -> None:
     watch = Watch(lambda: thinking.append(True), shown.append)
     assert drafts(planned(scripted({SAYS: [text]}), watch))
     assert thinking == [True]
-    assert shown[0].startswith('if sees("Bob"):')
+    assert shown[0].startswith('if robot.sees("Bob"):')
     assert "    robot.say('Tea!')" in shown[-1] or '    robot.say("Tea!")' in shown[-1]
 
 
