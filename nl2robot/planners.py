@@ -12,7 +12,9 @@ import atexit
 import functools
 import importlib.util
 import os
+import threading
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -102,6 +104,21 @@ def learned(code: str) -> Path | None:
     """What this model has learned for this project: a file of `language_model.changes`."""
     path = Path(__file__).parent / "data" / "learned" / f"{code}.npz"
     return path if path.exists() else None
+
+
+def get_ready() -> None:
+    """Load the language model, if there is one, in the background: the first sentence that needs it
+    shall not wait for that."""
+
+    def load() -> None:
+        from grammar.planning.model.prompt import PREFIX
+        from grammar.planning.model.request import Interrupted, Unavailable
+
+        with suppress(Interrupted, Unavailable, UserError):  # told when it is needed
+            language_model().get_ready(PREFIX)
+
+    if available("model"):
+        threading.Thread(target=load, name="getting ready", daemon=True).start()
 
 
 @functools.cache

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import yaml
 
+from nl2robot import planners
 from nl2robot.commands.options import add_language, add_planner, add_robot, add_sound
 from nl2robot.commands.run import open_session
 from nl2robot.errors import ExitStatus
@@ -50,6 +51,8 @@ def run(options: argparse.Namespace) -> int:
         open_session(options, terminal=terminal, duplex=duplex) as (session, _),
     ):
         session.listens = session.terminal.somebody_is_there
+        if options.robot == "sim" and options.planner != "grammar":
+            planners.get_ready()
         session.terminal.console.print(session.terminal.words["greeting"], markup=False)
         while (line := session.next_line() or _next_line(session)) is not None:
             words = line.strip()

@@ -6,6 +6,7 @@ import argparse
 import socket
 import webbrowser
 
+from nl2robot import planners
 from nl2robot.commands.options import (
     add_seed,
     add_sound,
@@ -59,6 +60,7 @@ def run(options: argparse.Namespace) -> int:
             console=Console,
         ) as station,
     ):
+        planners.get_ready()
         station.server.serve_forever(_open_page if options.open else _say_where)
     return ExitStatus.OK
 

@@ -224,17 +224,6 @@ class OnnxModel:
         """Give up all rows from this one on."""
         self.used = used
 
-    def kept(self, rows: int) -> dict[str, NDArray[np.float16]]:
-        """The keys and values of the first rows, in half the bytes."""
-        return {name: each[:, :, :rows].astype(np.float16) for name, each in self._kept.items()}
-
-    def restore(self, kept: dict[str, NDArray[np.float16]], rows: int) -> None:
-        """Put back what `kept` gave. Raises `KeyError` or `ValueError` if it is of another
-        model."""
-        for name, each in self._kept.items():
-            each[:, :, :rows] = kept[name]
-        self.used = rows
-
 
 def _earlier(tokens: int) -> NDArray[np.float64]:
     """What each of some new tokens sees of them: itself and those before it."""

@@ -39,7 +39,6 @@ from nl2robot.language_model.messages import (
     Write,
 )
 from nl2robot.language_model.model import Branch, Cancelled, OnnxModel
-from nl2robot.language_model.remembered import remembered
 
 NICENESS: Final = 10
 
@@ -78,7 +77,6 @@ class Worker:
     """Does what it is told, one order after the other; only a cancellation overtakes."""
 
     def __init__(self, folder: Path, learned: Path | None, out: BinaryIO) -> None:
-        self._folder = folder
         self._out = out
         self._encode = msgspec.json.Encoder().encode
         self.orders: SimpleQueue[Write | None] = SimpleQueue()
@@ -173,7 +171,9 @@ class Worker:
         """What is read before every sentence, and nothing behind it."""
         if self._begin is None or self._prefix != request.prefix:
             self._begin = None
-            self._begin = remembered(self._model, self._folder, request.prefix)
+            self._model.forget(0)
+            tokens = self._model.tokens.encode(request.prefix, control=True)
+            [self._begin] = self._model.read([(Branch(), tokens)])
             self._prefix = request.prefix
         self._model.forget(len(self._begin.tokens))
         return self._begin

@@ -13,7 +13,6 @@ from nl2robot.language_model.changes import SCALE
 from nl2robot.language_model.files import FILES, GRAPH
 from nl2robot.language_model.install import Unreadable, install
 from nl2robot.language_model.model import Branch, Cancelled, OnnxModel
-from nl2robot.language_model.remembered import remembered
 from nl2robot.language_model.tokens import Tokens, is_latin
 from tests.language_model.tiny import Tiny
 
@@ -146,27 +145,6 @@ def test_cancelling_holds_until_somebody_resumes(model: OnnxModel) -> None:
         model.read([(Branch(), [1, 2])])
     model.resume()
     assert model.read([(Branch(), [1, 2])])
-
-
-def test_what_was_read_is_kept_on_disk_and_comes_back(
-    tiny: Tiny, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("NL2ROBOT_HOME", str(tmp_path))
-    first = OnnxModel(folder, threads=1, room=64)
-    read = remembered(first, folder, "say Bob").tokens
-    [kept] = (tmp_path / "cache").glob("read-*.npz")
-    second = OnnxModel(folder, threads=1, room=64)
-    monkeypatch.setattr(second, "read", None)  # it must not have to
-    branch = remembered(second, folder, "say Bob")
-    monkeypatch.undo()
-    [branch] = second.read([(branch, [40])])
-    assert np.abs(branch.scores - wanted(tiny, second, [*read, 40])).max() < CLOSE
-
-    monkeypatch.setenv("NL2ROBOT_HOME", str(tmp_path))
-    kept.write_bytes(kept.read_bytes()[:1000])  # the disk was full, or worse
-    third = OnnxModel(folder, threads=1, room=64)
-    [branch] = third.read([(remembered(third, folder, "say Bob"), [40])])
-    assert np.abs(branch.scores - wanted(tiny, third, [*read, 40])).max() < CLOSE
 
 
 def test_words_that_look_like_marks_are_words_where_people_say_them(folder: Path) -> None:
