@@ -83,7 +83,7 @@ class _Desk:
         self.backstage = backstage
         self.visit = visit
         self.words = visit.words
-        self.threads = dialogues.threads
+        self.dialogues = dialogues
         self.dialogue = dialogues.of(_name(request.cookies.get("desk", "")), visit.language)
         visit.hand_over(
             {
@@ -101,6 +101,8 @@ class _Desk:
         """The program in the editor, as it was last set here or typed there."""
         self._path: list[list[float]] | None = None
         self._dropped = self.dialogue.dropped
+        self._ponders = False
+        """Whether the microphone here has heard what was then thought about."""
         self._build()
         if visit.role == "operator":
             self._attend()
@@ -142,7 +144,9 @@ class _Desk:
 
         def went() -> None:
             if there:
-                loop.call_later(GONE_AFTER, self.threads.submit, there.pop())
+                loop.call_later(GONE_AFTER, self.dialogues.later, there.pop())
+            if self._ponders:  # nobody is left who would say what came of it
+                self.dialogues.later(self.dialogue.give_up, self.visit.language)
 
         client.on_connect(came)
         client.on_disconnect(went)
@@ -235,7 +239,7 @@ class _Desk:
 
     async def _do(self, act: Callable[..., None], *arguments: Any) -> None:
         """Do something that takes its time, in a thread of its own."""
-        await _loop().run_in_executor(self.threads, partial(act, *arguments))
+        await _loop().run_in_executor(self.dialogues.threads, partial(act, *arguments))
 
     async def _edited(self, program: str) -> None:
         draft = self.dialogue.draft
@@ -260,8 +264,13 @@ class _Desk:
             translation = msgspec.convert(event.args["translation"], Translation)
             await self._do(dialogue.hear, words, translation, language, who, harmless)
 
-        async def ponder(event: GenericEventArguments) -> None:
-            await self._do(dialogue.ponder, str(event.args["text"]), language)
+        def ponder(event: GenericEventArguments) -> None:  # here, so that they come in order
+            words, program = str(event.args["text"]), str(event.args["program"])
+            self._ponders = True
+            dialogue.ponder(int(event.args["microphone"]), words, program, language)
+
+        async def give_up(event: GenericEventArguments) -> None:
+            await self._do(dialogue.give_up, language)
 
         async def cancel(event: GenericEventArguments) -> None:
             await self._do(dialogue.cancel, language)
@@ -283,6 +292,7 @@ class _Desk:
             "desk-say": say,
             "desk-hear": hear,
             "desk-ponder": ponder,
+            "desk-given-up": give_up,
             "desk-cancel": cancel,
             "desk-propose": propose,
             "desk-approve": approve,

@@ -163,7 +163,7 @@ class Dialogue:
     ) -> None:
         """Take what the microphone heard, which was translated in this conversation."""
         thought = self.thought
-        if thought is not None and thought.heard:
+        if thought is not None and thought.heard is not None and thought.words == words:
             self._end(thought)
         else:
             self.cancel(language)
@@ -171,11 +171,22 @@ class Dialogue:
         with self._turn:
             self._take(translation, words, language, who, harmless)
 
-    def ponder(self, words: str, language: str) -> None:
-        """The microphone has heard this, and it is thought about where it was heard: `hear` tells
-        what came of it, or `cancel` that nothing will."""
-        self._begin(Thought(words, self._grown, heard=True), language)
-        self._tell(Line("you", words))
+    def ponder(self, microphone: int, words: str, program: str, language: str) -> None:
+        """A microphone has heard this, and it is thought about where it was heard, so far with
+        this program. `hear` tells what came of it; `give_up` that nothing will."""
+        if self.dropped is not None and self.dropped.heard == microphone:
+            return  # told late
+        thought = self.thought
+        if thought is None or thought.heard != microphone:
+            thought = self._begin(Thought(words, self._grown, microphone), language)
+            self._tell(Line("you", words))
+        thought.write(program)
+
+    def give_up(self, language: str) -> None:
+        """Nothing comes of what a microphone has heard."""
+        thought = self.thought
+        if thought is not None and thought.heard is not None:
+            self.cancel(language)
 
     # --- think
 

@@ -6,8 +6,9 @@ from __future__ import annotations
 import logging
 import threading
 from collections import OrderedDict
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Any, Final
@@ -86,6 +87,11 @@ class Dialogues:
             language = self._languages.get(name, "en")
             dialogue.ended(data["run"], data["state"], data["message"], language)
 
+    def later(self, act: Callable[..., None], *arguments: Any) -> None:
+        """Do something that nobody waits for."""
+        with suppress(RuntimeError):  # it was closed meanwhile
+            self.threads.submit(act, *arguments)
+
     def close(self) -> None:
         """Nobody is left to whom anything could be told."""
         self._cancel_all()
@@ -94,7 +100,7 @@ class Dialogues:
     def _cancel_all(self) -> None:
         for name, dialogue in tuple(self._dialogues.items()):
             if dialogue.thought is not None:  # who stops the robot does not wait for it
-                self.threads.submit(dialogue.cancel, self._languages.get(name, "en"))
+                self.later(dialogue.cancel, self._languages.get(name, "en"))
 
     # --- files
 

@@ -12,17 +12,17 @@ class Thought:
     """One sentence, from when it was sent until it is understood or dropped. What a language model
     tells comes from the thread that plans."""
 
-    def __init__(self, words: str, grown: Callable[[], None], heard: bool = False) -> None:
-        """`grown` is called, from any thread, when there is more to be seen of it. `heard`: it
-        came by the microphone, and is thought about where it was heard."""
+    def __init__(self, words: str, grown: Callable[[], None], heard: int | None = None) -> None:
+        """`grown` is called, from any thread, when there is more to be seen of it. `heard`: the
+        microphone that it came by; it is thought about where it was heard."""
         self.words = words
         self.heard = heard
-        self.deep = heard
+        self.deep = heard is not None
         """Whether a language model thinks about it."""
         self.program = ""
         """As far as it is written."""
         self.told_dropped = False
-        self.watch = Watch(self._begin, self._write)
+        self.watch = Watch(self._begin, self.write)
         self._cancelled = False
         self._grown = grown
 
@@ -38,6 +38,7 @@ class Thought:
             raise Interrupted
         self._grown()
 
-    def _write(self, program: str) -> None:
+    def write(self, program: str) -> None:
+        """So far the program is written."""
         self.program = program
         self._grown()

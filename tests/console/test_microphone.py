@@ -26,6 +26,8 @@ from nl2robot.operator import Operator
 from nl2robot.speech.audio import RATE, Samples, from_float
 from nl2robot.speech.voices import joined, voice
 from tests.console.conftest import CHROMIUM, FLAGS, SOON, serving
+from tests.console.test_thinking import CONSOLE, tell
+from tests.console.writing_console import SPOKEN
 
 PAGE = """<!doctype html><html><head><link rel="stylesheet" href="/static/console.css"></head>
 <body><script type="module">SCRIPT</script></body></html>"""
@@ -34,6 +36,7 @@ import {mountMicrophone} from '/static/microphone.js';
 WIRE
 document.body.insertAdjacentHTML('afterbegin', `<div class="card row" style="margin: 6rem">
   <button id="talk" class="icon-button"></button> <p id="partial"></p> <ol id="heard"></ol>
+  <p id="thought"></p>
   <p id="trouble" role="alert"></p></div>`);
 const write = (id, text) => (document.getElementById(id).textContent = text);
 window.microphone = mountMicrophone(document.getElementById('talk'), {
@@ -42,6 +45,8 @@ window.microphone = mountMicrophone(document.getElementById('talk'), {
   onHeard: (heard) => document.getElementById('heard').append(
     Object.assign(document.createElement('li'), {textContent: JSON.stringify(heard)})),
   onTrouble: (sentence) => write('trouble', sentence),
+  onThinking: (thought) => write('thought', JSON.stringify(thought)),
+  onGivenUp: () => write('thought', 'given up'),
 });
 window.wire = wire;
 """
@@ -50,10 +55,16 @@ TOLD_WIRE = """
 window.asked = [];
 window.answers = {'voice.ready': () => null, 'voice.open': () => 7, 'voice.push': () => [],
   'voice.close': () => [], 'robot.stop': () => null};
+window.told = {};
 const listeners = [];
 const wire = {
   connected: true,
-  async request(method, params) {
+  request: (method, params) => wire.call(method, params).answer,
+  call(method, params) {
+    return {answer: wire.answer(method, params), cancel: () => asked.push(['cancel', method])};
+  },
+  subscribe(kind, listener) { told[kind] = listener; return () => delete told[kind]; },
+  async answer(method, params) {
     asked.push([method, params]);
     if (!wire.connected) throw Object.assign(new Error('lost'), {kind: 'LostConnection'});
     return answers[method](params);
@@ -201,6 +212,72 @@ def test_from_press_to_release_it_is_one_command(open_page) -> None:
     assert opened == {"rate": 16000, "channels": 1, **about}
     assert all(params["microphone"] == 7 for params in asked(page, "voice.push"))
     assert len(asked(page, "voice.close")) == 1
+    expect(page.locator("#trouble")).to_be_empty()
+
+
+THINKS = """() => {
+  answers['voice.close'] = () => new Promise((resolve) => (window.close_with = resolve));
+  window.thinks = (what, text) =>
+    told.translation({what, text, utterance: 'wheel it in', microphone: 7});
+}"""
+
+
+def test_what_takes_thinking_is_told_meanwhile(open_page) -> None:
+    page = open_page()
+    page.evaluate(THINKS)
+    hold(page)
+    pushed(page)
+    page.mouse.up()
+    page.wait_for_function("!!window.close_with")
+    page.evaluate("thinks('thinking')")
+    about = {"microphone": 7, "text": "wheel it in"}
+    expect(page.locator("#thought")).to_have_text(
+        json.dumps({**about, "program": ""}, separators=(",", ":"))
+    )
+    page.evaluate("thinks('writing', 'robot.goto()')")
+    expect(page.locator("#thought")).to_contain_text("robot.goto()")
+    page.evaluate("told.translation({what: 'writing', text: 'another', microphone: 8})")
+    becomes(page, "thinking")
+    page.evaluate(
+        "close_with([{what: 'heard', text: 'wheel it in', stop: false, translation: {}}])"
+    )
+    expect(page.locator("#heard li")).to_have_count(1)
+    expect(page.locator("#thought")).to_contain_text("robot.goto()")
+    becomes(page, "ready")
+
+
+def test_who_speaks_anew_ends_the_thinking_about_the_sentence_before(open_page) -> None:
+    page = open_page()
+    page.evaluate(THINKS)
+    hold(page)
+    pushed(page)
+    page.mouse.up()
+    page.wait_for_function("!!window.close_with")
+    page.evaluate("thinks('thinking')")
+    page.mouse.down()
+    becomes(page, "listening")
+    expect(page.locator("#thought")).to_have_text("given up")
+    assert asked(page, "cancel") == ["voice.close"]
+    page.evaluate(
+        "close_with([{what: 'heard', text: 'wheel it in', stop: false, translation: {}}])"
+    )
+    pushed(page)
+    page.mouse.up()
+    page.wait_for_function("asked.filter(([method]) => method === 'voice.close').length === 2")
+    expect(page.locator("#heard li")).to_have_count(0)
+
+
+def test_a_stop_that_ends_the_thinking_is_no_trouble(open_page) -> None:
+    page = open_page()
+    page.evaluate(THINKS)
+    hold(page)
+    pushed(page)
+    page.mouse.up()
+    page.wait_for_function("!!window.close_with")
+    page.evaluate("thinks('thinking')")
+    page.evaluate("close_with([{what: 'given up', text: 'wheel it in'}])")
+    becomes(page, "ready")
+    expect(page.locator("#thought")).to_have_text("given up")
     expect(page.locator("#trouble")).to_be_empty()
 
 
@@ -451,7 +528,7 @@ def listening(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
     if models.find("en") is None:
         pytest.skip("There is no English speech model: nl2robot models get en.")
     home = tmp_path_factory.mktemp("home")
-    with serving(home, "--speed", "1", models=True) as served:
+    with serving(home, "--speed", "1", models=True, program=[str(CONSOLE)]) as served:
         yield served
 
 
@@ -507,6 +584,25 @@ def test_at_the_desk_words_come_while_they_are_said_and_then_the_program(says, p
     expect(page.locator(".cm-content")).to_contain_text('robot.goto("pharmacy")')
     expect(page.locator(".cm-content")).to_contain_text('robot.say("Hello!")')
     expect(page.locator("#partial")).to_be_empty()
+
+
+def test_what_takes_thinking_is_seen_to_grow_and_is_cancelled(says, listening) -> None:
+    page = says("Make the people in the lobby happy, please.")
+    tell(listening, "hold")
+    hold(page)
+    expect(page.locator("#partial")).to_contain_text("happy", timeout=SOON)
+    page.mouse.up()
+    expect(page.locator("#thought")).to_contain_text("robot.goto(")
+    expect(page.locator(".said.by-you")).to_have_text(re.compile("make the people"))
+    page.get_by_role("button", name="Cancel").click()
+    expect(page.locator("#thought")).to_be_hidden()
+    expect(page.locator("#words")).to_have_value(SPOKEN)
+    tell(listening, "idle")
+    becomes(page, "ready")
+    page.locator("#words").press("Enter")
+    expect(page.locator("#thought")).to_contain_text("robot.goto(")
+    tell(listening, "go on")
+    expect(page.locator(".by-model")).to_contain_text("Written by a language model")
 
 
 def test_a_pause_to_think_does_not_end_the_command(says) -> None:

@@ -31,19 +31,20 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
 @pytest.fixture
 def writer(served: Served) -> Iterator[Tell]:
     """Tell the model to "hold", to "go on", or wait until it is "idle"; it is held at first."""
+    tell(served, "hold")
+    yield lambda order: tell(served, order)
+    tell(served, "go on")
+
+
+def tell(served: Served, order: str) -> None:
+    """Wait until the console has done what it was told."""
     stdin, stdout = served.process.stdin, served.process.stdout
     assert stdin is not None and stdout is not None
-
-    def tell(order: str) -> None:
-        stdin.write(f"{order}\n")
-        stdin.flush()
-        for line in stdout:
-            if line.strip() == order:
-                return
-
-    tell("hold")
-    yield tell
-    tell("go on")
+    stdin.write(f"{order}\n")
+    stdin.flush()
+    for line in stdout:
+        if line.strip() == order:
+            return
 
 
 def thought(page: Page) -> Locator:
@@ -185,6 +186,33 @@ def test_a_page_that_is_loaded_anew_finds_the_thought_and_one_that_is_closed_end
     expect(thought(page)).to_contain_text("robot.goto(")
     page.close()
     writer("idle")
+
+
+PONDER = """(program) =>
+  emitEvent('desk-ponder', {microphone: 3, text: 'wheel it in', program})"""
+"""What the desk's script says when its microphone is told of a thought."""
+
+
+def test_what_was_spoken_is_thought_about_in_the_same_bubble(page: Page) -> None:
+    page.evaluate(PONDER, "")
+    expect(page.locator(".said.by-you")).to_have_text(re.compile("wheel it in"))
+    page.evaluate(PONDER, "robot.goto(")
+    expect(thought(page)).to_contain_text("robot.goto(")
+    page.get_by_role("button", name="Cancel").click()
+    expect(thought(page)).to_be_hidden()
+    page.evaluate(PONDER, "robot.goto('lobby')")  # told late
+    say(page, "go to the pharmacy")
+    expect(page.get_by_role("button", name="Approve and run")).to_be_enabled()
+    expect(thought(page)).to_be_hidden()
+    expect(page.locator(".said.by-you")).to_have_count(2)
+
+
+def test_who_closes_the_page_that_heard_it_ends_that_thought(page: Page) -> None:
+    page.evaluate(PONDER, "robot.goto(")
+    expect(thought(page)).to_be_visible()
+    page.reload()
+    expect(last_said(page)).to_contain_text(DROPPED)
+    expect(thought(page)).to_be_hidden()
 
 
 def test_a_question_which_of_two_is_meant_is_answered_with_a_click(

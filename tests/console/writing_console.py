@@ -22,7 +22,9 @@ TEA = "wheel the tea round to the lobby, would you"
 JOKE = "pop round to the lobby and crack a joke"
 EITHER = "brighten up the pharmacy with a greeting"
 CHEER = "heiter mal die Leute in der Lobby auf"
+SPOKEN = "make the people in the lobby happy please"
 PROGRAMS = {
+    SPOKEN: ['goto("lobby")\nemotion("happy")'],
     TEA: ['goto("lobby")\nsay("Tea!")'],
     JOKE: ['goto("lobby")\nsay("Why did the robot cross the road? It was programmed to.")'],
     EITHER: ['goto("pharmacy")\nsay("Hello!")', 'goto("pharmacy")\nsay("Good morning!")'],

@@ -91,12 +91,18 @@ async function openCalls() {
 /** Off the desk, too, one can say "stop"; another command is taken to the desk. */
 async function openMicrophone(button) {
   const {mountMicrophone} = await import('/static/microphone.js');
-  mountMicrophone(button, {
+  const heard = ({text}) =>
+    notice(filled(words.heard, {text}), {action: {text: words.to_desk, act: () => toDesk(text)}});
+  const mounted = mountMicrophone(button, {
     wire,
     words: microphone,
     language: () => language,
     onPartial: (text) => text && notice(text),
-    onHeard: ({text}) => notice(filled(words.heard, {text}), {action: {text: words.to_desk, act: () => toDesk(text)}}),
+    onHeard: heard,
+    onThinking: ({text}) => {
+      mounted.giveUp(); // the desk thinks about it, where that is seen
+      heard({text});
+    },
     onTrouble: (sentence) => notice(sentence),
   });
 }

@@ -6,6 +6,8 @@
  *     wire, words: pageData.microphone, language: () => 'en', talk: 'a name for this conversation',
  *     onPartial(text) {...},       // the words so far, while they are said
  *     onHeard({text, doubtful, perhaps, translation}) {...}, // not told of a mere "stop"
+ *     onThinking({microphone, text, program}) {...}, // a language model is at it; the program so far
+ *     onGivenUp() {...},           // nothing comes of that
  *     onTrouble(sentence) {...},   // why nothing was heard, and what to do
  *     interrupts: false,           // true where this page plays the robot's voice: who speaks makes it silent
  *   });
@@ -14,6 +16,7 @@
  * screen reader's click) it begins with one click and ends with the next. What is said from press to
  * release is one command. Somebody who says "stop" meanwhile stops the robot at once. Its state is
  * the button's `data-state`: off, opening, listening, thinking, ready (open, but not listening).
+ * `giveUp()` ends what is being thought about.
  */
 
 import {filled} from '/static/page.js';
@@ -24,6 +27,7 @@ const LONGEST = 60_000; // milliseconds; something lies on the key
 const SHORTEST = 250; // milliseconds; who only clicked is told to hold
 const CLICK_AFTER = 500; // milliseconds in which a browser makes a click of a press
 const AT_ONCE = 16_000; // samples in a push, at most
+const BEGUN = 100; // milliseconds after which the server is at what it was asked
 const SILENT = 0.002; // loudest sample of a microphone that is off or muted
 const METER = 5; // how the level of a voice fills the meter
 
@@ -59,7 +63,9 @@ class Utterance {
     this.heard = false;
     this.stopped = false;
     this.early = false;
+    this.pondered = false; // a language model thinks about it
     this._over = false;
+    this._closing = null;
     this._wire = wire;
     this._tell = tell;
     this._fail = fail;
@@ -75,7 +81,10 @@ class Utterance {
 
   /** Open the recogniser; sound that comes before it is open waits. */
   open(about) {
+    let number = null;
+    this._deaf = this._wire.subscribe('translation', (event) => event.microphone === number && this._told([event]));
     this._number = this._wire.request('voice.open', {...about, channels: 1, held: true});
+    this._number.then((opened) => (number = opened)).catch(() => {}); // it is told where it is sent
     this._send().catch(this._fail);
   }
 
@@ -88,18 +97,30 @@ class Utterance {
   /** It was all said; resolves when everything that was heard is told. */
   async finish() {
     await this._send();
-    const events = await this._wire.request('voice.close', {microphone: await this._number});
-    this._told(events);
+    const microphone = await this._number;
+    if (this._over) return;
+    this._closing = this._wire.call('voice.close', {microphone});
+    this._told(await this._closing.answer);
     this._over = true;
+    this._deaf();
   }
 
   /** Nothing of it counts. */
   drop() {
     this._over = true;
     this._waiting = [];
-    this._number
-      ?.then((microphone) => this._wire.request('voice.close', {microphone}))
-      .catch(() => {}); // the server forgets it by itself
+    this._deaf?.();
+    if (this._closing) {
+      this._closing.cancel();
+      return;
+    }
+    const close = async () => {
+      const {answer, cancel} = this._wire.call('voice.close', {microphone: await this._number});
+      // What is thought about is waited for, unless that is cancelled once it has begun.
+      if (this.pondered) setTimeout(cancel, BEGUN);
+      await answer;
+    };
+    if (this.opened) close().catch(() => {}); // the server forgets it by itself
   }
 
   /** Send what waits, a push after the other: blocks must come in their order. */
@@ -157,6 +178,8 @@ class Microphone {
       this._show('listening');
       return;
     }
+    this.giveUp(); // who speaks anew has done with what they said before
+    this.held = true;
     if (!this.options.wire.connected) return this._abort('lost');
     const utterance = new Utterance(this.options.wire, {
       tell: (event) => this._on(event, utterance),
@@ -200,6 +223,11 @@ class Microphone {
     this._tail = setTimeout(() => this._finish(utterance, why), TAIL);
   }
 
+  /** Nothing is to come of what was said and is still thought about. */
+  giveUp() {
+    if (this._utterance?.pondered) this._drop();
+  }
+
   /** Let go of the microphone and the button. */
   close() {
     this._drop();
@@ -237,6 +265,14 @@ class Microphone {
       if (event.stop) return; // that was all
       const {text, doubtful, perhaps, translation} = event;
       this.options.onHeard({text, doubtful, perhaps, translation});
+    } else if (event.microphone !== undefined) {
+      // Told by the wire while an answer is waited for.
+      utterance.pondered = true;
+      const program = event.what === 'writing' ? event.text : '';
+      this.options.onThinking?.({microphone: event.microphone, text: event.utterance, program});
+    } else if (event.what === 'given up') {
+      utterance.heard = true;
+      this.options.onGivenUp?.();
     } else if (event.what === 'too long') {
       this._abort('too_long');
     }
@@ -265,8 +301,10 @@ class Microphone {
     clearTimeout(this._longest);
     clearTimeout(this._tail);
     this._tail = null;
-    this._utterance?.drop();
+    const utterance = this._utterance;
     this._utterance = null;
+    utterance?.drop();
+    if (utterance?.pondered) this.options.onGivenUp?.();
     if (this._sound.open) this._sound.rest();
     this._show();
   }
@@ -364,7 +402,7 @@ class Microphone {
     on(window, 'blur', () => this.release());
     on(document, 'visibilitychange', () => {
       if (!document.hidden) return;
-      this._abort('left');
+      if (!this._utterance?.pondered) this._abort('left');
       this._sound.letGo();
     });
     this._ends.push(

@@ -24,6 +24,7 @@ function openComposer(form) {
   let at = history.length;
   let unsent = sessionStorage.getItem('unsent') ?? '';
   let sent = null; // from here, the last of all
+  const spoken = openMicrophone(form, (text) => (sent = text));
   line.value = unsent;
 
   const say = (text) => {
@@ -32,6 +33,7 @@ function openComposer(form) {
     if (history.at(-1) !== said) history.push(said);
     at = history.length;
     sent = said;
+    spoken.then((microphone) => microphone.giveUp());
     tell('desk-say', {text: said, harmless: options().harmless});
   };
   form.addEventListener('submit', (event) => {
@@ -55,7 +57,10 @@ function openComposer(form) {
   document.addEventListener('click', (event) => {
     const button = event.target.closest('[data-say]');
     if (button) say(button.dataset.say);
-    if (event.target.closest('#cancel')) tell('desk-cancel');
+    if (event.target.closest('#cancel')) {
+      tell('desk-cancel');
+      spoken.then((microphone) => microphone.giveUp());
+    }
   });
   // Who cancels wants to say it otherwise; what they have typed since then is theirs.
   document.addEventListener('thought-dropped', ({detail: words}) => {
@@ -74,13 +79,13 @@ function openComposer(form) {
   sessionStorage.removeItem('say');
   if (heard) say(heard);
   if (matchMedia('(pointer: fine)').matches) line.focus({preventScroll: true});
-  openMicrophone(form);
 }
 
-async function openMicrophone(form) {
+/** `think` is told what was said, if it takes thinking. */
+async function openMicrophone(form, think) {
   const {mountMicrophone} = await import('/static/microphone.js');
   const partial = form.querySelector('#partial');
-  mountMicrophone(form.querySelector('#microphone'), {
+  return mountMicrophone(form.querySelector('#microphone'), {
     wire,
     words: pageData.microphone,
     language: () => language,
@@ -90,6 +95,12 @@ async function openMicrophone(form) {
       partial.textContent = '';
       tell('desk-hear', {text, translation, harmless: options().harmless});
     },
+    onThinking: ({microphone, text, program}) => {
+      partial.textContent = '';
+      think(text);
+      tell('desk-ponder', {microphone, text, program});
+    },
+    onGivenUp: () => tell('desk-given-up'),
     onTrouble: (sentence) => (partial.textContent = sentence),
   });
 }
