@@ -159,12 +159,12 @@ def test_only_what_may_be_a_program_is_written(
     assert pid(writer) == begun
 
 
-def test_getting_ready_writes_nothing_and_is_remembered(
-    terse: Path, process: Callable[[Path], Process], home: Path
-) -> None:
+def test_getting_ready_writes_nothing(terse: Path, process: Callable[[Path], Process]) -> None:
     writer = process(terse)
     writer.get_ready(PREFIX)
-    assert [each.suffix for each in (home / "cache").iterdir()] == [".npz"]
+    begun = pid(writer)
+    assert writer.write(request())
+    assert pid(writer) == begun
 
 
 def test_whoever_stumbles_over_what_they_see_ends_the_writing(

@@ -31,6 +31,8 @@ from robot_api.methods import METHODS, Parameter
 
 LONGEST_TEXT: Final = 300
 """Characters that are said or shown at once."""
+LONGEST_NAME: Final = 16
+"""Of what a program remembers: a model that has lost its way would go on and on."""
 LONGEST_OPTION: Final = 60
 DAYS: Final = ("Monday", "Tuesday", "Wednesday", "Thursday", "Friday", "Saturday", "Sunday")
 NOT_OFFERED: Final = frozenset({"stop", "log"})
@@ -182,6 +184,8 @@ class Reader:
         if match is None:
             raise Dead
         word = match.group()
+        if len(word) > LONGEST_NAME:
+            raise Dead
         if match.end() == len(self.line):
             if known is None:
                 raise Unfinished

@@ -19,6 +19,7 @@ from grammar.planning.model.expressions import (
     CALLS,
     FUNCTIONS,
     KEYWORDS,
+    LONGEST_NAME,
     Dead,
     Reader,
     Unfinished,
@@ -288,7 +289,7 @@ class _Line(Reader):
     def _first_word(self) -> str:
         start = self.at
         word = self.word_or_begin()
-        if not word.islower() or len(word) > 24 or word in FUNCTIONS:
+        if not word.islower() or word in FUNCTIONS:
             raise Dead
         if word in KEYWORDS and word not in _STATEMENTS:
             raise Dead
@@ -299,7 +300,7 @@ class _Line(Reader):
         """The name that a line begins with; any may be new."""
         rest = self.rest
         word = rest[: len(rest) - len(rest.lstrip("abcdefghijklmnopqrstuvwxyz_0123456789"))]
-        if not word or not word[0].isalpha():
+        if not word or not word[0].isalpha() or len(word) > LONGEST_NAME:
             raise Dead
         if len(word) == len(rest):
             raise Unfinished
