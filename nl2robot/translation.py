@@ -243,12 +243,14 @@ def _decided(turn: Turn, answer: Answer, knowledge: Knowledge) -> Decided:
 
 
 def _chosen(utterance: str, turn: Turn, talk: Talk) -> Chosen | None:
-    """Which of two was chosen that were offered; None if this is no answer to that."""
+    """Which one was chosen of what was offered; None if this is no answer to that."""
     offers, talk.offers = talk.offers, ()
     if not offers:
         return None
     from robot_api.capabilities.matching import match_answer
 
+    if len(offers) == 1 and agreed(utterance, turn.language.code):
+        return offers[0].chosen
     longest = max(len(each.told.split()) for each in offers) + POLITE
     if len(utterance.split()) > longest:  # it says more: another order
         return None

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Final
 
@@ -97,9 +97,25 @@ class Checked:
         return not self.objections
 
 
-def check(turn: Turn, plan: Plan) -> Checked:
-    """Check a plan for what somebody has said."""
-    return _Check(turn, plan).checked()
+_READ: Final = frozenset({"invented", "unheeded", "unasked"})
+"""Objections to what words do not ask for. Whoever has read each word by a rule knows that better:
+of right programs of the rules, these would drop one in fifty, and hardly a wrong one."""
+
+
+def check(turn: Turn, plan: Plan, *, exact: bool = False) -> Checked:
+    """Check a plan for what somebody has said. It is `exact` if whoever made it understands a
+    sentence as a whole or not at all: what would be an objection to the use of its words is then a
+    doubt."""
+    checked = _Check(turn, plan).checked()
+    if not exact:
+        return checked
+    objections = tuple(each for each in checked.objections if each.kind not in _READ)
+    doubts = dict.fromkeys((*checked.objections, *checked.doubts))
+    return replace(
+        checked,
+        objections=objections,
+        doubts=tuple(each for each in doubts if each not in objections),
+    )
 
 
 class _Check:

@@ -24,4 +24,4 @@ def consider(turn: Turn, draft: Draft) -> Considered | None:
         program = write_program(draft.plan)
     except PlanError:
         return None
-    return Considered(draft, program, check(turn, draft.plan))
+    return Considered(draft, program, check(turn, draft.plan, exact=draft.exact))

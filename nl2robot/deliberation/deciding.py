@@ -18,10 +18,14 @@ from nl2robot.knowledge import Knowledge
 
 ACCEPTED: Final = 0.5
 """From this probability on a program is shown as understood."""
+ASKED: Final = 0.15
+"""From this one on it is asked whether it was meant."""
 CLOSE: Final = 0.6
 """A second that has so much of the votes of the first makes a question of them."""
 LONGEST: Final = 160
 """Characters of what is offered: nobody listens to more."""
+LONGEST_OF_ONE: Final = 320
+"""The same, where it is all that is to be done."""
 CLAUSE: Final = ":"
 """Ends a line that says when, or how often, the lines below it are done."""
 
@@ -44,15 +48,16 @@ class Chosen:
 
 @dataclass(frozen=True)
 class Offer:
-    """One of two that may be meant, by what tells it from the other."""
+    """One of those that may be meant."""
 
     told: str
+    """What tells it from the other; all that it does, if there is no other."""
     chosen: Chosen
 
 
 @dataclass(frozen=True)
 class Open:
-    """A question that two drafts leave open."""
+    """A question that one draft, or two, leave open."""
 
     question: Question
     offers: tuple[Offer, ...]
@@ -77,9 +82,10 @@ def decide(turn: Turn, drafts: Sequence[Draft], knowledge: Knowledge) -> Chosen 
         question = _either(turn, chosen, other)
         if question is not None:
             return question
-    if chosen.confidence < ACCEPTED:
-        return Refusal(turn.language.phrase("not_sure_enough"))
-    return chosen
+    if chosen.confidence >= ACCEPTED:
+        return chosen
+    question = _really(turn, chosen) if chosen.confidence >= ASKED else None
+    return question or Refusal(turn.language.phrase("not_sure_enough"))
 
 
 def _only(turn: Turn, draft: Draft) -> Chosen | Refusal:
@@ -117,6 +123,18 @@ def _either(turn: Turn, one: Chosen, other: Chosen) -> Open | None:
     message = turn.language.phrase("shall_i_either", one=mine, other=theirs)
     question = Question(message, (mine, theirs), turn.context)
     return Open(question, (Offer(mine, one), Offer(theirs, other)))
+
+
+def _really(turn: Turn, chosen: Chosen) -> Open | None:
+    """The question whether this was meant; None if that would be too long to listen to."""
+    called = naming(turn.lexicon, turn.language).called
+    steps = explain_steps(chosen.plan, turn.language.code, called)
+    told = _whole([text for _, text in steps], turn.language.code)
+    if len(told) > LONGEST_OF_ONE:
+        return None
+    yes = turn.language.speech["agree"][0]
+    question = Question(turn.language.phrase("shall_i", deed=told), (yes,), turn.context)
+    return Open(question, (Offer(told, chosen),))
 
 
 def _difference(mine: Sequence[str], theirs: Sequence[str]) -> tuple[str, str]:

@@ -1,8 +1,9 @@
 """What a model has learned for this project: small changes to its products, in a file of their own.
 
-The file (numpy's .npz, numbers in half precision) has two matrices for each product that was
-changed, `<layer>.<product>.down` (rank, columns) and `.up` (rows, rank): the product of x is then
-W x + `SCALE` up (down x). Written by `nl2robot.training.planner.train`.
+The file (numpy's .npz) has two matrices for each product that was changed,
+`<layer>.<product>.down` (rank, columns) and `.up` (rows, rank): the product of x is then
+W x + `SCALE` up (down x). Each is kept in eight bits, with a number by which every row is
+multiplied, `<matrix>.scales`. Written by `nl2robot.training.planner.train`.
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ from nl2robot.language_model.weights import Floats
 
 SCALE: Final = 2.0
 """What a change counts: alpha / rank."""
+LEVELS: Final = 127
+_SCALES: Final = ".scales"
 PREFIX: Final = "learned."
 """What the names of the graph's inputs for changes begin with."""
 
@@ -27,7 +30,7 @@ def changes(
 ) -> Iterator[tuple[str, Floats]]:
     """A matrix for each of a graph's inputs, given with their shapes, that take one; zeros where
     nothing was learned. Raises `ValueError` if the file is of another model."""
-    learned: Mapping[str, NDArray[np.float16]] = dict(np.load(file)) if file is not None else {}
+    learned = _read(file) if file is not None else {}
     wanted = {name.removeprefix(PREFIX): name for name in inputs if name.startswith(PREFIX)}
     for key, change in learned.items():
         shape = inputs[wanted[key]] if key in wanted else ()
@@ -40,4 +43,23 @@ def changes(
             yield name, np.zeros((rows, columns), np.float32)
             continue
         counts = np.float32(SCALE if key.endswith(".up") else 1)
-        yield name, np.ascontiguousarray(learned[key].T.astype(np.float32) * counts)
+        yield name, np.ascontiguousarray(learned[key].T * counts)
+
+
+def write(learned: Mapping[str, Floats], file: Path) -> None:
+    """Write what was learned to a file."""
+    arrays: dict[str, NDArray[np.int8] | NDArray[np.float16]] = {}
+    for key, matrix in learned.items():
+        scales = np.maximum(np.abs(matrix).max(1, keepdims=True) / LEVELS, 1e-7).astype(np.float16)
+        arrays[key] = np.round(matrix / scales).clip(-LEVELS, LEVELS).astype(np.int8)
+        arrays[f"{key}{_SCALES}"] = scales
+    np.savez_compressed(file, allow_pickle=False, **arrays)
+
+
+def _read(file: Path) -> dict[str, Floats]:
+    with np.load(file) as arrays:
+        return {
+            key: arrays[key] * arrays[f"{key}{_SCALES}"].astype(np.float32)
+            for key in arrays
+            if not key.endswith(_SCALES)
+        }

@@ -7,7 +7,7 @@ import pytest
 
 from grammar.planning.planner import Draft, Refusal
 from grammar.understanding import Context
-from nl2robot.deliberation import deciding
+from nl2robot.deliberation import confidence, deciding
 from nl2robot.deliberation.deciding import Chosen, Open, decide
 from nl2robot.knowledge import Knowledge
 from tests.deliberation.drafting import WARD, draft, drafts, turn
@@ -35,6 +35,26 @@ def test_drafts_that_do_the_same_leave_no_question() -> None:
     )
     assert isinstance(chosen, Chosen)
     assert chosen.confidence == 1.0
+
+
+def test_what_is_doubtful_is_asked_about(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(confidence, "confidence", lambda *known: 0.3)
+    opened = decided("ward a should get a wave", 'goto("ward a")\ngesture("wave")\n')
+    assert isinstance(opened, Open)
+    assert opened.question.message == (
+        "I am not sure that I understand you. Shall I go to ward a and then make the gesture wave?"
+    )
+    [offer] = opened.offers
+    assert offer.chosen.considered.program == 'robot.goto("ward a")\nrobot.gesture("wave")\n'
+    assert offer.chosen.confidence == 0.3
+
+
+def test_what_is_more_than_doubtful_is_not_even_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(confidence, "confidence", lambda *known: 0.1)
+    refusal = decided("ward a should get a wave", 'goto("ward a")\ngesture("wave")\n')
+    assert isinstance(refusal, Refusal)
+    assert refusal.message == turn("").language.phrase("not_sure_enough")
+    assert not refusal.final
 
 
 # --- questions
@@ -125,10 +145,10 @@ def test_what_is_not_likely_enough_is_not_shown() -> None:
     asked = turn("ward a should get a wave or a hello")
     wave = draft(asked, 'goto("ward a")\ngesture("wave")\n', 0.4)
     elsewhere = draft(asked, 'goto("corridor")\n', 0.6)
-    refusal = decide(asked, [elsewhere, wave], WARD)
-    assert isinstance(refusal, Refusal)
-    assert refusal.message == turn("").language.phrase("not_sure_enough")
-    assert not refusal.final
+    opened = decide(asked, [elsewhere, wave], WARD)
+    assert isinstance(opened, Open)
+    [offer] = opened.offers
+    assert offer.chosen.draft is wave
 
 
 @pytest.mark.parametrize(
@@ -172,6 +192,6 @@ def test_what_a_planner_knows_exactly_is_not_tried(monkeypatch: pytest.MonkeyPat
     chosen = decide(asked, [exact], WARD)
     assert isinstance(chosen, Chosen)
     assert chosen.confidence == 0.9
-    elsewhere = draft(asked, 'goto("corridor")\n', 0.9)
-    refusal = decide(asked, [Draft(elsewhere.plan, "grammar", 0.9, Context(), exact=True)], WARD)
+    threat = draft(asked, 'say("I will kill you.")\n', 0.9)
+    refusal = decide(asked, [Draft(threat.plan, "grammar", 0.9, Context(), exact=True)], WARD)
     assert isinstance(refusal, Refusal)

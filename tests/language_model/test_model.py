@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from grammar.planning.model.decoding import Full
-from nl2robot.language_model.changes import SCALE
+from nl2robot.language_model.changes import SCALE, write
 from nl2robot.language_model.files import FILES, GRAPH
 from nl2robot.language_model.install import Unreadable, install
 from nl2robot.language_model.model import Branch, Cancelled, OnnxModel
@@ -91,13 +91,13 @@ def test_what_was_learned_changes_the_products_as_it_says(folder: Path, tmp_path
     for product, parts in PARTS.items():
         names = [f"blk.1.{part}.weight" for part in parts]
         rows = [len(tiny.weights[name]) for name in names]
-        down = random.normal(0, 0.1, (3, tiny.weights[names[0]].shape[1])).astype(np.float16)
-        up = random.normal(0, 0.1, (sum(rows), 3)).astype(np.float16)
+        down = random.normal(0, 0.1, (3, tiny.weights[names[0]].shape[1])).astype(np.float32)
+        up = random.normal(0, 0.1, (sum(rows), 3)).astype(np.float32)
         learned |= {f"1.{product}.down": down, f"1.{product}.up": up}
-        change = SCALE * up.astype(np.float32) @ down.astype(np.float32)
+        change = SCALE * up @ down
         for name, part in zip(names, np.split(change, np.cumsum(rows)[:-1]), strict=True):
             tiny.weights[name] = tiny.weights[name] + part
-    np.savez(tmp_path / "learned.npz", allow_pickle=False, **learned)
+    write(learned, tmp_path / "learned.npz")
     model = OnnxModel(folder, threads=1, room=64, learned=tmp_path / "learned.npz")
     read = [1, 40, 7, 99, 12, 3]
     [branch] = model.read([(Branch(), read)])
@@ -107,7 +107,7 @@ def test_what_was_learned_changes_the_products_as_it_says(folder: Path, tmp_path
 
 
 def test_what_another_model_has_learned_is_told(folder: Path, tmp_path: Path) -> None:
-    np.savez(tmp_path / "other.npz", allow_pickle=False, **{"0.qkv.down": np.zeros((8, 1536))})
+    write({"0.qkv.down": np.zeros((8, 1536), np.float32)}, tmp_path / "other.npz")
     with pytest.raises(ValueError, match=r"not learned by this model: 0\.qkv\.down"):
         OnnxModel(folder, threads=1, room=64, learned=tmp_path / "other.npz")
 

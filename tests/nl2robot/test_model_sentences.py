@@ -15,6 +15,7 @@ from grammar.planning.model.planner import LONGEST
 from grammar.planning.model.request import Written
 from grammar.planning.planner import Interrupted, Watch
 from nl2robot import planners
+from nl2robot.deliberation import confidence
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.language_model.scripted import ScriptedWriter
@@ -424,6 +425,19 @@ def test_an_order_that_says_more_is_no_answer(scripted: Scripted) -> None:
     _, talk, _ = undecided(scripted, "en")
     answer = said("go to ward b, say hello to Henry and come back", talk=talk)
     assert "ward b" in str(answer.program)
+
+
+@pytest.mark.parametrize(("answer", "shown"), [("yes", True), ("no", False), ("hm", False)])
+def test_a_yes_to_what_is_doubtful_shows_it(
+    answer: str, shown: bool, scripted: Scripted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(confidence, "confidence", lambda *known: 0.3)
+    scripted({ODD["en"]: [WAVE]})
+    talk = Talk()
+    asked = said(ODD["en"], talk=talk)
+    assert (asked.status, asked.program, asked.suggestions) == ("clarify", None, ["yes"])
+    assert "Shall I go to ward a" in str(asked.message)
+    assert said(answer, talk=talk).program == (PROGRAM if shown else None)
 
 
 def test_who_has_chosen_goes_on_with_that(scripted: Scripted) -> None:

@@ -33,6 +33,8 @@ from grammar.understanding import Context
 
 NAME: Final = "model"
 MOST_DRAFTS: Final = 4
+ENOUGH: Final = 6.0
+"""Seconds in which others than the first may be written."""
 LONGEST: Final = 600
 """Characters of a sentence; more would take a model too long."""
 _WAY_OUT: Final = re.compile(rf'({REFUSE}|{CLARIFY})\("([^"]*)"(?:, "([^"]*)")?\)')
@@ -79,6 +81,7 @@ class ModelPlanner:
             draft = _draft(turn, written[0], 1.0)
             if draft is not None and self._will_do(turn, draft):
                 return written
+            several = msgspec.structs.replace(several, seconds=ENOUGH)
         return self._writer.write(several, grown)
 
     def _grown(self, text: str, watch: Watch) -> None:

@@ -19,10 +19,10 @@ from itertools import count
 from pathlib import Path
 from typing import Final
 
-import numpy as np
 import torch
 from torch.nn import functional
 
+from nl2robot.language_model.changes import write
 from nl2robot.language_model.files import TOKENS
 from nl2robot.language_model.tokens import Tokens
 from nl2robot.training.planner.corpus import Item, files, load
@@ -35,6 +35,7 @@ FASTEST: Final = 4e-4
 """The learning rate at its highest."""
 WARM: Final = 0.04
 """The share of all steps in which it rises."""
+LEARNED: Final = "learned.npz"
 SAVED_EVERY: Final = 20
 """Steps."""
 
@@ -125,7 +126,7 @@ def train(gguf: Path, installed: Path, out: Path, steps: int) -> None:
             with (out / "course.jsonl").open("a") as course:
                 course.write(json.dumps(told) + "\n")
             print(told, flush=True)
-            write(network, out / "learned.npz")
+            write({key: each.numpy() for key, each in network.learned().items()}, out / LEARNED)
 
 
 def _measured(network: Network, unseen: Sequence[Example], number: dict[int, int]) -> float:
@@ -141,13 +142,6 @@ def _save(network: Network, optimiser: torch.optim.Optimizer, step: int, state: 
     new = state.with_suffix(".new")
     torch.save(kept, new)
     new.replace(state)
-
-
-def write(network: Network, path: Path) -> None:
-    """What was learned, in half precision."""
-    np.savez(
-        path, **{key: each.numpy().astype(np.float16) for key, each in network.learned().items()}
-    )
 
 
 def main() -> None:
