@@ -418,3 +418,19 @@ def test_it_ends_with_whoever_began_it(worker: subprocess.Popen[bytes]) -> None:
     assert json.loads(worker.stdout.readline())["type"] == "growing"
     worker.stdin.close()  # the parent is gone, in the middle of a sentence
     assert worker.wait(SOON) == 0
+
+
+def test_no_model_is_loaded_for_which_there_is_too_little_memory(
+    terse: Path, process: Callable[[Path], Process], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    writer = process(terse)
+    monkeypatch.setattr(client, "free_megabytes", lambda: 120.0)
+    told = r"needs about \d+ MB of memory, and only 120 MB are free"
+    with pytest.raises(Unavailable, match=told):
+        Unavailable, match=r"needs about \d+ MB of memory, and only 120 MB are free"
+    ):
+        writer.write(request())
+    assert writer.memory() is None
+    monkeypatch.setattr(client, "free_megabytes", lambda: None)  # who knows
+    assert writer.write(request())
+    assert (writer.memory() or 0) > 10

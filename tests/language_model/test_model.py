@@ -63,6 +63,17 @@ def test_reading_in_pieces_comes_to_the_same(tiny: Tiny, model: OnnxModel) -> No
     assert np.abs(branch.scores - wanted(tiny, model, list(branch.tokens))).max() < CLOSE
 
 
+def test_reading_along_tells_what_may_follow_each(tiny: Tiny, model: OnnxModel) -> None:
+    [trunk] = model.read([(Branch(), [1, 40])])
+    model.read([(trunk, [8, 9])])  # another branch, that is not seen
+    for number, branch in enumerate(model.read_along(trunk, [7, 99, 12]), 1):
+        read = [1, 40, 7, 99, 12][: 2 + number]
+        assert branch.tokens == tuple(read)
+        assert np.abs(branch.scores - wanted(tiny, model, read)).max() < CLOSE
+    [further] = model.read([(branch, [3])])
+    assert np.abs(further.scores - wanted(tiny, model, [1, 40, 7, 99, 12, 3])).max() < CLOSE
+
+
 def test_branches_that_grow_side_by_side_do_not_see_each_other(
     tiny: Tiny, model: OnnxModel
 ) -> None:
