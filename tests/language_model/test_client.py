@@ -427,8 +427,6 @@ def test_no_model_is_loaded_for_which_there_is_too_little_memory(
     monkeypatch.setattr(client, "free_megabytes", lambda: 120.0)
     told = r"needs about \d+ MB of memory, and only 120 MB are free"
     with pytest.raises(Unavailable, match=told):
-        Unavailable, match=r"needs about \d+ MB of memory, and only 120 MB are free"
-    ):
         writer.write(request())
     assert writer.memory() is None
     monkeypatch.setattr(client, "free_megabytes", lambda: None)  # who knows
