@@ -11,6 +11,7 @@ from hypothesis import settings
 
 from grammar.planning.model.planner import ModelPlanner
 from nl2robot import planners
+from nl2robot.deliberation import confidence
 from nl2robot.language_model.scripted import ScriptedWriter
 
 # A busy machine with two cores takes its time; how fast things are is measured, not tested.
@@ -39,6 +40,12 @@ def scripted(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Scripted
 
     yield make
     planners.planner.cache_clear()
+
+
+@pytest.fixture
+def uncalibrated(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Probabilities are shares of votes, whatever the weights say that are in use."""
+    monkeypatch.setattr(confidence, "_weights", dict)
 
 
 class _Stumbled(logging.Handler):

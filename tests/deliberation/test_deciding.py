@@ -12,6 +12,8 @@ from nl2robot.deliberation.deciding import Chosen, Open, decide
 from nl2robot.knowledge import Knowledge
 from tests.deliberation.drafting import WARD, draft, drafts, turn
 
+pytestmark = pytest.mark.usefixtures("uncalibrated")
+
 
 def decided(
     text: str, *written: str, language: str = "en", knowledge: Knowledge = WARD

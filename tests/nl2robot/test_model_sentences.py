@@ -24,6 +24,8 @@ from robot_api.driver import Capabilities
 from robot_api.methods import METHODS
 from sim.world import load_world
 
+pytestmark = pytest.mark.usefixtures("uncalibrated")
+
 WARD = Knowledge(load_world("ward", names_only=True))
 LANGUAGES = ("en", "de", "fr")
 Scripted = Callable[..., ScriptedWriter]

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import pytest
 
 from nl2robot import models
 from nl2robot.speech.recogniser import Recogniser, load
+from tests.fetched import fetched
 
 SHOWN = Path(models.__file__).parent / "data" / "recordings"  # the two that `make run` plays
 RECORDED = Path(__file__).parent / "recordings"  # synthesised for these tests, see docs/voice.md
@@ -17,27 +17,17 @@ RECORDED = Path(__file__).parent / "recordings"  # synthesised for these tests, 
 @pytest.fixture(scope="session")
 def recogniser() -> Recogniser:
     """The English one."""
-    _fetched("en")
+    fetched("en")
     return load("en")
 
 
 @pytest.fixture(scope="session")
 def second_model() -> Path:
     """The folder of the second English speech model."""
-    return _fetched("en-moonshine")
+    return fetched("en-moonshine")
 
 
 @pytest.fixture(scope="session")
 def whisper_model() -> Path:
     """The folder of the model that hears German and French."""
-    return _fetched("whisper")
-
-
-def _fetched(code: str) -> Path:
-    """The model, fetched if need be; where that fails the test is skipped, in CI failed."""
-    try:
-        return models.get(code)
-    except models.ModelError as error:
-        if os.environ.get("CI") == "true":
-            pytest.fail(str(error))
-        pytest.skip(str(error))
+    return fetched("whisper")
