@@ -56,6 +56,8 @@ class Session:
         self._typed: list[str] = []
         """What was typed meanwhile and can wait."""
         self._talk = secrets.token_hex(8)
+        self.is_asked = False
+        """Whether a question back is open."""
         self._watching = threading.Event()
         """While a run of this session goes on; others may use the same robot in between."""
         self._told_end = threading.Event()
@@ -69,6 +71,7 @@ class Session:
         except GivenUp as given_up:
             self.terminal.show_given_up()
             return given_up.status
+        self.is_asked = translation.status == "clarify"
         if translation.program is None:
             self._show_answer(translation)
             return ExitStatus.OK if translation.status == "ok" else ExitStatus.NOT_UNDERSTOOD

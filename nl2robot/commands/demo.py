@@ -25,11 +25,10 @@ TYPED = (
     " take them there and come back; do that three times,"
     " then say that three visitors have been shown the way"
 )
-PLANNED = (
-    "I am a bit worried about Alice, would you look in on her, ask how she is feeling"
-    " and tell me what she says"
-)
+PLANNED = "Alice could do with some cheering up, so pop in and wish her a lovely day"
 """What the rules do not know."""
+YES = "yes"
+"""The answer, where it is asked whether that was meant."""
 RECORDING = Path(__file__).parents[1] / "data" / "recordings" / "pharmacy.wav"
 
 
@@ -46,14 +45,13 @@ def run(options: argparse.Namespace) -> int:
     typed = _perform(terminal, log, TYPED, None, folder / "typed")
     heard = _hear(terminal)
     spoken = _perform(terminal, log, heard, heard, folder / "spoken") if heard else ExitStatus.OK
-    planned = ExitStatus.OK
     if _has_model(terminal):
-        planned = _perform(terminal, log, PLANNED, None, folder / "planned")
+        _perform(terminal, log, PLANNED, None, folder / "planned")
     terminal.console.print(
         '\nNow in your own words: [bold].venv/bin/nl2robot run "bring the red cup to Alice"[/]'
         "\nIn the browser:         [bold].venv/bin/nl2robot serve --open[/]"
     )
-    return typed or spoken or planned
+    return typed or spoken
 
 
 def _perform(
@@ -64,6 +62,9 @@ def _perform(
         with station.connect() as robot:
             session = Session(Operator(robot, user_name()), terminal, approve_all=True)
             status = session.perform(words, heard)
+            if status == ExitStatus.NOT_UNDERSTOOD and session.is_asked:
+                terminal.console.print(f"> {YES}")
+                status = session.perform(YES)
         if session.last_run is not None:
             for ending in (".svg", ".png", ".webp"):
                 station.picture(session.last_run, picture.with_suffix(ending))

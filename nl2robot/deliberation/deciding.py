@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from grammar.checking import Objection
-from grammar.explain import explain_steps
+from grammar.explain import explain, explain_steps
 from grammar.naming import naming
 from grammar.plan import Plan
 from grammar.planning.planner import Draft, Question, Refusal
@@ -128,12 +128,11 @@ def _either(turn: Turn, one: Chosen, other: Chosen) -> Open | None:
 def _really(turn: Turn, chosen: Chosen) -> Open | None:
     """The question whether this was meant; None if that would be too long to listen to."""
     called = naming(turn.lexicon, turn.language).called
-    steps = explain_steps(chosen.plan, turn.language.code, called)
-    told = _whole([text for _, text in steps], turn.language.code)
+    told = explain(chosen.plan, turn.language.code, called)
     if len(told) > LONGEST_OF_ONE:
         return None
     yes = turn.language.speech["agree"][0]
-    question = Question(turn.language.phrase("shall_i", deed=told), (yes,), turn.context)
+    question = Question(turn.language.phrase("do_you_mean", deeds=told), (yes,), turn.context)
     return Open(question, (Offer(told, chosen),))
 
 

@@ -8,9 +8,9 @@ from grammar.planning.planner import Draft
 from grammar.planning.turn import Turn
 from nl2robot.deliberation.considering import consider
 
-SURE: Final = 0.5
-"""How likely the model has to have found each token: of two that are as likely, the other one is
-worth a look."""
+SURE: Final = 0.3
+"""How likely the model has to have found each token. Others take as long as the first did; below
+this, one of them is worth it."""
 
 
 def will_do(turn: Turn, draft: Draft) -> bool:

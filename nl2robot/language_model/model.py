@@ -22,7 +22,7 @@ from nl2robot.language_model.files import GRAPH, LEVELS, SCALES, TOKENS
 from nl2robot.language_model.tokens import Tokens
 from nl2robot.language_model.weights import BLOCK, Floats
 
-ROOM: Final = 3072
+ROOM: Final = 2048
 """Tokens that can be remembered at once."""
 AT_ONCE: Final = 64
 """Tokens of a long text that are read in one go: what is read in more needs more memory."""

@@ -44,7 +44,8 @@ def test_what_is_doubtful_is_asked_about(monkeypatch: pytest.MonkeyPatch) -> Non
     opened = decided("ward a should get a wave", 'goto("ward a")\ngesture("wave")\n')
     assert isinstance(opened, Open)
     assert opened.question.message == (
-        "I am not sure that I understand you. Shall I go to ward a and then make the gesture wave?"
+        "I am not sure that I understand you. Do you mean this:"
+        " I will go to ward a and then make the gesture wave."
     )
     [offer] = opened.offers
     assert offer.chosen.considered.program == 'robot.goto("ward a")\nrobot.gesture("wave")\n'

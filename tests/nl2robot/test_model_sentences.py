@@ -438,7 +438,7 @@ def test_a_yes_to_what_is_doubtful_shows_it(
     talk = Talk()
     asked = said(ODD["en"], talk=talk)
     assert (asked.status, asked.program, asked.suggestions) == ("clarify", None, ["yes"])
-    assert "Shall I go to ward a" in str(asked.message)
+    assert "I will go to ward a" in str(asked.message)
     assert said(answer, talk=talk).program == (PROGRAM if shown else None)
 
 
