@@ -83,13 +83,13 @@ def _has_runtime() -> bool:
 
 def installed_model() -> Path | None:
     """The folder of the language model that is used here: the one that was chosen, else the largest
-    that is installed."""
+    that is installed and has learned what programs are."""
     from nl2robot.models import LARGE, PLANNER, find
 
     chosen = os.environ.get(CHOSEN)
     if chosen == "none":
         return None
-    codes = [chosen] if chosen else [LARGE, PLANNER]
+    codes = [chosen] if chosen else [code for code in (LARGE, PLANNER) if learned(code)]
     return next(_found(codes, find), None)
 
 
@@ -128,7 +128,7 @@ def language_model() -> Process:
     if folder is None:
         raise UserError(
             "There is no language model here. Run `nl2robot models get planner-large` to fetch it"
-            " (1.1 GB; `planner`: 0.5 GB), or say it as in `nl2robot phrases`."
+            " (1.1 GB), or say it as in `nl2robot phrases`."
         )
     if not _has_runtime():
         raise UserError(

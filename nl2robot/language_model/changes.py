@@ -30,7 +30,7 @@ def changes(
 ) -> Iterator[tuple[str, Floats]]:
     """A matrix for each of a graph's inputs, given with their shapes, that take one; zeros where
     nothing was learned. Raises `ValueError` if the file is of another model."""
-    learned = _read(file) if file is not None else {}
+    learned = read(file) if file is not None else {}
     wanted = {name.removeprefix(PREFIX): name for name in inputs if name.startswith(PREFIX)}
     for key, change in learned.items():
         shape = inputs[wanted[key]] if key in wanted else ()
@@ -56,7 +56,8 @@ def write(learned: Mapping[str, Floats], file: Path) -> None:
     np.savez_compressed(file, allow_pickle=False, **arrays)
 
 
-def _read(file: Path) -> dict[str, Floats]:
+def read(file: Path) -> dict[str, Floats]:
+    """What `write` has written."""
     with np.load(file) as arrays:
         return {
             key: arrays[key] * arrays[f"{key}{_SCALES}"].astype(np.float32)

@@ -22,7 +22,7 @@ from typing import Final
 import torch
 from torch.nn import functional
 
-from nl2robot.language_model.changes import write
+from nl2robot.language_model.changes import read, write
 from nl2robot.language_model.files import TOKENS
 from nl2robot.language_model.tokens import Tokens
 from nl2robot.training.planner.corpus import Item, files, load
@@ -87,7 +87,7 @@ def planned(items: Sequence[Item], tokens: Tokens, steps: int) -> Iterator[list[
                 return
 
 
-def train(gguf: Path, installed: Path, out: Path, steps: int) -> None:
+def train(gguf: Path, installed: Path, out: Path, steps: int, begin: Path | None) -> None:
     out.mkdir(parents=True, exist_ok=True)
     torch.manual_seed(0)
     tokens = Tokens.load(installed / TOKENS)
@@ -105,6 +105,8 @@ def train(gguf: Path, installed: Path, out: Path, steps: int) -> None:
         network.restore(kept["learned"])
         optimiser.load_state_dict(kept["optimiser"])
         begun = kept["step"]
+    elif begin is not None:
+        network.restore(read(begin))
     print(f"{len(plan)} steps, from {begun} on; {len(network.changes())} changes", flush=True)
     started, done = time.time(), 0
     for step in range(begun, len(plan)):
@@ -150,8 +152,9 @@ def main() -> None:
     parser.add_argument("installed", type=Path)
     parser.add_argument("out", type=Path)
     parser.add_argument("--steps", type=int, default=540, help="540 are about one pass")
+    parser.add_argument("--begin", type=Path, help="go on from what was learned before")
     given = parser.parse_args()
-    train(given.gguf, given.installed, given.out, given.steps)
+    train(given.gguf, given.installed, given.out, given.steps, given.begin)
 
 
 if __name__ == "__main__":
