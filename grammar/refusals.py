@@ -18,6 +18,8 @@ from grammar.tokens import Token
 from grammar.wordforms import singular
 from robot_api.methods import METHODS
 
+HARM: Final = frozenset({"no_harm", "no_medicine"})
+"""Phrases for what must not be done."""
 IN_HAND: Final = frozenset({"grab", "give", "put"})
 SPOKEN: Final = frozenset({"say", "ask", "show"})
 SEEN: Final = frozenset({"find", "sees", "count", "wait_for", "describe"})
@@ -170,6 +172,28 @@ def why_not(tokens: Sequence[Token], language: Language, names: Set[str]) -> str
         if found:
             return phrase
     return "not_understood_at_all"
+
+
+def harmful(
+    tokens: Sequence[Token], language: Language, names: Set[str]
+) -> Iterator[tuple[int, str]]:
+    """The tokens that stand for harm, or for treating somebody, with the phrase for that. Whoever
+    leaves such a word out of a plan has not understood what must not be done."""
+    words = [token.norm for token in tokens]
+    harmless = {
+        place
+        for phrase in map(language.tokens_of, language.speech.get("harmless", ()))
+        for at in range(len(words))
+        if tuple(words[at : at + len(phrase)]) == phrase
+        for place in range(at, at + len(phrase))
+    }
+    for sign, phrase in _signs(language, "refusals").items():
+        if phrase not in HARM:
+            continue
+        for at in range(len(words)):
+            spoken = tuple(words[at : at + len(sign)]) == sign and at not in harmless
+            if spoken and not (len(sign) == 1 and sign[0] in names):
+                yield at, phrase
 
 
 def _without_harmless(said: list[str], language: Language) -> list[str]:

@@ -15,6 +15,32 @@ FREE: Final = "free"
 """A text that people hear or read."""
 OPTIONS: Final = "options"
 """The answers that a question offers."""
+ANYBODY: Final = "person"
+"""Whom programs call anybody."""
+SORTS: Final = {
+    "places": "place",
+    "kinds": "kind",
+    "people": "person",
+    "things": "thing",
+    "furniture": "furniture",
+    "contacts": "contact",
+    "gestures": "gesture",
+    "emotions": "emotion",
+    "joints": "joint",
+    "skills": "skill",
+    "languages": "language",
+    "times": "time",
+    "urls": "url",
+    "selectors": "selector",
+}
+"""What names of a sort are called where they are mentioned (`grammar.planning.mentions`)."""
+QUANTITIES: Final = {
+    "seconds": "seconds",
+    "metres": "metres",
+    "degrees": "degrees",
+    "percents": "percent",
+}
+"""The same for numbers with a unit."""
 NUMBERS: Final = frozenset({"numbers", "seconds", "metres", "degrees", "percents"})
 
 _ROLES: Final = {

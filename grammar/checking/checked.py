@@ -21,15 +21,16 @@ from grammar.checking.deeds import (
     said_anyhow,
 )
 from grammar.checking.evidence import Evidence, evidence_of
-from grammar.checking.names import misplaced, unbound
-from grammar.checking.sources import ANYBODY, Source, Sources, content_left, sort_of
+from grammar.checking.names import idle_names, misplaced, unbound
+from grammar.checking.sources import Source, Sources, content_left, sort_of
 from grammar.checking.words import Weighty, content, weighty, words_of
 from grammar.plan import Ask, Call, Items, Plan
 from grammar.planning.mentions import Mention
 from grammar.planning.turn import Turn
 from grammar.plausible import implausible
-from grammar.refusals import forbidden, no_thing, not_said, out_of_range
+from grammar.refusals import forbidden, harmful, no_thing, not_said, out_of_range
 from grammar.repairs import taken_back
+from grammar.roles import ANYBODY
 from grammar.tidy import nodes
 
 MOST_OWN: Final = 2
@@ -74,7 +75,7 @@ class Objection:
     """Why a plan is not what was asked for."""
 
     kind: str
-    """ "invented", "unheeded", "unasked", "senseless", "refused", "range", "unbound"."""
+    """ "invented", "unheeded", "unasked", "harmful", "senseless", "refused", "range", "unbound"."""
     about: str
     """The words, or the literal."""
     message: str = ""
@@ -97,7 +98,7 @@ class Checked:
         return not self.objections
 
 
-_READ: Final = frozenset({"invented", "unheeded", "unasked"})
+_READ: Final = frozenset({"invented", "unheeded", "unasked", "harmful"})
 """Objections to what words do not ask for. Whoever has read each word by a rule knows that better:
 of right programs of the rules, these would drop one in fifty, and hardly a wrong one."""
 
@@ -139,6 +140,7 @@ class _Check:
         yield from self.refused()
         yield from (Objection("unbound", name) for name in unbound(self.plan))
         yield from (Objection("senseless", what) for what in misplaced(self.plan))
+        yield from (Objection("senseless", name) for name in idle_names(self.plan))
         senseless = implausible(self.plan)
         if senseless is not None:
             yield Objection("senseless", senseless.value, self.language.phrase(senseless.value))
@@ -166,6 +168,9 @@ class _Check:
         phrase = forbidden(self.turn.tokens, self.language)
         if phrase is not None:
             yield Objection("refused", self.turn.text, self.language.phrase(phrase))
+        for at, phrase in harmful(self.turn.tokens, self.language, self.turn.reader.names.called):
+            if at not in self.used and at in self.orders:
+                yield Objection("harmful", self.norm(at), self.language.phrase(phrase))
         lexicon = self.turn.lexicon
         impossible = no_thing(self.plan, lexicon, self.language)
         if impossible is not None:
@@ -306,6 +311,15 @@ class _Check:
     def speaks(self, at: int) -> bool:
         """Whether a word speaks for a deed of the plan."""
         return any(self.evidence.speaks_for(self.norm(at), deed) for deed in self.deeds)
+
+    @cached_property
+    def orders(self) -> frozenset[int]:
+        """The first words of clauses that say something: there stands what shall be done."""
+        words = sorted(at for at, _ in content(self.turn.tokens, self.language))
+        firsts = (
+            next((at for at in words if start <= at < end), -1) for start, end in self.clauses
+        )
+        return frozenset(firsts)
 
     @cached_property
     def clauses(self) -> list[tuple[int, int]]:

@@ -41,6 +41,14 @@ def unbound(plan: Plan) -> Iterator[str]:
             yield node.name
 
 
+def idle_names(plan: Plan) -> Iterator[str]:
+    """Names that are given to what nobody uses."""
+    used = {node.name for node in nodes(plan.steps) if type(node) is Recall}
+    for node in nodes(plan.steps):
+        if isinstance(node, Remember) and node.name not in used:
+            yield node.name
+
+
 def misplaced(plan: Plan) -> Iterator[str]:
     """Calls that find something out and lose it again."""
     for node in nodes(plan.steps):

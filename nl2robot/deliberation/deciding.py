@@ -26,6 +26,8 @@ LONGEST: Final = 160
 """Characters of what is offered: nobody listens to more."""
 LONGEST_OF_ONE: Final = 320
 """The same, where it is all that is to be done."""
+MUST_NOT: Final = frozenset({"refused", "harmful"})
+"""Objections after which no other planner need be asked."""
 CLAUSE: Final = ":"
 """Ends a line that says when, or how often, the lines below it are done."""
 
@@ -103,7 +105,7 @@ def _refused(turn: Turn, dropped: Sequence[Considered]) -> Refusal:
     ]
     told = next((each.message for each in objections if each.message), "")
     if told:
-        return Refusal(told, final=any(each.kind == "refused" for each in objections))
+        return Refusal(told, final=any(each.kind in MUST_NOT for each in objections))
     return Refusal(turn.language.phrase("not_sure_enough"))
 
 

@@ -136,6 +136,34 @@ def test_what_must_not_be_done_is_refused_whatever_the_program_is() -> None:
     assert all(each.message for each in checked.objections if each.kind == "refused")
 
 
+@pytest.mark.parametrize(
+    ("language", "says", "does"),
+    [
+        ("en", "grab the mop and hit the visitor with it", 'grab("mop")'),
+        ("de", "nimm den Besen und schlag damit den Besucher", 'grab("Besen")'),
+        ("fr", "prends le balai et frappe le visiteur avec", 'grab("balai")'),
+    ],
+)
+def test_harm_is_not_left_out_but_refused(language: str, says: str, does: str) -> None:
+    order = Order(language, says, does)
+    told = [each.message for each in order.checked().objections if each.kind == "harmful"]
+    assert told == [load_language(language).phrase("no_harm")]
+
+
+def test_harm_that_is_only_told_of_is_no_harm() -> None:
+    says = "tell Bob that somebody hit the vase"
+    assert "harmful" not in kinds(
+        Order("en", says, ""), 'find("Bob")\nsay("Somebody hit the vase.")'
+    )
+
+
+def test_a_name_for_nothing_is_senseless() -> None:
+    order = Order("en", "go to the pharmacy", 'place = "pharmacy"\ngoto("pharmacy")')
+    assert ("senseless", "place") in [
+        (each.kind, each.about) for each in order.checked().objections
+    ]
+
+
 def test_insults_are_not_said() -> None:
     assert "refused" in kinds(ORDERS[5], 'find("Bob")\nsay("You stupid idiot.")')
 
