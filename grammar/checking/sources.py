@@ -19,29 +19,11 @@ from grammar.lexicon import kind_of, series_of
 from grammar.plan import Plan
 from grammar.planning.mentions import Mention, written
 from grammar.planning.turn import Turn
-from grammar.roles import FREE, NUMBERS, OPTIONS
+from grammar.roles import ANYBODY, FREE, NUMBERS, OPTIONS, QUANTITIES, SORTS
 
 Origin = OneOf["name", "words", "number", "before", "default", "answer", "own"]
 
-_SORTS: Final = {
-    "places": "place",
-    "kinds": "kind",
-    "people": "person",
-    "things": "thing",
-    "furniture": "furniture",
-    "contacts": "contact",
-    "gestures": "gesture",
-    "emotions": "emotion",
-    "joints": "joint",
-    "skills": "skill",
-    "languages": "language",
-    "urls": "url",
-    "selectors": "selector",
-    "seconds": "seconds",
-    "metres": "metres",
-    "degrees": "degrees",
-    "percents": "percent",
-}
+_SORTS: Final = {**SORTS, **QUANTITIES}
 _LEFT_TO_THE_ROBOT: Final = frozenset(
     {"gestures", "emotions", "joints", "skills", "languages", "kinds", "percents"}
 )
@@ -51,7 +33,6 @@ _SMALL: Final = frozenset({0.0, 1.0, 2.0, 60.0, 100.0})
 """Numbers that a program may need besides: to start with, to count by, minutes of an hour."""
 _LONGEST_PAUSE: Final = 60.0
 """Seconds between two looks that nobody has to say."""
-ANYBODY: Final = "person"
 
 
 @dataclass(frozen=True)

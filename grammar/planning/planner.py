@@ -9,7 +9,7 @@ say, whoever made it; which of several is meant, for the application.
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Protocol
@@ -143,7 +143,3 @@ def _nothing() -> None:
 
 def _nothing_of(text: str) -> None:
     """Nobody looks on."""
-
-
-Registry = Mapping[str, Callable[[], Planner]]
-"""Planners by name; each is made when it is first asked."""

@@ -16,9 +16,9 @@ from typing import Final
 
 from rapidfuzz import fuzz
 
-from grammar.planning.model.prompt import ANYBODY
 from grammar.planning.planner import Draft
 from grammar.planning.turn import Turn
+from grammar.roles import ANYBODY
 from nl2robot.deliberation.considering import Considered, consider
 from nl2robot.deliberation.paper_robot import Event, Scene
 from nl2robot.deliberation.playing import Course, played

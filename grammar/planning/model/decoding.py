@@ -100,29 +100,12 @@ class _Growing:
 
 @dataclass
 class Decoder:
-    """Writes programs for one sentence."""
+    """Writes programs for one sentence: the first, then others if they are wanted."""
 
     model: LanguageModel
     forks: list[Fork] = field(default_factory=list)
     steps: int = 0
     """How often the model was asked to read."""
-
-    def written(
-        self,
-        prompt: Any,
-        begun: Partial,
-        most: int = 1,
-        on_text: Callable[[str], None] | None = None,
-        enough: Callable[[], bool] | None = None,
-    ) -> Iterator[Written]:
-        """Up to `most` different programs: first the one that is written by taking the likeliest
-        token each time, then the others, the likeliest first; none if that one comes to nothing.
-        `prompt` is the branch behind which they are written. `on_text` is told the first one as it
-        grows. Once there was `enough`, no token is written any more."""
-        first = self.first(prompt, begun, on_text, enough)
-        if first is not None:  # else its beginnings are no programs that anybody wants
-            yield first
-            yield from self.others(first, most - 1, enough)
 
     def first(
         self,
@@ -131,7 +114,9 @@ class Decoder:
         on_text: Callable[[str], None] | None = None,
         enough: Callable[[], bool] | None = None,
     ) -> Written | None:
-        """The first of these."""
+        """The program that is written by taking the likeliest token each time; None if that comes
+        to nothing. `prompt` is the branch behind which it is written, `on_text` is told it as it
+        grows. Once there was `enough`, no token is written any more."""
         self.forks = []
         growing = [_Growing(prompt, begun, 0.0)]
         return next(self._grown(growing, enough or _never, on_text), None)
@@ -139,7 +124,7 @@ class Decoder:
     def others(
         self, first: Written, most: int, enough: Callable[[], bool] | None = None
     ) -> Iterator[Written]:
-        """The others, once the first is written."""
+        """Up to `most` other programs, once the first is written; the likeliest first."""
         if first.text.startswith(WAYS_OUT):
             return  # what else could be done is not asked
         least = first.score - LEAST_LIKELY

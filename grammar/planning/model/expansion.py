@@ -33,11 +33,11 @@ from grammar.plan import (
 )
 from grammar.planning.model.expressions import CALLS, DAYS
 from grammar.reading import NotAPlan, parse_program
+from grammar.roles import ANYBODY
 from grammar.speech import speech
 from grammar.tidy import BODIES, nodes
 
 START: Final = "start"
-ANYBODY: Final = "person"
 _SEARCH: Final = "find"
 
 

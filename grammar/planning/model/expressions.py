@@ -1,8 +1,4 @@
-"""Values and conditions of the dialect, read letter by letter, as far as they are written.
-
-A reader stands at a place of one line. Where the line ends too early it raises `Unfinished`, with
-what could come next if that is one of a few; where no program goes on like this it raises `Dead`.
-"""
+"""Values and conditions of the dialect, read letter by letter, as far as they are written."""
 
 from __future__ import annotations
 
@@ -14,6 +10,7 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Final
 
+from grammar.planning.model.letters import LONGEST_TEXT, Dead, Letters, Unfinished, is_plain
 from grammar.planning.model.types import (
     NOTHING,
     NUMBER,
@@ -29,10 +26,6 @@ from grammar.planning.model.vocabulary import Vocabulary, form
 from grammar.roles import FREE, NUMBERS, OPTIONS, role
 from robot_api.methods import METHODS, Parameter
 
-LONGEST_TEXT: Final = 300
-"""Characters that are said or shown at once."""
-LONGEST_NAME: Final = 16
-"""Of what a program remembers: a model that has lost its way would go on and on."""
 LONGEST_OPTION: Final = 60
 DAYS: Final = ("Monday", "Tuesday", "Wednesday", "Thursday", "Friday", "Saturday", "Sunday")
 NOT_OFFERED: Final = frozenset({"stop", "log"})
@@ -50,30 +43,12 @@ KEYWORDS: Final = frozenset({*keyword.kwlist, "robot", "random", "range", "weekd
 """Names that are no names, or that a program needs for something else."""
 INNERMOST: Final = 8
 """How many brackets may stand in one another."""
-_WORD: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _DIGITS: Final = re.compile(r"-?[0-9.]*")
 _WORDS: Final = re.compile(r"\w+")
 _PARTS: Final = re.compile(r"[^\0 ]+")
 _ORDERS: Final = (" <= ", " >= ", " < ", " > ")
 _EQUAL: Final = (" == ", " != ")
 _WITHIN: Final = (" not in ", " in ")
-
-
-class Dead(Exception):
-    """No program goes on like this."""
-
-
-class Unfinished(Exception):
-    """The line ends too early; `completions` are all that could follow, if they are few."""
-
-    def __init__(self, completions: Iterable[str] = ()) -> None:
-        super().__init__()
-        self.completions = tuple(completions)
-
-
-def is_plain(letter: str) -> bool:
-    """Whether a letter may stand in a text as it is."""
-    return letter != "\\" and (letter.isprintable() or letter in "\u00a0\u202f")
 
 
 def _compared_with(left: Type) -> tuple[str, ...]:
@@ -107,19 +82,23 @@ def _added_to(left: Type) -> tuple[str, ...]:
     return (" + ",) if left.is_text or left.kind is Kind.LIST else ()
 
 
-class Reader:
+class Reader(Letters):
     """Reads a line from a place on, where some names are known."""
 
     def __init__(self, line: str, at: int, names: dict[str, Type], words: Vocabulary) -> None:
-        self.line = line
-        self.at = at
+        super().__init__(line, at)
         self.names = names
         self.words = words
         self.used: set[str] = set()
         """Names whose values were used."""
-        self.quote = '"'
         self.deep = 0
         """In how many brackets this stands."""
+
+    @cached_property
+    def numbers(self) -> tuple[str, ...]:
+        """Those that may stand where nothing says what is counted."""
+        words = self.words
+        return (*words.numbers, *words.minutes, *words.percents, "1", "-1", "2", "60", "100")
 
     @contextmanager
     def bracket(self) -> Iterator[None]:
@@ -131,102 +110,6 @@ class Reader:
             yield
         finally:
             self.deep -= 1
-
-    # --- letters
-
-    @cached_property
-    def numbers(self) -> tuple[str, ...]:
-        """Those that may stand where nothing says what is counted."""
-        words = self.words
-        return (*words.numbers, *words.minutes, *words.percents, "1", "-1", "2", "60", "100")
-
-    @property
-    def rest(self) -> str:
-        return self.line[self.at :]
-
-    def choose(self, options: Sequence[str]) -> str:
-        """One of these texts."""
-        rest = self.rest
-        found = max((each for each in options if rest.startswith(each)), key=len, default=None)
-        if found is not None:
-            self.at += len(found)
-            return found
-        begun = [each[len(rest) :] for each in options if each.startswith(rest)]
-        if begun:
-            raise Unfinished(begun)
-        raise Dead
-
-    def expect(self, text: str) -> None:
-        self.choose((text,))
-
-    def maybe(self, *options: str) -> str:
-        """One of these texts if it stands here, else ""; they may also follow what does not."""
-        rest = self.rest
-        if any(each.startswith(rest) for each in options):
-            if rest in options:
-                self.at += len(rest)
-                return rest
-            raise Unfinished
-        found = next((each for each in options if rest.startswith(each)), "")
-        self.at += len(found)
-        return found
-
-    def next(self) -> str:
-        """The letter that stands here."""
-        if self.at >= len(self.line):
-            raise Unfinished
-        return self.line[self.at]
-
-    def word(self, known: Iterable[str] | None = None) -> str:
-        """A name; one of those that are `known`, if that is said."""
-        self.next()
-        match = _WORD.match(self.line, self.at)
-        if match is None:
-            raise Dead
-        word = match.group()
-        if len(word) > LONGEST_NAME:
-            raise Dead
-        if match.end() == len(self.line):
-            if known is None:
-                raise Unfinished
-            begun = [each[len(word) :] for each in known if each.startswith(word)]
-            if not begun:
-                raise Dead
-            raise Unfinished(begun if all(begun) else ())
-        if known is not None and word not in known:
-            raise Dead
-        self.at = match.end()
-        return word
-
-    def text(self, longest: int = LONGEST_TEXT) -> str:
-        """Words in quotation marks."""
-        self.expect(self.quote)
-        start = self.at
-        while (letter := self.next()) != self.quote:
-            if letter in '"{}' or not is_plain(letter) or self.at - start >= longest:
-                raise Dead
-            self.at += 1
-        self.at += 1
-        return self.line[start : self.at - 1]
-
-    def quoted_words(self) -> None:
-        """Some words of the sentence, in quotation marks."""
-        self.expect(self.quote)
-        rest, _, behind = self.rest.partition(self.quote)
-        said = re.escape(rest)
-        ends = len(rest) < len(self.rest)
-        if rest[:1] == " " or not re.search(rf"\b{said}" + r"\b" * ends, self.words.said):
-            raise Dead
-        if not ends:
-            raise Unfinished
-        self.at = len(self.line) - len(behind)
-
-    def literal(self, known: Sequence[str]) -> str:
-        """One of these in quotation marks, of those that can stand in them."""
-        quotes = {'"', self.quote}
-        plain = [each for each in known if all(map(is_plain, each)) and not quotes & {*each}]
-        chosen = self.choose([f"{self.quote}{each}{self.quote}" for each in plain])
-        return chosen[1:-1]
 
     # --- conditions
 
@@ -253,13 +136,6 @@ class Reader:
             self.expect(")")
         else:
             self.comparison()
-
-    def starts(self, text: str) -> bool:
-        """Whether this stands here; as long as it may, what is said is unfinished."""
-        rest = self.rest
-        if len(rest) < len(text) and text.startswith(rest):
-            raise Unfinished
-        return rest.startswith(text)
 
     def comparison(self) -> Type:
         """A value, alone or compared with another; alone it must be able to be true or not."""

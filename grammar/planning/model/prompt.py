@@ -13,13 +13,13 @@ from grammar.planning.mentions import Mention, written
 from grammar.planning.model.request import Piece, Request
 from grammar.planning.model.vocabulary import Vocabulary
 from grammar.planning.turn import Turn
+from grammar.roles import ANYBODY, QUANTITIES, SORTS
 
 PREFIX: Final = "<|im_start|>system\nRobot program.<|im_end|>\n"
 """What stands before every sentence."""
 _PERSON: Final = Piece("<|im_start|>user\n", marks=True)
 _MODEL: Final = Piece("<|im_end|>\n<|im_start|>assistant\n", marks=True)
 _OVER: Final = Piece("<|im_end|>\n", marks=True)
-ANYBODY: Final = "person"
 _DEFAULTS: Final = {
     "seconds": ("1", "2", "5", "10", "30", "60"),
     "metres": ("0.5", "1"),
@@ -29,34 +29,12 @@ _DEFAULTS: Final = {
 }
 """Numbers for what is asked for without one: "wait a moment", "turn left", "a bit louder"; and how
 long to wait between two looks, which nobody says."""
-_QUANTITIES: Final = {
-    "seconds": "seconds",
-    "metres": "metres",
-    "degrees": "degrees",
-    "percents": "percent",
-}
 _JOINTS: Final = (
     *("head_yaw", "head_pitch", "left_shoulder", "right_shoulder", "left_elbow", "right_elbow"),
     *("left_wrist", "right_wrist", "waist"),
 )
 """What joints are called where it is not known which the robot has."""
 _SIGNED: Final = frozenset({"metres", "degrees", "numbers"})
-_SORTS: Final = {
-    "places": "place",
-    "kinds": "kind",
-    "people": "person",
-    "things": "thing",
-    "furniture": "furniture",
-    "contacts": "contact",
-    "gestures": "gesture",
-    "emotions": "emotion",
-    "joints": "joint",
-    "skills": "skill",
-    "languages": "language",
-    "times": "time",
-    "urls": "url",
-    "selectors": "selector",
-}
 
 
 def request(turn: Turn, before: str = "", most: int = 1) -> Request:
@@ -84,21 +62,20 @@ def vocabulary(turn: Turn) -> Vocabulary:
     lexicon, found = turn.lexicon, turn.spoken_of
     own = {
         field: tuple(dict.fromkeys(each.value for each in found if each.sort == sort))
-        for field, sort in _SORTS.items()
+        for field, sort in SORTS.items()
     }
     own["places"] = tuple(dict.fromkeys((*own["places"], *_owned(lexicon, own["people"]))))
     own["people"] = tuple(dict.fromkeys((*own["people"], ANYBODY)))
     own["gestures"] = tuple(dict.fromkeys((*own["gestures"], *lexicon.gestures)))
     own["emotions"] = tuple(dict.fromkeys((*own["emotions"], *lexicon.emotions)))
     own["joints"] = lexicon.joints or _JOINTS
-    own["skills"] = lexicon.skills
     own["languages"] = own["languages"] or lexicon.languages
     own["times"] = tuple(dict.fromkeys(_either_half(own["times"])))
     phrases = tuple(dict.fromkeys((*_phrases(turn), *(_phrases(turn.before or turn)))))
     own["skills"] = lexicon.skills or phrases
     numbers = {
         field: tuple(_numbers(field, [each.value for each in found if each.sort == sort]))
-        for field, sort in _QUANTITIES.items()
+        for field, sort in QUANTITIES.items()
     }
     spans = [float(each.value) / 60 for each in found if each.sort == "seconds"]
     plain = [each.value for each in found if each.sort in ("number", "times")]

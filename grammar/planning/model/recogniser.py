@@ -19,11 +19,9 @@ from grammar.planning.model.expressions import (
     CALLS,
     FUNCTIONS,
     KEYWORDS,
-    LONGEST_NAME,
-    Dead,
     Reader,
-    Unfinished,
 )
+from grammar.planning.model.letters import LONGEST_NAME, Dead, Unfinished
 from grammar.planning.model.types import NUMBER, TEXT, Kind, Type, result_of
 from grammar.planning.model.vocabulary import Vocabulary
 from robot_api.methods import METHODS
@@ -281,7 +279,7 @@ class _Line(Reader):
                 self.expect(f"{way}(")
                 self.literal(reasons)
                 if self.choose((", ", ")")) == ", ":
-                    self.quoted_words()
+                    self.quoted_words(self.words.said)
                     self.expect(")")
                 return True
         return False

@@ -104,7 +104,9 @@ def written(
     on_text: Callable[[str], None] | None = None,
     enough: Callable[[], bool] | None = None,
 ) -> list[Written]:
-    return [*Decoder(model).written("", Partial.begin(WORDS), most, on_text, enough)]
+    decoder = Decoder(model)
+    first = decoder.first("", Partial.begin(WORDS), on_text, enough)
+    return [] if first is None else [first, *decoder.others(first, most - 1, enough)]
 
 
 def texts(model: Speller, most: int = 4) -> list[str]:
