@@ -91,7 +91,13 @@ class Checked:
     own: tuple[str, ...] = field(default=())
     """What the robot would say of its own knowledge."""
     doubts: tuple[Objection, ...] = ()
-    """What makes it less likely that the plan is right."""
+    """What makes it less likely that the plan is right: of the kinds of objections, "hardly asked",
+    and "unspoken": the plan uses no word, and no word asks for what it does."""
+
+    @property
+    def spoken(self) -> bool:
+        """Whether any word speaks for the plan: otherwise it may only be asked about."""
+        return all(each.kind != "unspoken" for each in self.doubts)
 
     @property
     def sound(self) -> bool:
@@ -154,6 +160,8 @@ class _Check:
         """What makes a plan less likely to be right and need not be wrong."""
         yield from (Objection("unasked", method) for method in self.unasked())
         yield from (Objection("hardly asked", method) for method in self.hardly_asked())
+        if not self.used and not any(self.speaks(at) for at in self.left):
+            yield Objection("unspoken", self.turn.text)
         for at in self.left:
             asked = self.evidence.asked_for(self.norm(at))
             if asked and not self.deeds.intersection(asked):

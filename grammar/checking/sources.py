@@ -19,7 +19,8 @@ from grammar.lexicon import kind_of, series_of
 from grammar.plan import Plan
 from grammar.planning.mentions import Mention, written
 from grammar.planning.turn import Turn
-from grammar.roles import ANYBODY, FREE, NUMBERS, OPTIONS, QUANTITIES, SORTS
+from grammar.roles import ANYBODY, FREE, NUMBERS, OPTIONS, QUANTITIES, SORTS, role
+from robot_api.methods import METHODS
 
 Origin = OneOf["name", "words", "number", "before", "default", "answer", "own"]
 
@@ -31,6 +32,14 @@ _LEFT_TO_THE_ROBOT: Final = frozenset(
 _DEGREES: Final = frozenset({45.0, 90.0, 180.0, 360.0})
 _SMALL: Final = frozenset({0.0, 1.0, 2.0, 60.0, 100.0})
 """Numbers that a program may need besides: to start with, to count by, minutes of an hour."""
+_BY_NUMBERS: Final = frozenset(
+    method.name
+    for method in METHODS.values()
+    for form in method.forms
+    for each in form
+    if role(method, each) == "numbers"
+)
+"""Methods that take speeds or coordinates: how fast, how long and where to, somebody must say."""
 _LONGEST_PAUSE: Final = 60.0
 """Seconds between two looks that nobody has to say."""
 
@@ -224,6 +233,8 @@ class Sources:
         if tokens:
             return Source(literal, "number", tokens)
         match literal.role:
+            case "seconds" | "numbers" if literal.method in _BY_NUMBERS:
+                return Source(literal, "default") if value == 0 else None
             case "seconds" if value <= _LONGEST_PAUSE:
                 return Source(literal, "default")
             case "degrees" if abs(value) in _DEGREES:

@@ -484,7 +484,6 @@ def test_what_is_not_of_this_world_is_never_shown(written: str, scripted: Script
 
 
 @pytest.mark.parametrize("written", ["turn(360)\n" * 20, "dock()\n"])
-@pytest.mark.xfail(reason="check: only some methods must be asked for, and no word need be used")
 def test_what_has_nothing_to_do_with_what_was_said_is_never_shown(
     written: str, scripted: Scripted
 ) -> None:
@@ -534,7 +533,6 @@ def test_a_model_that_obeys_an_attacker_gets_nothing_through(
 
 
 @pytest.mark.parametrize(("language", "words"), RAMMING)
-@pytest.mark.xfail(reason="check: an unknown word excuses driving, at a speed nobody has said")
 def test_nobody_drives_two_metres_a_second_unasked(
     language: str, words: str, scripted: Scripted
 ) -> None:

@@ -1,30 +1,31 @@
-"""From the corpus to what a model is shown: tokens to read, and tokens to learn."""
+"""From the corpus to what a model is shown: tokens to read, and tokens to learn.
+
+    python -m nl2robot.training.planner.examples INSTALLED_FOLDER OUT.msgpack [--passes 3]
+
+The file is all that `train` needs besides the weights.
+"""
 
 from __future__ import annotations
 
+import argparse
 import random
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from pathlib import Path
 from typing import Final
 
 from grammar.planning.model.prompt import request
 from grammar.said import forget
+from nl2robot.language_model.files import TOKENS
 from nl2robot.language_model.tokens import Tokens
-from nl2robot.training.planner.corpus import Item, knowledge
+from nl2robot.training.planner.corpus import Item, files, knowledge, load
+from nl2robot.training.planner.example import Example, Examples
 from nl2robot.training.planner.noise import as_heard, as_typed
 
 HELD_OUT: Final = "-6"
-"""The last file of each author is never learned from."""
+"""The sixth file of each author is never learned from."""
 NOISY: Final = 0.2
 """The share of sentences that are shown as heard or as typed."""
-
-
-@dataclass(frozen=True)
-class Example:
-    prompt: tuple[int, ...]
-    program: tuple[int, ...]
-    """Its end included."""
-    item: Item
 
 
 def example(item: Item, tokens: Tokens) -> Example:
@@ -33,7 +34,7 @@ def example(item: Item, tokens: Tokens) -> Example:
     prompt = [*tokens.encode(asked.prefix, control=True)]
     for piece in asked.said:
         prompt += tokens.encode(piece.text, control=piece.marks)
-    return Example(tuple(prompt), (*tokens.encode(item.do), tokens.end), item)
+    return Example(tuple(prompt), (*tokens.encode(item.do), tokens.end))
 
 
 def is_held_out(item: Item) -> bool:
@@ -61,3 +62,20 @@ def noisy(item: Item, chance: random.Random) -> Item:
         for word in text.split()
     )
     return replace(item, say=as_typed(item.say, chance, names))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("installed", type=Path)
+    parser.add_argument("out", type=Path)
+    parser.add_argument("--passes", type=int, default=3, help="over the corpus")
+    given = parser.parse_args()
+    tokens, items = Tokens.load(given.installed / TOKENS), list(load(files()))
+    passes = [list(learned(items, tokens, number)) for number in range(given.passes)]
+    unseen = [example(item, tokens) for item in items if is_held_out(item)]
+    Examples(passes, unseen, list(tokens.written)).save(given.out)
+    print(f"{len(passes[0])} examples in {len(passes)} passes, {len(unseen)} never learned from")
+
+
+if __name__ == "__main__":
+    main()

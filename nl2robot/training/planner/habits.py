@@ -20,7 +20,8 @@ from nl2robot.language_model.files import TOKENS
 from nl2robot.language_model.habits import FILE, LONGEST, NONE, guessed, key
 from nl2robot.language_model.tokens import Tokens
 from nl2robot.training.planner.corpus import files, load
-from nl2robot.training.planner.examples import Example, example, is_held_out
+from nl2robot.training.planner.example import Example
+from nl2robot.training.planner.examples import example, is_held_out
 
 OFTEN: Final = 3
 """How often something has to have been seen to be a habit, or to be none."""

@@ -7,7 +7,9 @@ different lengths stand one behind the other in a row; only attention knows wher
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
 
@@ -20,29 +22,32 @@ from nl2robot.language_model.changes import SCALE
 from nl2robot.language_model.graph import CHANGED
 from nl2robot.language_model.weights import GgufFile, Sizes
 
-RANK: Final = 8
-FIRST_CHANGED: Final = 4
-"""The layer from which on there are changes: below, a text is only read."""
+RANK: Final = 16
+DROPPED: Final = 0.05
+"""The share of a change's inputs that is left out at each step of learning."""
+LONGEST: Final = 2048
+"""Tokens of a text."""
 
 
 class Product(nn.Module):
-    """A product with fixed weights, and a change of low rank."""
+    """A product with fixed weights, and a change of low rank. What is learned is kept as floats
+    of 32 bits, whatever the weights are."""
 
-    def __init__(self, weights: Tensor, bias: Tensor | None, changed: bool) -> None:
+    def __init__(self, weights: Tensor, bias: Tensor | None, rank: int) -> None:
         super().__init__()
         self.weights = nn.Parameter(weights, requires_grad=False)
         self.bias = None if bias is None else nn.Parameter(bias, requires_grad=False)
         rows, columns = weights.shape
-        self.down: nn.Parameter | None = None
-        if changed:
-            self.down = nn.Parameter(torch.randn(RANK, columns) / columns**0.5)
-            self.up = nn.Parameter(torch.zeros(rows, RANK))
+        self.down = nn.Parameter(torch.randn(rank, columns) / columns**0.5)
+        self.up = nn.Parameter(torch.zeros(rows, rank))
 
     def forward(self, x: Tensor) -> Tensor:
         y = functional.linear(x, self.weights, self.bias)
-        if self.down is not None:
-            y = y + SCALE * functional.linear(functional.linear(x, self.down), self.up)
-        return y
+        between = functional.linear(self.dropped(x), self.down.to(x.dtype))
+        return y + SCALE * functional.linear(between, self.up.to(x.dtype))
+
+    def dropped(self, x: Tensor) -> Tensor:
+        return functional.dropout(x, DROPPED, self.training)
 
 
 @dataclass(frozen=True)
@@ -52,13 +57,22 @@ class Row:
     tokens: Tensor
     lengths: tuple[int, ...]
 
-    @property
+    @cached_property
     def places(self) -> Tensor:
-        return torch.cat([torch.arange(length) for length in self.lengths])
+        """Of each token in its text."""
+        return torch.cat([torch.arange(length) for length in self.lengths]).to(self.tokens.device)
+
+    @cached_property
+    def cells(self) -> Tensor:
+        """Of each token, where texts stand below each other."""
+        starts = torch.arange(len(self.lengths)) * max(self.lengths)
+        return self.places + starts.repeat_interleave(torch.tensor(self.lengths)).to(
+            self.tokens.device
+        )
 
 
 class Layer(nn.Module):
-    def __init__(self, file: GgufFile, number: int, changed: bool) -> None:
+    def __init__(self, file: GgufFile, number: int, rank: int, kind: torch.dtype) -> None:
         super().__init__()
         self.sizes = file.sizes
         name = f"blk.{number}"
@@ -67,13 +81,12 @@ class Layer(nn.Module):
             weights = np.concatenate([_dense(file, f"{name}.{each}.weight") for each in which])
             bias = None
             if which[0] == "attn_q":
-                bias = torch.from_numpy(
-                    np.concatenate([file.vector(f"{name}.{each}.bias") for each in which])
-                )
-            return Product(torch.from_numpy(weights), bias, changed)
+                vectors = [file.vector(f"{name}.{each}.bias") for each in which]
+                bias = torch.from_numpy(np.concatenate(vectors)).to(kind)
+            return Product(torch.from_numpy(weights).to(kind), bias, rank)
 
-        self.before = _fixed(file.vector(f"{name}.attn_norm.weight"))
-        self.between = _fixed(file.vector(f"{name}.ffn_norm.weight"))
+        self.before = _fixed(file.vector(f"{name}.attn_norm.weight"), kind)
+        self.between = _fixed(file.vector(f"{name}.ffn_norm.weight"), kind)
         self.qkv = product("attn_q", "attn_k", "attn_v")
         self.told = product("attn_output")
         self.gate, self.up = product("ffn_gate"), product("ffn_up")
@@ -93,51 +106,52 @@ class Layer(nn.Module):
         heads = qkv.view(len(qkv), -1, s.head_width)
         q, k, v = heads.split((s.heads, s.kv_heads, s.kv_heads), 1)
         q, k = _turned(q, cosines, sines), _turned(k, cosines, sines)
-        repeated = s.heads // s.kv_heads
-        k, v = k.repeat_interleave(repeated, 1), v.repeat_interleave(repeated, 1)
-        texts = []
-        for a, b, c in zip(
-            q.split(row.lengths), k.split(row.lengths), v.split(row.lengths), strict=True
-        ):
-            seen = functional.scaled_dot_product_attention(
-                a.transpose(0, 1), b.transpose(0, 1), c.transpose(0, 1), is_causal=True
-            )
-            texts.append(seen.transpose(0, 1).reshape(len(a), -1))
-        return torch.cat(texts)
+        below = (len(row.lengths), max(row.lengths))
+        q, k, v = (
+            each.new_zeros((below[0] * below[1], *each.shape[1:]))
+            .index_copy(0, row.cells, each)
+            .view(*below, *each.shape[1:])
+            .transpose(1, 2)
+            for each in (q, k, v)
+        )
+        seen = functional.scaled_dot_product_attention(q, k, v, is_causal=True, enable_gqa=True)
+        return seen.transpose(1, 2).reshape(below[0] * below[1], -1)[row.cells]
 
 
 class Network(nn.Module):
     """A Qwen2 model that learns. `written` are the tokens that get a score."""
 
-    def __init__(self, path: Path, written: tuple[int, ...]) -> None:
+    def __init__(
+        self,
+        path: Path,
+        written: Sequence[int],
+        rank: int = RANK,
+        kind: torch.dtype = torch.float32,
+    ) -> None:
         super().__init__()
         file = GgufFile(path)
         self.sizes: Sizes = file.sizes
-        self.embeddings = _fixed(_dense(file, "token_embd.weight"))
+        self.embeddings = _fixed(_dense(file, "token_embd.weight"), kind)
         self.layers = nn.ModuleList(
-            Layer(file, number, number >= FIRST_CHANGED) for number in range(self.sizes.layers)
+            Layer(file, number, rank, kind) for number in range(self.sizes.layers)
         )
-        self.last = _fixed(file.vector("output_norm.weight"))
-        self.head = _fixed(_dense(file, "output.weight")[np.array(written)])
+        self.last = _fixed(file.vector("output_norm.weight"), kind)
+        self.head = _fixed(_dense(file, "output.weight")[np.array(written)], kind)
         turns = self.sizes.rope_base ** (
             torch.arange(0, self.sizes.head_width, 2) / self.sizes.head_width
         )
-        angles = torch.arange(2048)[:, None] / turns[None]
-        self.cosines, self.sines = angles.cos(), angles.sin()
+        angles = torch.arange(LONGEST)[:, None] / turns[None]
+        self.cosines, self.sines = _constant(angles.cos()), _constant(angles.sin())
 
     def forward(self, row: Row, wanted: Tensor) -> Tensor:
         """The scores of what follows the tokens at the places `wanted` of a row."""
         x = self.embeddings[row.tokens]
         places = row.places
         cosines, sines = self.cosines[places][:, None], self.sines[places][:, None]
-        for number, layer in enumerate(self.layers):
-            if number < FIRST_CHANGED:
-                with torch.no_grad():
-                    x = layer(x, row, cosines, sines)
-            else:
-                x = layer(x, row, cosines, sines)
+        for layer in self.layers:
+            x = layer(x, row, cosines, sines)
         x = functional.rms_norm(x[wanted], (x.shape[-1],), self.last, self.sizes.epsilon)
-        return functional.linear(x, self.head)
+        return functional.linear(x, self.head).float()
 
     def changes(self) -> list[nn.Parameter]:
         return [each for each in self.parameters() if each.requires_grad]
@@ -147,7 +161,6 @@ class Network(nn.Module):
         return {
             f"{number}.{name}.{side}": getattr(getattr(layer, name), side).detach()
             for number, layer in enumerate(self.layers)
-            if number >= FIRST_CHANGED
             for name in CHANGED
             for side in ("down", "up")
         }
@@ -162,10 +175,14 @@ def _dense(file: GgufFile, name: str) -> np.ndarray[Any, np.dtype[np.float32]]:
     return file._dense(name, None)
 
 
-def _fixed(values: np.ndarray[Any, np.dtype[np.float32]]) -> nn.Parameter:
-    return nn.Parameter(torch.from_numpy(np.ascontiguousarray(values)), requires_grad=False)
+def _fixed(values: np.ndarray[Any, np.dtype[np.float32]], kind: torch.dtype) -> nn.Parameter:
+    return _constant(torch.from_numpy(np.array(values)).to(kind))
+
+
+def _constant(values: Tensor) -> nn.Parameter:
+    return nn.Parameter(values, requires_grad=False)
 
 
 def _turned(x: Tensor, cosines: Tensor, sines: Tensor) -> Tensor:
     a, b = x.chunk(2, -1)
-    return torch.cat([a * cosines - b * sines, b * cosines + a * sines], -1)
+    return torch.cat([a * cosines - b * sines, b * cosines + a * sines], -1).to(x.dtype)
