@@ -28,7 +28,8 @@ from grammar.planning.planner import (
 from grammar.planning.turn import Turn
 from grammar.requests import ABOUT_RUNS, Request, agreed
 from grammar.understanding import Context
-from nl2robot.deliberation.deciding import Chosen, Offer, Open, decide
+from nl2robot.deliberation.deciding import Chosen, Offer, Open, between, decide
+from nl2robot.deliberation.sufficing import is_sure
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.plain import visible
@@ -210,13 +211,21 @@ def _planned(turn: Turn, knowledge: Knowledge, name: str, watch: Watch) -> tuple
             return other
     if name != AUTO or not turn.tokens or not available("model"):
         return turn, decided
-    open_ = isinstance(decided, Refusal) and not decided.final
-    if not open_ and not (isinstance(decided, Chosen) and _loses(turn, decided.plan)):
+    if not _is_open(turn, decided):
         return turn, decided
     by_model = _decided(turn, planner("model").plan(turn, watch), knowledge)
     if isinstance(by_model, Refusal) and not by_model.final:
         return turn, decided  # the rules say which word they do not know
+    if isinstance(decided, Chosen) and not isinstance(by_model, Question | Service):
+        return turn, between(turn, decided, by_model)
     return turn, by_model
+
+
+def _is_open(turn: Turn, decided: Decided) -> bool:
+    """Whether another planner may know better than the rules."""
+    if isinstance(decided, Chosen):
+        return not is_sure(turn, decided.considered) or _loses(turn, decided.plan)
+    return isinstance(decided, Refusal) and not decided.final
 
 
 def _loses(turn: Turn, plan: Plan) -> bool:

@@ -139,8 +139,9 @@ class Sources:
         if tokens:
             return Source(literal, "name", tokens)
         if literal.role == "places":
-            spoken = self.owners(literal.text) or self.of_a_kind(literal.text)
-            return Source(literal, "name", spoken) if spoken else None
+            figures = frozenset(at for word in literal.text.split() for at in self.figure(word))
+            spoken = self.owners(literal.text) or self.of_a_kind(literal.text) or figures
+            return Source(literal, "name", spoken | figures) if spoken else None
         if literal.role in ("people", "things") and literal.text == ANYBODY:
             return Source(literal, "default")
         words = self.words(literal.text)

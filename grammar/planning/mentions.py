@@ -99,18 +99,20 @@ def _listed(reader: Reader) -> Iterator[Mention]:
 
 def _tails(reader: Reader, found: Sequence[Mention]) -> Iterator[Mention]:
     """The places of which only the end of the name is said, behind others of their kind: "rooms 21
-    and 22"."""
+    and 22"; and those of which only a long number is said: "Bob in 106"."""
     before: list[tuple[int, str]] = [
         (each.end, each.value) for each in found if each.sort in ("place", "kind")
     ]
     for at in range(1, len(reader.tokens)):
         for end, cost, names in reader.slots.matches("{place_tail}", at):
+            long = end == at + 1 and len(reader.tokens[at].norm) >= 3 and reader.tokens[at].value
             for name in names if isinstance(names, tuple) else ():
                 alike = {
                     each.name for each in reader.lexicon.places if kind_of(each) == kind_of(name)
                 }
                 alike.add(kind_of(name) or "")
-                if any(last in range(at - 2, at + 1) and value in alike for last, value in before):
+                behind = any(last in range(at - 2, at + 1) and it in alike for last, it in before)
+                if behind or (long and len(names) == 1):
                     yield Mention(at, end, "place", name.name, reader.words(at, end), cost + 1.0)
                     before.append((end, name.name))
 

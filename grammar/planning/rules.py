@@ -6,16 +6,13 @@ from typing import Final
 
 from grammar.planning.planner import Answer, Draft, Drafts, Question, Refusal, Service, Watch
 from grammar.planning.turn import Turn
-from grammar.refusals import forbidden, why_not
+from grammar.refusals import forbidden
 from grammar.understand import understand
 from grammar.understanding import Understanding
 
 NAME: Final = "grammar"
-_OPEN: Final = frozenset({"not_understood_at_all"})
-"""Reasons of the rules that another planner may know better."""
-
-_MUST_NOT: Final = ("no_harm", "no_medicine", "dismissed")
-"""What is said where the rules have understood that nothing shall be done."""
+_MUST_NOT: Final = ("no_harm", "no_medicine", "no_computer", "dismissed")
+"""What is said where nothing must be done, whoever understands the sentence better."""
 
 
 class RulesPlanner:
@@ -39,15 +36,11 @@ class RulesPlanner:
 
 
 def _is_final(turn: Turn, understood: Understanding) -> bool:
-    """Whether the rules refuse because something must not be done, or is none of a robot's
-    business: not only because they do not understand it."""
-    tokens = turn.tokens
-    if not tokens or forbidden(tokens, turn.language) is not None:
+    """Whether the rules refuse because it must not be done: not only because they do not understand
+    it, or take a word of it for idle talk."""
+    if not turn.tokens or forbidden(turn.tokens, turn.language) is not None:
         return True
-    if understood.message in [turn.language.phrases.get(each) for each in _MUST_NOT]:
-        return True
-    reason = why_not(tokens, turn.language, turn.reader.names.called)
-    return reason not in _OPEN and understood.message == turn.language.phrases.get(reason)
+    return understood.message in [turn.language.phrases.get(each) for each in _MUST_NOT]
 
 
 __all__ = ["NAME", "RulesPlanner"]

@@ -13,28 +13,40 @@ import json
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from grammar.checking.words import content
 from grammar.planning.turn import Turn
-from nl2robot.deliberation.voting import Count, Vote
+
+if TYPE_CHECKING:  # trying drafts needs the sandbox, which takes a moment to load
+    from nl2robot.deliberation.considering import Considered
+    from nl2robot.deliberation.voting import Count, Vote
 
 WEIGHTS: Final = Path(__file__).parents[1] / "data" / "confidence.json"
 
 
 def features(turn: Turn, vote: Vote, count: Count) -> dict[str, float]:
     """What is known of the first draft of a vote."""
-    first, draft = vote.first, vote.first.draft
-    checked = first.checked
-    doubts = [each.kind for each in checked.doubts]
-    words = sum(1 for _ in content(turn.tokens, turn.language)) or 1
-    lines = first.program.count("\n")
-    return {
+    draft = vote.first.draft
+    known = features_alone(turn, vote.first)
+    return known | {
         "share": vote.share,
         "score": draft.score,
-        "score by line": draft.score / max(1, lines),
+        "score by line": draft.score / max(1.0, math.expm1(known["lines"])),
         "surest": draft.surest,
-        "lines": math.log1p(lines),
+        "dropped": len(count.dropped) / (len(count.dropped) + len(vote.drafts)),
+        "rivals": min(3, len(count.votes) - 1),
+    }
+
+
+def features_alone(turn: Turn, considered: Considered) -> dict[str, float]:
+    """What is known of a draft that has no rivals."""
+    checked, draft = considered.checked, considered.draft
+    doubts = [each.kind for each in checked.doubts]
+    words = sum(1 for _ in content(turn.tokens, turn.language)) or 1
+    program = considered.program
+    return {
+        "lines": math.log1p(program.count("\n")),
         "words": math.log1p(words),
         "unused": len(checked.unused) / words,
         "unused words": math.log1p(len(checked.unused)),
@@ -42,9 +54,8 @@ def features(turn: Turn, vote: Vote, count: Count) -> dict[str, float]:
         "hardly asked": min(3, doubts.count("hardly asked")),
         "unheeded": min(3, doubts.count("unheeded")),
         "own": min(3, len(checked.own)),
-        "dropped": len(count.dropped) / (len(count.dropped) + len(vote.drafts)),
-        "rivals": min(3, len(count.votes) - 1),
-        "branches": first.program.count("if ") + first.program.count("for "),
+        "branches": program.count("if ") + program.count("for "),
+        "remarks": len(draft.plan.background),
     }
 
 
@@ -60,6 +71,17 @@ def confidence(turn: Turn, vote: Vote, count: Count) -> float:
     weights = _weights().get(vote.first.draft.planner)
     if weights is None:
         return min(1.0, vote.share)
-    known = features(turn, vote, count)
+    return _probability(weights, features(turn, vote, count))
+
+
+def confidence_alone(turn: Turn, considered: Considered) -> float:
+    """The same for the only draft of a planner: what it says itself, if nothing else is known."""
+    weights = _weights().get(considered.draft.planner)
+    if weights is None:
+        return considered.draft.probability
+    return _probability(weights, features_alone(turn, considered))
+
+
+def _probability(weights: Mapping[str, float], known: Mapping[str, float]) -> float:
     total = weights["bias"] + sum(weights.get(name, 0.0) * value for name, value in known.items())
     return 1 / (1 + math.exp(-max(-30.0, min(30.0, total))))

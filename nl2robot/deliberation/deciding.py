@@ -98,6 +98,21 @@ def _only(turn: Turn, draft: Draft) -> Chosen | Refusal:
     return Chosen(considered, draft.probability)
 
 
+def between(turn: Turn, exact: Chosen, other: Chosen | Open | Refusal) -> Chosen | Open | Refusal:
+    """What comes of a draft of an exact planner that may be wrong, and of what another one says: if
+    that is the same, it is right. Otherwise the other one is believed, unless it knows nothing."""
+    from nl2robot.deliberation.voting import same
+
+    match other:
+        case Chosen() | Open(offers=(Offer(),)):
+            theirs = other if isinstance(other, Chosen) else other.offers[0].chosen
+            return exact if same(turn, exact.considered, theirs.considered) else other
+        case Refusal(final=False):
+            return exact
+        case _:
+            return other
+
+
 def _refused(turn: Turn, dropped: Sequence[Considered]) -> Refusal:
     """Why none of the drafts will do, as far as that is for people to know."""
     objections: list[Objection] = [

@@ -2,7 +2,8 @@
 
 `robot.` stands before no method, and a search for somebody stands alone: that what follows is only
 done if they are found, and that they were not is told where the robot was sent from, is a matter of
-course that no model has to write each time.
+course that no model has to write each time. A search for somebody else begins anew, unless what is
+done with them needs what the first was found for.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import Final
 
 import msgspec
 
-from grammar.identifiers import Identifiers, all_names, names_in
+from grammar.identifiers import Identifiers, all_names, names_in, speaks_of
 from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.naming import joined_up, naming
@@ -138,6 +139,12 @@ def _is_kept(steps: Sequence[Step], name: str) -> bool:
     return False
 
 
+def _hands(steps: Sequence[Step]) -> int:
+    """How much more was taken than was given away."""
+    calls = [node.method for node in nodes(steps) if isinstance(node, Call)]
+    return calls.count("grab") - calls.count("give") - calls.count("put")
+
+
 class Expansion:
     """What goes without saying, said."""
 
@@ -163,8 +170,11 @@ class Expansion:
             step = self.inner(step, in_loop, names)
             if self.is_search(step, names):
                 assert isinstance(step, Call)
-                rest = self.steps(steps[number + 1 :], in_loop, names)
-                return (*done, self.searched(step, rest, in_loop))
+                after = steps[number + 1 :]
+                end = self.end(step, after, names)
+                rest = self.steps(after[:end], in_loop, names)
+                anew = self.steps(after[end:], in_loop, names)
+                return (*done, self.searched(step, rest, in_loop), *anew)
             done.append(step)
         return tuple(done)
 
@@ -189,6 +199,19 @@ class Expansion:
             named = among.items if isinstance(among, Items) else ()
             return any(isinstance(each, Text) and each.value in self.people for each in named)
         return isinstance(thing, Text) and thing.value in self.people
+
+    def end(self, search: Call, steps: tuple[Step, ...], names: dict[str, Value]) -> int:
+        """How many of the steps after a search are done with whoever is found: those up to the next
+        search, if nothing from there on is about them, or needs what was found out or taken."""
+        for number, step in enumerate(steps):
+            before, after = steps[:number], steps[number:]
+            if before and self.is_search(step, names):
+                given = {name for node in nodes(before) for name in names_in(node).values()}
+                about = search.arguments["thing"] in nodes(after)
+                needed = about or any(speaks_of(after, name) for name in given)
+                if not needed and _hands(before) <= 0:
+                    return number
+        return len(steps)
 
     def searched(self, search: Call, rest: tuple[Step, ...], in_loop: bool) -> Step:
         found = Holds(Ask(_SEARCH, search.arguments))

@@ -23,7 +23,7 @@ from nl2robot.language_model.graph import CHANGED
 from nl2robot.language_model.weights import GgufFile, Sizes
 
 RANK: Final = 16
-DROPPED: Final = 0.05
+DROPPED: Final = 0.2
 """The share of a change's inputs that is left out at each step of learning."""
 LONGEST: Final = 2048
 """Tokens of a text."""

@@ -59,6 +59,27 @@ def test_two_searches_stand_in_each_other() -> None:
     assert found.count("start = location()") == 1
 
 
+def test_whoever_is_missing_keeps_nothing_from_the_next() -> None:
+    assert told('find("Bob")\nsay("Come.")\nfind("Alice")\nsay("Go.")') == (
+        'start = location(); if find("Bob") { say("Come.") }'
+        ' else { goto(start); say("I could not find Bob.") };'
+        ' if find("Alice") { say("Go.") } else { goto(start); say("I could not find Alice.") }'
+    )
+
+
+@pytest.mark.parametrize(
+    "first",
+    [
+        'answer = ask("When?", person="Bob")\nfind("Alice")\nsay(f"Bob says {answer}.")',
+        'grab("cup")\nfind("Alice")\ngive("cup", "Alice")',
+        'say("Come along.")\nfind("Alice")\nguide("Bob", "kitchen")',
+    ],
+)
+def test_what_the_first_was_found_for_is_not_done_without_them(first: str) -> None:
+    found = told(f'find("Bob")\n{first}')
+    assert "if find" in found.partition("else")[0].partition("if find")[2]
+
+
 def test_where_the_plan_keeps_the_start_itself_it_is_kept_once() -> None:
     found = told('start = location()\nfind("Bob")\ngoto(start)')
     assert found.count("location()") == 1
