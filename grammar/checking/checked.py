@@ -67,6 +67,8 @@ _FEW: Final = 12
 """Of a number up to this one, a round or a list may be what was counted."""
 _SURE: Final = 0.5
 """The cost of a mention that is no guess."""
+_OPEN: Final = frozenset({"unspoken", "denied"})
+"""Doubts with which a plan may only be asked about."""
 _NAMES: Final = frozenset({"place", "person", "contact"})
 
 
@@ -91,13 +93,14 @@ class Checked:
     own: tuple[str, ...] = field(default=())
     """What the robot would say of its own knowledge."""
     doubts: tuple[Objection, ...] = ()
-    """What makes it less likely that the plan is right: of the kinds of objections, "hardly asked",
-    and "unspoken": the plan uses no word, and no word asks for what it does."""
+    """What makes it less likely that the plan is right: of the kinds of objections, "hardly asked";
+    "unspoken": the plan uses no word, and no word asks for what it does; "denied": a "not" in what
+    somebody says of themselves, of which the plan makes nothing."""
 
     @property
-    def spoken(self) -> bool:
-        """Whether any word speaks for the plan: otherwise it may only be asked about."""
-        return all(each.kind != "unspoken" for each in self.doubts)
+    def clear(self) -> bool:
+        """Whether it may be shown without being asked about."""
+        return all(each.kind not in _OPEN for each in self.doubts)
 
     @property
     def sound(self) -> bool:
@@ -162,6 +165,10 @@ class _Check:
         yield from (Objection("hardly asked", method) for method in self.hardly_asked())
         if not self.used and not any(self.speaks(at) for at in self.left):
             yield Objection("unspoken", self.turn.text)
+        for at, token in enumerate(self.turn.tokens):
+            left = token.norm in self.weighty.negations and at not in self.used
+            if left and self.matters(at) and self.speaks_of_themselves(at):
+                yield Objection("denied", token.norm)
         for at in self.left:
             asked = self.evidence.asked_for(self.norm(at))
             if asked and not self.deeds.intersection(asked):
@@ -364,8 +371,15 @@ class _Check:
             for turning, by in shown:
                 if token.norm not in turning or self.deeds & by:
                     continue
+                if turning is words.negations and self.speaks_of_themselves(at):
+                    continue
                 if turning is not words.rounds or not self.lists():
                     yield Objection("unheeded", token.norm)
+
+    def speaks_of_themselves(self, at: int) -> bool:
+        """Whether somebody says in this clause what they do, can or know."""
+        start, end = next((s, e) for s, e in self.clauses if s <= at < e)
+        return any(self.norm(place) in self.weighty.speakers for place in range(start, end))
 
     def lists(self) -> bool:
         """Whether it deals with several one by one, without a loop."""

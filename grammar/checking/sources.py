@@ -167,10 +167,13 @@ class Sources:
         """The tokens of people after whom a place is called."""
         known = next((p for p in self.turn.lexicon.places if p.name == place), None)
         called = " ".join((known.name, *known.aliases)).lower() if known else ""
+        names = {each.name: (each.name, *each.aliases) for each in self.turn.lexicon.people}
         return _tokens_of(
             each
             for each in self.turn.mentions
-            if each.sort == "person" and each.value != ANYBODY and each.value.lower() in called
+            if each.sort == "person"
+            and each.value != ANYBODY
+            and any(name.lower() in called for name in names.get(each.value, (each.value,)))
         )
 
     def of_a_kind(self, place: str) -> frozenset[int]:

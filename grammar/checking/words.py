@@ -29,6 +29,8 @@ class Weighty:
     until: frozenset[str]
     twice: frozenset[str]
     """That something is done again."""
+    speakers: frozenset[str]
+    """Who speaks of themselves, and forbids nobody anything: "I can't find it"."""
 
 
 @functools.cache
@@ -42,7 +44,7 @@ def weighty(language: Language) -> Weighty:
 
     return Weighty(
         *(words(name) for name in ("negations", "conditions", "otherwise", "exceptions")),
-        *(words(name) for name in ("rounds", "until", "twice")),
+        *(words(name) for name in ("rounds", "until", "twice", "speakers")),
     )
 
 

@@ -84,7 +84,7 @@ def decide(turn: Turn, drafts: Sequence[Draft], knowledge: Knowledge) -> Chosen 
         question = _either(turn, chosen, other)
         if question is not None:
             return question
-    if chosen.confidence >= ACCEPTED and chosen.considered.checked.spoken:
+    if chosen.confidence >= ACCEPTED and chosen.considered.checked.clear:
         return chosen
     question = _really(turn, chosen) if chosen.confidence >= ASKED else None
     return question or Refusal(turn.language.phrase("not_sure_enough"))

@@ -99,7 +99,12 @@ def _either_half(times: Sequence[str]) -> Iterator[str]:
 
 def _owned(lexicon: Lexicon, people: Sequence[str]) -> Iterator[str]:
     """The places that are called after people."""
-    named = {each.name for each in lexicon.people if each.name in people}
+    named = {
+        name
+        for each in lexicon.people
+        if each.name in people
+        for name in (each.name, *each.aliases)
+    }
     for place in lexicon.places:
         called = " ".join((place.name, *place.aliases))
         if any(re.search(rf"\b{re.escape(name)}", called, re.IGNORECASE) for name in named):
