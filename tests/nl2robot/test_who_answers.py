@@ -1,5 +1,5 @@
-"""Short orders are the rules' own; of long ones, that they half understand, a language model has its
-say."""
+"""Short orders are the rules' own; of long ones, that they half understand, a language model has
+its say."""
 
 from __future__ import annotations
 
