@@ -29,7 +29,7 @@ _LEFT_TO_THE_ROBOT: Final = frozenset(
     {"gestures", "emotions", "joints", "skills", "languages", "kinds", "percents"}
 )
 """Roles whose literal may be one that nobody said: how to look "grumpy", how loud "quietly" is."""
-_DEGREES: Final = frozenset({45.0, 90.0, 180.0, 360.0})
+_DEGREES: Final = frozenset({0.0, 45.0, 90.0, 180.0, 360.0})
 _SMALL: Final = frozenset({0.0, 1.0, 2.0, 60.0, 100.0})
 """Numbers that a program may need besides: to start with, to count by, minutes of an hour."""
 _BY_NUMBERS: Final = frozenset(

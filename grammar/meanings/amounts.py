@@ -32,12 +32,18 @@ def clock_time(d: Discourse, node: Node) -> str:
     if given:
         hours, minutes = (int(part) for part in given.split(":"))
     else:
-        hours = int(d.get(node, "hour"))
+        said = d.get(node, "hour")
+        if int(said) != said:  # "half an hour" is no time of day
+            raise NotUnderstood(
+                d.language.phrase("no_such_time", time=d.words(node.start, node.end))
+            )
+        hours = int(said)
         minutes = int(d.get(node, "minute", 0))
     minutes += int(fixed.get("add", 0))
     if fixed.get("to"):
-        minutes = 60 - minutes
-        hours -= 1
+        minutes = -minutes
+    if -60 < minutes < 0:  # "twenty to three", "trois heures moins vingt"
+        hours, minutes = hours - 1, 60 + minutes
     half = d.get(node, "half_of_day")
     if half == "pm" and hours < 12:
         hours += 12
