@@ -1,6 +1,6 @@
 """From the corpus to what a model is shown: tokens to read, and tokens to learn.
 
-    python -m nl2robot.training.planner.examples INSTALLED_FOLDER OUT.msgpack [--passes 3]
+    python -m nl2robot.training.planner.examples INSTALLED_FOLDER OUT.msgpack [--passes 2]
 
 The file is all that `train` needs besides the weights.
 """
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import argparse
 import random
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
@@ -41,13 +41,18 @@ def is_held_out(item: Item) -> bool:
     return HELD_OUT in item.where.split(".")[0]
 
 
-def learned(items: Iterable[Item], tokens: Tokens, epoch: int) -> Iterator[Example]:
-    """The examples of one pass over the corpus, in no order; each time other ones are noisy."""
-    chance = random.Random(epoch)
+def passes(items: Sequence[Item], tokens: Tokens, number: int) -> Iterator[list[Example]]:
+    """The examples of so many passes over the corpus, in no order; each time others are noisy."""
     chosen = [item for item in items if not is_held_out(item)]
-    chance.shuffle(chosen)
-    for item in chosen:
-        yield example(noisy(item, chance) if chance.random() < NOISY else item, tokens)
+    plain = [example(item, tokens) for item in chosen]
+    for seed in range(number):
+        chance = random.Random(seed)
+        shown = [
+            example(noisy(item, chance), tokens) if chance.random() < NOISY else as_written
+            for item, as_written in zip(chosen, plain, strict=True)
+        ]
+        chance.shuffle(shown)
+        yield shown
 
 
 def noisy(item: Item, chance: random.Random) -> Item:
@@ -68,13 +73,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("installed", type=Path)
     parser.add_argument("out", type=Path)
-    parser.add_argument("--passes", type=int, default=3, help="over the corpus")
+    parser.add_argument("--passes", type=int, default=2, help="over the corpus")
     given = parser.parse_args()
     tokens, items = Tokens.load(given.installed / TOKENS), list(load(files()))
-    passes = [list(learned(items, tokens, number)) for number in range(given.passes)]
-    unseen = [example(item, tokens) for item in items if is_held_out(item)]
-    Examples(passes, unseen, list(tokens.written)).save(given.out)
-    print(f"{len(passes[0])} examples in {len(passes)} passes, {len(unseen)} never learned from")
+    made = Examples(
+        list(passes(items, tokens, given.passes)),
+        [example(item, tokens) for item in items if is_held_out(item)],
+        list(tokens.written),
+    )
+    made.save(given.out)
+    print(f"{len(made.passes[0])} examples, {len(made.unseen)} never learned from")
 
 
 if __name__ == "__main__":
