@@ -197,3 +197,17 @@ def test_the_same_check_says_the_same_twice() -> None:
     assert first.objections == second.objections
     [own] = [each.about for each in first.objections if each.kind == "invented"]
     assert own.split() == sorted(own.split())
+
+
+@pytest.mark.parametrize(
+    ("language", "says"),
+    [
+        ("en", "I cannot find the kitchen, take me there"),
+        ("de", "Ich finde die Küche nicht, bring mich hin"),
+        ("fr", "je ne trouve pas la cuisine, emmène-moi"),
+    ],
+)
+def test_what_speakers_say_of_themselves_forbids_nothing(language: str, says: str) -> None:
+    checked = Order(language, says, 'guide("person", "kitchen")').checked()
+    assert checked.sound
+    assert not checked.clear  # it has to be asked about
