@@ -51,7 +51,7 @@ class Evidence(msgspec.Struct, frozen=True):
 
     def speaks_for(self, word: str, deed: str) -> bool:
         usual = self.done.get(deed, 0.0) / self.total
-        return self.share(word, deed) > max(0.12, min(0.9, LIKELIER * usual))
+        return self.share(word, deed) > max(0.15, min(0.9, LIKELIER * usual))
 
     def licenses(self, word: str, deed: str) -> bool:
         """Whether a word is enough for a deed that nobody wants unasked."""
