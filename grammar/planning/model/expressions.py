@@ -528,6 +528,8 @@ class Reader(Letters):
             known = (*known, *self.words.people)
         if what in ("things", "people"):
             known = (*known, *self.words.things, *self.words.phrases)
+        if not (known or self.names or what in ("places", "people", "things")):
+            raise Dead  # nothing that could be found out has such a name
         if self.next() == self.quote:
             if not known:
                 raise Dead
@@ -536,6 +538,8 @@ class Reader(Letters):
         if what == "things" and self.quote == '"' and self.starts('f"'):
             self.filled_text((self.words.said, *known))
             return TEXT
+        if not self.next().isalpha():  # no number, and no list, ever becomes a name
+            raise Dead
         given = self.value()
         fits = given.is_text or (what == "places" and given.kind is Kind.LOCATION)
         fits = fits and given.named(known)

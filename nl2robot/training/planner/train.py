@@ -25,9 +25,9 @@ from nl2robot.language_model.changes import write
 from nl2robot.training.planner.example import Example, Examples
 from nl2robot.training.planner.network import RANK, Network, Row
 
-AT_ONCE: Final = 2048
+AT_ONCE: Final = 4096
 """Tokens that are read for one step."""
-FASTEST: Final = 4e-4
+FASTEST: Final = 8e-4
 """The learning rate at its highest."""
 WARM: Final = 0.05
 """The share of all steps in which it rises."""

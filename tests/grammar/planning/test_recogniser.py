@@ -299,3 +299,10 @@ def test_no_text_makes_it_stumble(text: str, program: str) -> None:
     for draft in (begun, Partial.begin(words())):
         grown = draft.extended(text)
         assert grown is None or grown.text == draft.text + text
+
+
+def test_nothing_begins_that_can_only_go_astray() -> None:
+    """Where no contact was named, a model that wants to call somebody must not count for ever."""
+    words = Vocabulary(people=("Bob",), numbers=("100",))
+    for begun in ("call(", "gesture(1", "goto((", "find(1", "find([", "give(-1"):
+        assert Partial.begin(words).extended(begun) is None, begun
