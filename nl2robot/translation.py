@@ -224,6 +224,8 @@ def _planned(turn: Turn, knowledge: Knowledge, name: str, watch: Watch) -> tuple
 def _is_open(turn: Turn, decided: Decided) -> bool:
     """Whether another planner may know better than the rules."""
     if isinstance(decided, Chosen):
+        if {call.method for call in calls(decided.plan)} == {"stop"}:  # nobody thinks twice
+            return False
         return not is_sure(turn, decided.considered) or _loses(turn, decided.plan)
     return isinstance(decided, Refusal) and not decided.final
 

@@ -165,10 +165,7 @@ class _Check:
         yield from (Objection("hardly asked", method) for method in self.hardly_asked())
         if not self.used and not any(self.speaks(at) for at in self.left):
             yield Objection("unspoken", self.turn.text)
-        for at, token in enumerate(self.turn.tokens):
-            left = token.norm in self.weighty.negations and at not in self.used
-            if left and self.matters(at) and self.speaks_of_themselves(at):
-                yield Objection("denied", token.norm)
+        yield from (Objection("denied", self.norm(at)) for at in self.turning if self.is_own(at))
         for at in self.left:
             asked = self.evidence.asked_for(self.norm(at))
             if asked and not self.deeds.intersection(asked):
@@ -356,7 +353,14 @@ class _Check:
                 yield each
 
     def unheeded_turns(self) -> Iterator[Objection]:
-        """Words that turn the sense, where nothing in the plan is so turned."""
+        """Words that turn the sense, but for a "not" in what speakers say of themselves."""
+        for at in self.turning:
+            if not self.is_own(at):
+                yield Objection("unheeded", self.norm(at))
+
+    @cached_property
+    def turning(self) -> tuple[int, ...]:
+        """Where words stand that turn the sense, where nothing in the plan is so turned."""
         words = self.weighty
         shown: tuple[tuple[frozenset[str], frozenset[str]], ...] = (
             (words.negations, frozenset({NEGATES, OTHERWISE, DECIDES})),
@@ -365,21 +369,21 @@ class _Check:
             (words.exceptions, frozenset({DECIDES, NEGATES, COMPARES, UNTIL})),
             (words.rounds, _GOING_ROUND),
         )
-        for at, token in enumerate(self.turn.tokens):
-            if at in self.used or not self.matters(at):
-                continue
-            for turning, by in shown:
-                if token.norm not in turning or self.deeds & by:
-                    continue
-                if turning is words.negations and self.speaks_of_themselves(at):
-                    continue
-                if turning is not words.rounds or not self.lists():
-                    yield Objection("unheeded", token.norm)
+        return tuple(
+            at
+            for at, token in enumerate(self.turn.tokens)
+            if at not in self.used and self.matters(at)
+            for turning, by in shown
+            if token.norm in turning and not self.deeds & by
+            if turning is not words.rounds or not self.lists()
+        )
 
-    def speaks_of_themselves(self, at: int) -> bool:
-        """Whether somebody says in this clause what they do, can or know."""
+    def is_own(self, at: int) -> bool:
+        """Whether this is a "not" in a clause in which speakers say what they do, can or know."""
         start, end = next((s, e) for s, e in self.clauses if s <= at < e)
-        return any(self.norm(place) in self.weighty.speakers for place in range(start, end))
+        return self.norm(at) in self.weighty.negations and any(
+            self.norm(place) in self.weighty.speakers for place in range(start, end)
+        )
 
     def lists(self) -> bool:
         """Whether it deals with several one by one, without a loop."""

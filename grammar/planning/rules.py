@@ -11,8 +11,10 @@ from grammar.understand import understand
 from grammar.understanding import Understanding
 
 NAME: Final = "grammar"
-_MUST_NOT: Final = ("no_harm", "no_medicine", "no_computer", "dismissed")
+_MUST_NOT: Final = ("no_harm", "no_medicine", "no_computer")
 """What is said where nothing must be done, whoever understands the sentence better."""
+_BRIEF: Final = 8
+"""Tokens up to which "leave it" dismisses all that was said: a longer sentence may say more."""
 
 
 class RulesPlanner:
@@ -40,7 +42,8 @@ def _is_final(turn: Turn, understood: Understanding) -> bool:
     it, or take a word of it for idle talk."""
     if not turn.tokens or forbidden(turn.tokens, turn.language) is not None:
         return True
-    return understood.message in [turn.language.phrases.get(each) for each in _MUST_NOT]
+    said = (*_MUST_NOT, *(("dismissed",) if len(turn.tokens) <= _BRIEF else ()))
+    return understood.message in [turn.language.phrases.get(each) for each in said]
 
 
 __all__ = ["NAME", "RulesPlanner"]

@@ -102,15 +102,12 @@ def _only(turn: Turn, draft: Draft) -> Chosen | Refusal:
 
 def between(turn: Turn, exact: Chosen, other: Chosen | Open | Refusal) -> Chosen | Open | Refusal:
     """What comes of a draft of an exact planner that may be wrong, and of what another one says: if
-    that is the same, it is right. Otherwise the other one is believed, unless it knows nothing."""
+    that is the same, it is right. Otherwise the other one is believed."""
     from nl2robot.deliberation.voting import same
 
     match other:
-        case Chosen() | Open(offers=(Offer(),)):
-            theirs = other if isinstance(other, Chosen) else other.offers[0].chosen
-            return exact if same(turn, exact.considered, theirs.considered) else other
-        case Refusal(final=False):
-            return exact
+        case Chosen(considered=theirs) | Open(offers=(Offer(chosen=Chosen(considered=theirs)),)):
+            return exact if same(turn, exact.considered, theirs) else other
         case _:
             return other
 

@@ -73,3 +73,27 @@ def test_what_both_say_is_shown_as_the_rules_say_it(scripted: Scripted) -> None:
     answered = said(words)
     assert writer.asked
     assert answered.source == "grammar"
+
+
+@pytest.mark.parametrize(
+    "words", ["stop", "stop stop stop stop there is a little child right in front of you my dear"]
+)
+def test_of_a_stop_nobody_thinks_twice(words: str, scripted: Scripted) -> None:
+    writer = scripted({})
+    answered = said(words)
+    assert answered.program is not None
+    assert "robot.stop()" in answered.program
+    assert not writer.asked
+
+
+def test_what_is_left_alone_in_one_case_is_not_left_in_the_other(scripted: Scripted) -> None:
+    words = "If Alice is not in ward a leave it, otherwise tell her that lunch is ready."
+    writer = scripted({words: ['find("Alice", "ward a")\nsay("Lunch is ready.")\n']})
+    said(words)
+    assert writer.asked
+
+
+def test_who_says_forget_it_is_left_alone(scripted: Scripted) -> None:
+    writer = scripted({})
+    assert said("Forget it.").program is None
+    assert not writer.asked
