@@ -72,6 +72,8 @@ def parse_program(source: str, language: str = "en") -> p.Plan:
 
     `language` is the one that the plan is for: nothing in a program tells it. Raises `NotAPlan`.
     """
+    if "\0" in source:  # which Python tells in other words, and as another error, before 3.11.4
+        raise NotAPlan(source[: source.index("\0")].count("\n") + 1, "It has a null character.")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", SyntaxWarning)
