@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from grammar.plan import Plan, calls
 from grammar.planning.planner import Answer, Draft, Drafts, Question, Refusal, Service, Watch
 from grammar.planning.turn import Turn
 from grammar.refusals import forbidden
@@ -31,10 +32,30 @@ class RulesPlanner:
                 understood.plan, NAME, understood.confidence, understood.context, exact=True
             )
             return Drafts((draft,))
+        if understood.status == "rejected" and (halt := _halt(turn)) is not None:
+            return Drafts((halt,))
         message, suggestions = understood.message or "", tuple(understood.suggestions)
         if understood.status == "clarify":
             return Question(message, suggestions, understood.context)
         return Refusal(message, suggestions, _is_final(turn, understood), understood.context)
+
+
+def _halt(turn: Turn) -> Draft | None:
+    """A cry of stop is obeyed, whatever is said after it: "please stop right now, you are going to
+    hit somebody". None if this is not one."""
+    subjects = turn.language.speech["after_stop"]
+    for end, token in enumerate(turn.tokens):
+        if not end or (token.kind != "mark" and token.norm not in subjects):
+            continue
+        cry = turn.text[: turn.tokens[end - 1].end]
+        plan = understand(cry, turn.lexicon, turn.language.code).plan
+        if plan is not None:
+            if {call.method for call in calls(plan)} != {"stop"}:
+                return None
+            rest = turn.text[token.start :].lstrip(" ,;.!")
+            halt = Plan(plan.steps, plan.language, (*plan.background, *([rest] if rest else [])))
+            return Draft(halt, NAME, 1.0, turn.context, exact=True)
+    return None
 
 
 def _is_final(turn: Turn, understood: Understanding) -> bool:

@@ -97,3 +97,30 @@ def test_who_says_forget_it_is_left_alone(scripted: Scripted) -> None:
     writer = scripted({})
     assert said("Forget it.").program is None
     assert not writer.asked
+
+
+@pytest.mark.parametrize(
+    ("language", "words"),
+    [
+        ("en", "please stop right now, you are going to hit somebody"),
+        ("en", "okay stop now I have to get past"),
+        ("en", "stop, flurbel the gizmo"),
+        ("de", "Bleib stehen, du machst ihr Angst!"),
+        ("de", "stopp du fährst ihm über den Fuß"),
+        ("fr", "Arrête tout de suite, tu vas heurter quelqu'un !"),
+    ],
+)
+def test_a_cry_of_stop_is_obeyed_whatever_is_said_after_it(
+    language: str, words: str, scripted: Scripted
+) -> None:
+    writer = scripted({})
+    stopped = translate(words, WARD, language)
+    assert stopped.program is not None
+    assert [line for line in stopped.program.splitlines() if line[0] != "#"] == ["robot.stop()"]
+    assert not writer.asked
+
+
+@pytest.mark.parametrize("words", ["Stop by the flurbel.", "stop at the gizmo you know"])
+def test_who_is_to_stop_somewhere_is_not_to_stop_now(words: str, scripted: Scripted) -> None:
+    scripted({})
+    assert said(words).program is None
