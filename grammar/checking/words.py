@@ -31,6 +31,8 @@ class Weighty:
     """That something is done again."""
     speakers: frozenset[str]
     """Who speaks of themselves, and forbids nobody anything: "I can't find it"."""
+    staying: frozenset[str]
+    """What those say who say only where they are: "I'm waiting in the lab"."""
 
 
 @functools.cache
@@ -44,7 +46,7 @@ def weighty(language: Language) -> Weighty:
 
     return Weighty(
         *(words(name) for name in ("negations", "conditions", "otherwise", "exceptions")),
-        *(words(name) for name in ("rounds", "until", "twice", "speakers")),
+        *(words(name) for name in ("rounds", "until", "twice", "speakers", "staying")),
     )
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 from grammar.plan import Plan, calls
 from grammar.planning.planner import Answer, Draft, Drafts, Question, Refusal, Service, Watch
 from grammar.planning.turn import Turn
+from grammar.planning.whereabouts import brought_to_speaker
 from grammar.refusals import forbidden
 from grammar.understand import understand
 from grammar.understanding import Understanding
@@ -28,10 +30,9 @@ class RulesPlanner:
         if understood.request is not None:
             return Service(understood.request, understood.context)
         if understood.plan is not None:
-            draft = Draft(
-                understood.plan, NAME, understood.confidence, understood.context, exact=True
-            )
-            return Drafts((draft,))
+            plan = brought_to_speaker(turn, understood.plan)
+            context = replace(understood.context, plan=plan)
+            return Drafts((Draft(plan, NAME, understood.confidence, context, exact=True),))
         if understood.status == "rejected" and (halt := _halt(turn)) is not None:
             return Drafts((halt,))
         message, suggestions = understood.message or "", tuple(understood.suggestions)

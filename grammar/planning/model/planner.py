@@ -28,6 +28,7 @@ from grammar.planning.planner import (
     Watch,
 )
 from grammar.planning.turn import Turn
+from grammar.planning.whereabouts import brought_to_speaker
 from grammar.reading import NotAPlan
 from grammar.understanding import Context
 
@@ -120,6 +121,7 @@ def _draft(turn: Turn, written: Written, share: float) -> Draft | None:
     people = vocabulary(turn).people
     try:
         plan = normal(expanded(written.text, people, turn.lexicon, turn.language))
+        plan = brought_to_speaker(turn, plan)
     except NotAPlan:
         return None
     context = Context(

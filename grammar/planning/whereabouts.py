@@ -1,0 +1,53 @@
+"""Where somebody is who gives an order: "fetch me the marker, I'm in the gym"."""
+
+from __future__ import annotations
+
+import msgspec
+
+from grammar.checking.sources import Sources
+from grammar.checking.words import content, weighty
+from grammar.discourse import START
+from grammar.normal import normal
+from grammar.plan import Plan, Recall, Text
+from grammar.planning.mentions import Mention
+from grammar.planning.turn import Turn
+from grammar.tidy import replaced, without_unused
+from grammar.traversal import nodes
+
+
+def brought_to_speaker(turn: Turn, plan: Plan) -> Plan:
+    """A plan that comes back to where the robot starts comes to where the speaker says to be, if
+    that is no part of a message."""
+    if Recall(START) not in nodes(plan.steps):
+        return plan
+    where = speakers_place(turn)
+    if where is None:
+        return plan
+    told = {at for each in Sources(turn, plan).found for at in each.tokens}
+    if told.intersection(range(where.start, where.end)):
+        return plan
+    steps = replaced(plan.steps, Recall(START), Text(where.value))
+    return normal(without_unused(msgspec.structs.replace(plan, steps=steps)))
+
+
+def speakers_place(turn: Turn) -> Mention | None:
+    """The place of which somebody says nothing but to be there: "I'm waiting in the gym"."""
+    words = weighty(turn.language)
+    sense = {at for at, _ in content(turn.tokens, turn.language)}
+    for each in turn.mentions:
+        if each.sort != "place":
+            continue
+        start, end = _sentence(turn, each.start)
+        clause = [turn.tokens[at].norm for at in range(start, end)]
+        others = sense.intersection(range(start, end)) - {*range(each.start, each.end)}
+        rest = {turn.tokens[at].norm for at in others}
+        if clause[0] in words.speakers and words.staying & {*clause} and rest <= words.staying:
+            return each
+    return None
+
+
+def _sentence(turn: Turn, at: int) -> tuple[int, int]:
+    """The tokens between two marks."""
+    marks = [place for place, token in enumerate(turn.tokens) if token.kind == "mark"]
+    start = max((place + 1 for place in marks if place < at), default=0)
+    return start, min((place for place in marks if place > at), default=len(turn.tokens))
