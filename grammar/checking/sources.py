@@ -309,7 +309,7 @@ class Sources:
     def time(self, text: str) -> frozenset[int]:
         """The tokens of a time of day, in either half of the day."""
         hour, colon, minute = text.partition(":")
-        if not colon or not (hour + minute).isdigit():
+        if not colon or not (hour.isdecimal() and minute.isdecimal()):
             return frozenset()
         other = f"{(int(hour) + 12) % 24:02d}:{minute}"
         return _tokens_of(

@@ -211,3 +211,10 @@ def test_what_speakers_say_of_themselves_forbids_nothing(language: str, says: st
     checked = Order(language, says, 'guide("person", "kitchen")').checked()
     assert checked.sound
     assert not checked.clear  # it has to be asked about
+
+
+@pytest.mark.parametrize("time", [":30", "30:", ":", "1:2:3", "²:30"])
+def test_what_only_looks_like_a_time_is_compared_as_words(time: str) -> None:
+    does = f'answer = ask("When?", [])\nif answer == "{time}":\n    say("Hello")'
+    order = Order("en", "ask when, and say hello if it is later", does)
+    assert not any(each.kind == "unbound" for each in order.checked().objections)
