@@ -21,11 +21,21 @@ from grammar.telling import Teller
 from grammar.told import Told, listed, sentences
 
 
-def explain(plan: p.Plan, language: str = "en", called: Callable[[str], str] | None = None) -> str:
+def explain(
+    plan: p.Plan,
+    language: str = "en",
+    called: Callable[[str], str] | None = None,
+    *,
+    deeds_only: bool = False,
+) -> str:
     """The plan in sentences. `called` gives what a name of the plan is called in the language
-    (`grammar.naming`); without it, names stand as the world spells them."""
+    (`grammar.naming`); without it, names stand as the world spells them. With `deeds_only`, it is
+    not told what the robot notes for itself at first: where it is, that it counts from 0."""
     words = speech(language)
-    told = words.joined_up(sentences(tell(plan, words, called), words))
+    steps = tell(plan, words, called)
+    if deeds_only:
+        steps = tuple(each for each in steps if not _is_note(each.step)) or steps
+    told = words.joined_up(sentences(steps, words))
     if not plan.background:
         return told
     said = "; ".join(plan.background)
@@ -39,6 +49,16 @@ def explain_steps(
     words = speech(language)
     lines = listed(tell(plan, words, called), words)
     return [(depth, words.joined_up(text)) for depth, text in lines]
+
+
+def _is_note(step: object) -> bool:
+    match step:
+        case p.Call(method="location", save_as=str()):
+            return True
+        case p.Remember(value=p.Number() | p.Items(items=()) | p.Record(entries=())):
+            return True
+        case _:
+            return False
 
 
 @dataclass(frozen=True)

@@ -146,7 +146,7 @@ def _either(turn: Turn, one: Chosen, other: Chosen) -> Open | None:
 def _really(turn: Turn, chosen: Chosen) -> Open | None:
     """The question whether this was meant; None if that would be too long to listen to."""
     called = naming(turn.lexicon, turn.language).called
-    told = explain(chosen.plan, turn.language.code, called)
+    told = explain(chosen.plan, turn.language.code, called, deeds_only=True)
     if len(told) > LONGEST_OF_ONE:
         return None
     yes = turn.language.speech["agree"][0]

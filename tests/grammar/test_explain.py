@@ -452,3 +452,18 @@ def test_one_who_is_left_out_is_called_by_name() -> None:
     but = p.Not(p.Compare(p.Recall("person"), "in", p.Items((text("Clara"),))))
     told = explained(p.ForEach("person", p.Ask("people"), (p.If(but, (say("Hello."),)),)))
     assert "if this person is not “Clara”, I will say “Hello.”" in told
+
+
+def test_what_a_robot_notes_for_itself_need_not_be_told() -> None:
+    plan = p.Plan(
+        (
+            call("location", "start"),
+            p.Remember("number", p.Number(0)),
+            call("goto", place=text("lobby")),
+            call("goto", place=p.Recall("start")),
+        )
+    )
+    assert (
+        explain(plan, deeds_only=True) == "I will go to the lobby and then go to where I started."
+    )
+    assert explain(p.Plan(plan.steps[:1]), deeds_only=True) == "I will remember where I am."
