@@ -15,10 +15,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Literal
 
-from grammar.lexicon import Lexicon
-from grammar.understand import understand
+from grammar.plan import from_data
+from grammar.planning.rules import NAME as RULES
+from grammar.said import forget
 from nl2robot.errors import UserError
 from nl2robot.frames import UNKNOWN, Frame, frames_of_form, frames_of_plan, parsed
+from nl2robot.knowledge import Knowledge
+from nl2robot.translation import translate
 
 DEFAULT_WORLD: Final = "household"
 FILLED: Final = {
@@ -85,16 +88,17 @@ def load(file: Path) -> list[Row]:
     return rows
 
 
-def score(row: Row, lexicon: Lexicon, language: str = "en") -> Score:
-    """Understand a command and compare."""
+def score(row: Row, knowledge: Knowledge, planner: str = RULES) -> Score:
+    """Understand a command, which no other has come before, and compare."""
     wanted = frames_of_form(parsed(row.form))
     shown = "; ".join(map(str, wanted)) or UNKNOWN
     words = re.sub(r"<(\w+)>", lambda mark: FILLED.get(mark[1].lower(), mark[1]), row.words)
-    understood = understand(words, lexicon, language)
-    if understood.plan is None:
+    forget()
+    answer = translate(words, knowledge, "en", planner)
+    if answer.plan is None:
         honest = UNKNOWN in row.form
-        return Score(row, "right" if honest else "refused", honest, understood.message or "", shown)
-    got = frames_of_plan(understood.plan, lexicon)
+        return Score(row, "right" if honest else "refused", honest, answer.message or "", shown)
+    got = frames_of_plan(from_data(answer.plan), knowledge.lexicon("en"))
     right = UNKNOWN not in row.form and _same(got, wanted)
     head = _same(_heads(got), _heads(wanted))
     return Score(row, "right" if right else "wrong", head, "; ".join(map(str, got)), shown)

@@ -71,15 +71,15 @@ def add_language(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_planner(parser: argparse.ArgumentParser) -> None:
+def add_planner(parser: argparse.ArgumentParser, default: str | None = None) -> None:
     from nl2robot.planners import AUTO, names
 
     parser.add_argument(
         "--planner",
-        default=AUTO,
+        default=default or AUTO,
         choices=names(),
         help="what turns words into a plan: rules, a language model, or (auto) the rules for what"
-        " they know and the model for the rest (default: auto)",
+        " they know and the model for the rest (default: %(default)s)",
     )
 
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import argparse
 import json
+import random
 from pathlib import Path
 
+from nl2robot.commands.options import add_planner
 from nl2robot.errors import ExitStatus
 from nl2robot.paraphrases import DEFAULT_WORLD, Total
 
@@ -18,23 +20,34 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="W",
         help=f"a built-in world's name or a YAML file (default: {DEFAULT_WORLD})",
     )
+    add_planner(parser, default="grammar")
+    parser.add_argument(
+        "--most", type=int, metavar="N", help="only N commands of the file, by chance (seed 0)"
+    )
     parser.add_argument("--misses", action="store_true", help="list what was not right, and why")
     parser.add_argument("--json", action="store_true", help="the figures as one JSON object")
 
 
 def run(options: argparse.Namespace) -> int:
+    from rich.console import Console
+    from rich.progress import track
+
     from nl2robot.knowledge import Knowledge
     from nl2robot.paraphrases import by_kind, load, score, total
     from nl2robot.terminal import Terminal
     from sim.world import load_world
 
-    lexicon = Knowledge(load_world(options.world, names_only=True)).lexicon("en")
-    scores = [score(row, lexicon) for row in load(Path(options.file))]
+    knowledge = Knowledge(load_world(options.world, names_only=True))
+    rows = load(Path(options.file))
+    if options.most is not None and 0 <= options.most < len(rows):
+        rows = random.Random(0).sample(rows, options.most)
+    terminal = Terminal()
+    bar = track(rows, "commands", console=Console(stderr=True), transient=True)
+    scores = [score(row, knowledge, options.planner) for row in bar]
     if options.json:
         figures = total(scores)
         print(json.dumps({"rows": figures.rows, **dict(_shares(figures))}))
         return ExitStatus.OK
-    terminal = Terminal()
     if options.misses:
         for each in scores:
             if each.outcome != "right":

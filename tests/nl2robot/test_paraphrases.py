@@ -18,9 +18,12 @@ GUIDE = '( guide ( lambda $1 e ( person $1 ) ( name $1 " <name> " ) ) UNKNOWN )'
 SOMEBODY = '( lambda $1 e ( person $1 ) ( at $1 " <room> " ) )'
 
 
+HOME = Knowledge(load_world("household", names_only=True))
+
+
 @pytest.fixture(scope="module")
 def lexicon():
-    return Knowledge(load_world("household", names_only=True)).lexicon("en")
+    return HOME.lexicon("en")
 
 
 def frames(words: str, lexicon) -> list[str]:
@@ -98,8 +101,8 @@ def test_a_plan_becomes_frames(words: str, frame: list[str], lexicon) -> None:
         ("carry the tea to the sofa", "UNKNOWN", "wrong", False),
     ],
 )  # fmt: skip
-def test_the_score_of_a_command(words: str, form: str, outcome: str, head: bool, lexicon) -> None:
-    result = score(Row(words, form), lexicon)
+def test_the_score_of_a_command(words: str, form: str, outcome: str, head: bool) -> None:
+    result = score(Row(words, form), HOME)
     assert (result.outcome, result.head) == (outcome, head), result
 
 
@@ -131,6 +134,11 @@ def test_a_broken_file_is_told_with_its_line(text: str, tmp_path, capsys) -> Non
     file.write_text(text, encoding="utf-8")
     assert main(["paraphrases", str(file)]) == 2
     assert "broken.tsv:1" in capsys.readouterr().err
+
+
+def test_some_commands_of_a_file_may_be_enough(file, capsys) -> None:
+    assert main(["paraphrases", str(file), "--most", "1", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["rows"] == 1
 
 
 def test_the_first_line_may_name_the_columns(file) -> None:
