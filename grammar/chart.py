@@ -148,13 +148,6 @@ class Chart:
         """The cheapest reading between two tokens, one of those of `ends`."""
         return self._node(start, end, self._walked(self.network.rule(rule), start)[end])
 
-    @property
-    def reached(self) -> int:
-        """The furthest token that any rule at the beginning could use."""
-        return max(
-            (end for tried in self._ends for ends in tried.values() for end in ends), default=0
-        )
-
     # --- walking
 
     def _walked(self, rule: int, start: int) -> dict[int, _End]:

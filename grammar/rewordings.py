@@ -10,11 +10,9 @@ template language of the rules:
         like: {"Should Bob be out, come back": "If Bob is out, come back"}
 
 `<rule>` is whatever a rule understands, as much of it as it can; `{so}` are words up to the next
-mark, as few as will do. Behind one of the words `unless` it does not hold. A sentence that cannot
-be understood is said in the other words and understood anew, so that all rules apply, and
-everything that is asked of a sentence is asked of it again. With `always`, a sentence is said so
-before it is first read: for words that would otherwise be taken for something else. `like` shows
-what it is good for, and the tests hold it to that.
+mark, as few as will do. Behind one of the words `unless` it does not hold. A sentence is said so
+before it is read: for words that would otherwise be taken for something else. `like` shows what it
+is good for, and the tests hold it to that.
 """
 
 from __future__ import annotations
@@ -60,16 +58,11 @@ class Rewording:
     """Words that may not stand before it."""
 
 
-def said_otherwise(reader: Reader) -> Iterator[str]:
-    """The sentence in other words, with one way of speaking after the other replaced."""
-    yield from _reworded(reader, _listed(reader.language, always=False))
-
-
 def said_plainly(text: str, lexicon: Lexicon, language: Language, context: Context) -> str:
     """The sentence without words that would be taken for something else."""
     from grammar.understand import Reader
 
-    listed = _listed(language, always=True)
+    listed = _listed(language)
     if ANY_WORD not in listed and listed.keys().isdisjoint(language.tokens_of(text)):
         return text
     reader = Reader(text, lexicon, language, context)
@@ -88,15 +81,13 @@ def _reworded(reader: Reader, rewordings: Mapping[str, tuple[Rewording, ...]]) -
 
 
 @functools.cache
-def _listed(language: Language, *, always: bool) -> Mapping[str, tuple[Rewording, ...]]:
+def _listed(language: Language) -> Mapping[str, tuple[Rewording, ...]]:
     """The rewordings by the words that they begin with."""
     listed: dict[str, list[Rewording]] = defaultdict(list)
     for entry in language.rewordings:
-        unknown = entry.keys() - {"say", "instead", "where", "unless", "always", "like"}
+        unknown = entry.keys() - {"say", "instead", "where", "unless", "like"}
         if unknown:
             raise RuleError(f"a rewording has {', '.join(sorted(unknown))}")
-        if entry.get("always", False) != always:
-            continue
         ways = entry["say"] if isinstance(entry["say"], list) else [entry["say"]]
         for say in ways:
             one = Rewording(

@@ -61,7 +61,7 @@ def understand(
 ) -> Understanding:
     """Understand a sentence. Never raises for any text; `UnknownLanguage` for a language that
     there is no folder for."""
-    from grammar import in_between, repairs, rewordings
+    from grammar import repairs, rewordings
 
     pack = load_language(language)
     context = context or Context()
@@ -71,19 +71,7 @@ def understand(
         return rejected(text, pack.phrase("too_long"), context)
     forget()
     text = rewordings.said_plainly(text, lexicon, pack, context)
-    result = repairs.understood(text, lexicon, pack, context)
-    if result.status == "ok":
-        return result
-    reader = Reader(text, lexicon, pack, context)
-    moved = in_between.understood(reader, lexicon, pack, context)
-    if moved is not None:
-        return moved
-    if forbidden(reader.tokens, pack) is None:
-        for other in rewordings.said_otherwise(reader):
-            reworded = repairs.understood(other, lexicon, pack, context)
-            if reworded.status != "rejected":
-                return reworded
-    return result
+    return repairs.understood(text, lexicon, pack, context)
 
 
 class Reader:

@@ -32,7 +32,7 @@ def test_what_is_said_otherwise_becomes_the_same_program(
     assert meant.program is not None, meant.message
     assert _steps(translate(said, knowledge(BUILDING[code]), code).program) == _steps(meant.program)
     # And the rules alone would not make it.
-    monkeypatch.setattr(rewordings, "_listed", lambda language, always: {})
+    monkeypatch.setattr(rewordings, "_listed", lambda language: {})
     assert _steps(translate(said, knowledge(BUILDING[code]), code).program) != _steps(meant.program)
 
 
@@ -55,7 +55,7 @@ def test_a_part_stands_first_only_at_the_beginning_of_a_clause() -> None:
     entry = {"say": "<person_ref> ought to", "instead": "please", "like": {}}
     odd = replace(load_language("en"), rewordings=(entry,))
     with pytest.raises(RuleError, match="begin with words"):
-        rewordings._listed(odd, always=False)
+        rewordings._listed(odd)
 
 
 def test_who_was_asked_is_not_asked_again_in_other_words() -> None:
