@@ -1,18 +1,17 @@
-"""Other ways to say the same: "should Bob be out" is "if Bob is out", wherever it stands.
+"""Words that would be taken for something else, said plainly: "tell everybody that lunch is ready,
+except Clara" is "tell everybody except Clara that lunch is ready".
 
-What people say in many ways and the rules know in one is written down once, as data, in the
-template language of the rules:
+They are written down once, as data, in the template language of the rules:
 
     rewordings:
-      - say: "should <someone> [still] be {so}"
-        instead: "if <someone> is {so}"
+      - say: "if <someone> is {so} at <clock_time:then> ,"
+        instead: "at <then>, if <someone> is {so},"
         where: begin                       # of a clause; or "end", or "clause": all of one
-        like: {"Should Bob be out, come back": "If Bob is out, come back"}
+        like: {"If Bob is in at nine, wave": "At nine, if Bob is in, wave"}
 
 `<rule>` is whatever a rule understands, as much of it as it can; `{so}` are words up to the next
 mark, as few as will do. Behind one of the words `unless` it does not hold. A sentence is said so
-before it is read: for words that would otherwise be taken for something else. `like` shows what it
-is good for, and the tests hold it to that.
+before it is read. `like` shows what an entry is good for, and the tests hold it to that.
 """
 
 from __future__ import annotations

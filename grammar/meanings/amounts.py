@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any, Final
 
 from grammar.chart import Node
-from grammar.discourse import Discourse
+from grammar.discourse import Discourse, as_value
 from grammar.doubts import NotUnderstood
 from grammar.meanings.registry import meaning
+from grammar.plan import Number
 
 LAST_HOUR_MEANT_PM: Final = 6
 """Up to "six o'clock" is in the afternoon where nothing else is said."""
@@ -54,6 +55,12 @@ def clock_time(d: Discourse, node: Node) -> str:
     if not (0 <= hours < 24 and 0 <= minutes < 60):
         raise NotUnderstood(d.language.phrase("no_such_time", time=d.words(node.start, node.end)))
     return f"{hours:02}:{minutes:02}"
+
+
+def number_value(value: Any) -> Number:
+    result = as_value(value)
+    assert isinstance(result, Number)
+    return result
 
 
 @meaning("words")

@@ -51,6 +51,11 @@ def said_so(d: Discourse, node: Node) -> Said:
     return Said(node.start, node.end)
 
 
+@meaning("option_words")
+def option_words(d: Discourse, node: Node) -> str:
+    return str(d.get(node, "text"))
+
+
 def yes(d: Discourse) -> Wanted:
     return Wanted((d.language.phrase("yes"),))
 

@@ -64,6 +64,14 @@ def or_(d: Discourse, node: Node) -> Condition:
     return either
 
 
+@meaning("not")
+def not_(d: Discourse, node: Node) -> Condition:
+    condition = negated(d.get(node, "condition"))
+    if d.met is not None:
+        d.met = replace(d.met, holds=not d.met.holds)
+    return condition
+
+
 _OPPOSITE: Final = {"<": ">=", "<=": ">", ">": "<=", ">=": "<", "==": "!=", "!=": "=="}
 
 
@@ -146,6 +154,11 @@ def weekend(d: Discourse, node: Node) -> Condition:
     day = Ask("clock", field="weekday")
     free = Either((Compare(day, "==", Text("Saturday")), Compare(day, "==", Text("Sunday"))))
     return Not(free) if node.production.fixed.get("no") else free
+
+
+@meaning("robot_is_at")
+def robot_is_at(d: Discourse, node: Node) -> Condition:
+    return Compare(Ask("location", field="place"), "==", d.get(node, "place"))
 
 
 @meaning("is_touched")

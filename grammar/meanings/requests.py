@@ -17,6 +17,7 @@ from grammar.requests import Kind, Request
 from grammar.tidy import nodes
 
 
+@meaning("routine")
 def routine(d: Discourse, node: Node) -> Steps:
     """A routine's name stands for the steps of its sentence, understood in the world as it is now.
     In there the routine itself is unknown, so that none can go round in circles."""

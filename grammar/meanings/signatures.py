@@ -12,6 +12,7 @@ from grammar.meanings.deliveries import kept_in_hand
 from grammar.meanings.finding import meet
 from grammar.meanings.nouns import thing_it
 from grammar.meanings.registry import meaning
+from grammar.meanings.remarks import aside
 from grammar.plan import Call, Value
 
 
@@ -33,3 +34,11 @@ def get_signed(d: Discourse, node: Node) -> Steps:
     d.person, d.shown, d.holding = person, thing.value, thing.value
     d.thing, d.thing_last = replace(thing, pronoun=True, place=None), True
     return [*steps, Call("ask", arguments)]
+
+
+@meaning("to_be_signed")
+def to_be_signed(d: Discourse, node: Node) -> Steps:
+    """ "the form needs Clara's signature": what is to be done with it is said then."""
+    d.get(node, "person_ref")
+    d.get(node, "thing")
+    return aside(d, node)

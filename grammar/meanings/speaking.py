@@ -200,6 +200,14 @@ def refused(d: Discourse, node: Node) -> Steps:
     raise NotUnderstood(d.language.phrase(str(node.production.fixed["phrase"])))
 
 
+@meaning("unknown_part")
+def unknown_part(d: Discourse, node: Node) -> Steps:
+    """ "tell me the colour of the sky": a request that is understood up to a part of it."""
+    part = node.parts["part"]
+    words = d.words(part.start, part.end)
+    raise NotUnderstood(d.language.phrase("not_understood", part=words))
+
+
 @meaning("unknown_contact")
 def unknown_contact(d: Discourse, node: Node) -> Steps:
     words = d.words(node.parts["unknown"].start, node.parts["unknown"].end)

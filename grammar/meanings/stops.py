@@ -9,12 +9,14 @@ from collections.abc import Set
 from typing import Any, Final
 
 from grammar.chart import Node
-from grammar.discourse import Discourse, Steps
+from grammar.discourse import ANYONE, Discourse, Steps
+from grammar.doubts import NotUnderstood
 from grammar.meanings.alternatives import itself
 from grammar.meanings.deliveries import first_clause
 from grammar.meanings.going_on import about_places, conditional, depends_on_stop
 from grammar.meanings.gone_round import round_of_visits
-from grammar.plan import Ask, Call, End, ForEach, Items, Recall, Step, Value
+from grammar.meanings.registry import meaning
+from grammar.plan import Ask, Call, End, ForEach, Holds, If, Items, Recall, Step, Text, Value
 from grammar.tidy import nodes
 
 SAID: Final = frozenset({"say", "ask", "show", "gesture", "emotion", "people"})
@@ -82,3 +84,26 @@ def is_call(step: Step, methods: Set[str]) -> bool:
 def place_of(step: Step) -> Value | None:
     """Where a step goes."""
     return step.arguments.get("place") if isinstance(step, Call) else None
+
+
+@meaning("skip_empty")
+def skip_empty(d: Discourse, node: Node) -> Steps:
+    """ "skip the empty ones": what the last round does at each place is done only if somebody is
+    there."""
+    somebody = Holds(Ask("sees", {"thing": Text(ANYONE)}))
+    loop = d.done[-1] if d.done else None
+    if d.in_loop and not isinstance(loop, ForEach):  # in the round itself
+        body = tuple(d.done)
+        d.done.clear()
+        return [If(somebody, body)]
+    first = loop.steps[0] if isinstance(loop, ForEach) and loop.steps else None
+    if not isinstance(loop, ForEach) or not isinstance(first, Call) or first.method != "goto":
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(
+            d.language.phrase("not_understood", part=words), gap=(node.start, node.end)
+        )
+    d.done.pop()
+    steps = loop.steps[1:]
+    if not (len(steps) == 1 and isinstance(steps[0], If) and steps[0].condition == somebody):
+        steps = (If(somebody, steps),)
+    return [ForEach(loop.variable, loop.items, (first, *steps))]

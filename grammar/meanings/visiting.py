@@ -132,6 +132,17 @@ def with_each_asked(d: Discourse, clause: Node) -> Steps | None:
     return [msgspec.structs.replace(loop, steps=body)]
 
 
+@meaning("to_the_next")
+def to_the_next(d: Discourse, node: Node) -> Steps:
+    """ "go on to the next one": what a round does in any case."""
+    if not d.in_loop:
+        words = d.words(node.start, node.end)
+        raise NotUnderstood(
+            d.language.phrase("not_understood", part=words), gap=(node.start, node.end)
+        )
+    return []
+
+
 @meaning("guard")
 def guard(d: Discourse, node: Node) -> Steps:
     """ "keep watch": to stay, for what is to be done whenever somebody comes."""
