@@ -10,7 +10,7 @@ from typing import Final
 from grammar.edits import Edit, Sentence, same_word
 from grammar.listed import RULES, Row, rows_of
 from grammar.pieces import Piece, is_pieces, pieces_of
-from grammar.plan import Call, Plan, Text, calls
+from grammar.plan import Call, Plan, Text, calls, methods
 from grammar.requests import Request
 from grammar.told_apart import one_told_apart, thing_alone, with_other_look
 from grammar.turn import Turn
@@ -218,7 +218,7 @@ class Changes(Turn):
     def _in_manner(self, said: str) -> Iterator[str | None]:
         """ "say it louder", "say that in German"."""
         alone = self.reader(said, self.context).understand()
-        if alone.plan is not None and {call.method for call in calls(alone.plan)} <= MANNER:
+        if alone.plan is not None and methods(alone.plan) <= MANNER:
             yield f"{said.rstrip(' .!?')}. {self.context.text}"
         yield self.going_on(self.joined(said))
         if self.speaks():
@@ -256,9 +256,9 @@ class Changes(Turn):
         part = self.reader(before.reader.words(*clause), self.base).understand()
         if part.plan is None:
             return False
-        methods = {call.method for call in calls(part.plan)}
+        done = methods(part.plan)
         called = self.language.speech.get("part_words", {})
-        return all(any(word in called.get(method, ()) for method in methods) for word in words)
+        return all(any(word in called.get(method, ()) for method in done) for word in words)
 
     def _undone(self) -> Understanding:
         """Of what was done, only a drive can be taken back."""

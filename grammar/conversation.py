@@ -18,7 +18,7 @@ from grammar.edits import Edit
 from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.pieces import is_pieces, leading
-from grammar.plan import calls
+from grammar.plan import methods
 from grammar.told_apart import one_told_apart, with_other_look
 from grammar.understand import Reader
 from grammar.understanding import Context, Understanding, rejected
@@ -181,7 +181,7 @@ class _Conversation(Changes):
         """ "louder", while something to say waits for its approval: that is to be said louder."""
         if plain.plan is None or self.context.carried_out or not self.speaks():
             return None
-        if not {call.method for call in calls(plain.plan)} <= MANNER:
+        if not methods(plain.plan) <= MANNER:
             return None
         return self.read(f"{self.text.rstrip(' .!?')}. {self.context.text}", self.base)
 

@@ -10,6 +10,7 @@ is what is done.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
@@ -33,9 +34,7 @@ def explain(
     not told what the robot notes for itself at first: where it is, that it counts from 0."""
     words = speech(language)
     steps = tell(plan, words, called)
-    if deeds_only:
-        steps = tuple(each for each in steps if not _is_note(each.step)) or steps
-    told = words.joined_up(sentences(steps, words))
+    told = words.joined_up(sentences(_deeds(steps) if deeds_only else steps, words))
     if not plan.background:
         return told
     said = "; ".join(plan.background)
@@ -43,19 +42,30 @@ def explain(
 
 
 def explain_steps(
-    plan: p.Plan, language: str = "en", called: Callable[[str], str] | None = None
+    plan: p.Plan,
+    language: str = "en",
+    called: Callable[[str], str] | None = None,
+    *,
+    deeds_only: bool = False,
 ) -> list[tuple[int, str]]:
-    """The plan as a list of (depth, text), a line for each thing that is done."""
+    """The plan as a list of (depth, text), a line for each thing that is done; `deeds_only` as for
+    `explain`."""
     words = speech(language)
-    lines = listed(tell(plan, words, called), words)
+    steps = tell(plan, words, called)
+    lines = listed(_deeds(steps) if deeds_only else steps, words)
     return [(depth, words.joined_up(text)) for depth, text in lines]
 
 
-def _is_note(step: object) -> bool:
+def _deeds(told: tuple[Told, ...]) -> tuple[Told, ...]:
+    """The steps without what a robot notes for itself first; if that is all, all of them."""
+    return (*itertools.dropwhile(lambda each: _is_note(each.step), told),) or told
+
+
+def _is_note(step: p.Step | None) -> bool:
     match step:
         case p.Call(method="location", save_as=str()):
             return True
-        case p.Remember(value=p.Number() | p.Items(items=()) | p.Record(entries=())):
+        case p.Remember(value=p.Number(value=0) | p.Items(items=()) | p.Record(entries=())):
             return True
         case _:
             return False

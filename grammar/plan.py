@@ -449,6 +449,11 @@ def calls(plan: Plan) -> list[Call | Ask]:
     return found
 
 
+def methods(plan: Plan) -> frozenset[str]:
+    """The robot methods that a plan calls."""
+    return frozenset(call.method for call in calls(plan))
+
+
 def to_data(plan: Plan) -> dict[str, Any]:
     """The plan as plain data for JSON."""
     data: dict[str, Any] = msgspec.to_builtins(plan)

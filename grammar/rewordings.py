@@ -10,8 +10,8 @@ They are written down once, as data, in the template language of the rules:
         like: {"If Bob is in at nine, wave": "At nine, if Bob is in, wave"}
 
 `<rule>` is whatever a rule understands, as much of it as it can; `{so}` are words up to the next
-mark, as few as will do. Behind one of the words `unless` it does not hold. A sentence is said so
-before it is read. `like` shows what an entry is good for, and the tests hold it to that.
+mark, as few as will do. A sentence is said so before it is read. `like` shows what an entry is good
+for, and the tests hold it to that.
 """
 
 from __future__ import annotations
@@ -53,8 +53,6 @@ class Rewording:
     instead: str
     where: Literal["anywhere", "begin", "end", "clause"]
     """Whether it begins a clause, ends one, or is one."""
-    unless: frozenset[str]
-    """Words that may not stand before it."""
 
 
 def said_plainly(text: str, lexicon: Lexicon, language: Language, context: Context) -> str:
@@ -84,7 +82,7 @@ def _listed(language: Language) -> Mapping[str, tuple[Rewording, ...]]:
     """The rewordings by the words that they begin with."""
     listed: dict[str, list[Rewording]] = defaultdict(list)
     for entry in language.rewordings:
-        unknown = entry.keys() - {"say", "instead", "where", "unless", "like"}
+        unknown = entry.keys() - {"say", "instead", "where", "like"}
         if unknown:
             raise RuleError(f"a rewording has {', '.join(sorted(unknown))}")
         ways = entry["say"] if isinstance(entry["say"], list) else [entry["say"]]
@@ -93,7 +91,6 @@ def _listed(language: Language) -> Mapping[str, tuple[Rewording, ...]]:
                 _normal(parse_template(say), language),
                 entry["instead"],
                 entry.get("where", "anywhere"),
-                frozenset(entry.get("unless", ())),
             )
             first_words = _first_words(one.say)
             if ANY_WORD in first_words and one.where not in CLAUSE_BEGINS:
@@ -153,8 +150,6 @@ def _matches(reader: Reader, rewordings: Mapping[str, tuple[Rewording, ...]]) ->
         anything = rewordings.get(ANY_WORD, ()) if begins else ()
         for one in (*rewordings.get(token.norm, ()), *anything):
             if one.where in CLAUSE_BEGINS and not begins:
-                continue
-            if one.unless.intersection(each.norm for each in reader.tokens[:at]):
                 continue
             for end, spans in _walk(one.say, reader, at, {}):
                 if one.where in ("end", "clause") and not _ends_clause(reader, end):

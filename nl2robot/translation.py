@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import msgspec
 
 from grammar.language import load_language
-from grammar.plan import Plan, calls, to_data
+from grammar.plan import Plan, calls, methods, to_data
 from grammar.planning.planner import (
     Answer,
     Drafts,
@@ -42,6 +42,8 @@ if TYPE_CHECKING:
 
 POLITE = 3
 """Words that an answer may have besides those of what was offered."""
+_IN_ANY_LANGUAGE = ({"set_language"}, {"stop"})
+"""What is done, whatever language it is asked for in."""
 
 Status = Literal["ok", "clarify", "rejected"]
 
@@ -224,7 +226,7 @@ def _planned(turn: Turn, knowledge: Knowledge, name: str, watch: Watch) -> tuple
 def _is_open(turn: Turn, decided: Decided) -> bool:
     """Whether another planner may know better than the rules."""
     if isinstance(decided, Chosen):
-        if {call.method for call in calls(decided.plan)} == {"stop"}:  # nobody thinks twice
+        if methods(decided.plan) == {"stop"}:  # nobody thinks twice
             return False
         return not is_sure(turn, decided.considered) or _loses(turn, decided.plan)
     return isinstance(decided, Refusal) and not decided.final
@@ -321,10 +323,7 @@ def _in_another_language(
             continue
         turn = _turn(utterance, knowledge, code, None)
         decided = _decided(turn, planner("grammar").plan(turn, Watch()), knowledge)
-        made = (
-            {call.method for call in calls(decided.plan)} if isinstance(decided, Chosen) else set()
-        )
-        if isinstance(decided, Chosen) and made in ({"set_language"}, {"stop"}):
+        if isinstance(decided, Chosen) and methods(decided.plan) in _IN_ANY_LANGUAGE:
             return turn, decided
     return None
 

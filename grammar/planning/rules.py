@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 from typing import Final
 
-from grammar.plan import Plan, calls
+import msgspec
+
+from grammar.plan import methods
 from grammar.planning.planner import Answer, Draft, Drafts, Question, Refusal, Service, Watch
 from grammar.planning.turn import Turn
 from grammar.planning.whereabouts import brought_to_speaker
@@ -17,7 +20,8 @@ NAME: Final = "grammar"
 _MUST_NOT: Final = ("no_harm", "no_medicine", "no_computer")
 """What is said where nothing must be done, whoever understands the sentence better."""
 _BRIEF: Final = 8
-"""Tokens up to which "leave it" dismisses all that was said: a longer sentence may say more."""
+"""Tokens up to which "leave it" dismisses all that was said (a longer sentence may say more), and
+that a cry of stop has at most."""
 
 
 class RulesPlanner:
@@ -45,16 +49,16 @@ def _halt(turn: Turn) -> Draft | None:
     """A cry of stop is obeyed, whatever is said after it: "please stop right now, you are going to
     hit somebody". None if this is not one."""
     subjects = turn.language.speech["after_stop"]
-    for end, token in enumerate(turn.tokens):
-        if not end or (token.kind != "mark" and token.norm not in subjects):
+    for last, behind in itertools.pairwise(turn.tokens[: _BRIEF + 1]):
+        if behind.kind != "mark" and behind.norm not in subjects:
             continue
-        cry = turn.text[: turn.tokens[end - 1].end]
-        plan = understand(cry, turn.lexicon, turn.language.code).plan
-        if plan is not None:
-            if {call.method for call in calls(plan)} != {"stop"}:
+        cry = understand(turn.text[: last.end], turn.lexicon, turn.language.code).plan
+        if cry is not None:
+            if methods(cry) != {"stop"}:
                 return None
-            rest = turn.text[token.start :].lstrip(" ,;.!")
-            halt = Plan(plan.steps, plan.language, (*plan.background, *([rest] if rest else [])))
+            rest = turn.text[behind.start :].lstrip(" ,;.!")
+            said = (*cry.background, rest) if rest else cry.background
+            halt = msgspec.structs.replace(cry, background=said)
             return Draft(halt, NAME, 1.0, turn.context, exact=True)
     return None
 

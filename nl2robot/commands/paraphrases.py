@@ -7,7 +7,7 @@ import json
 import random
 from pathlib import Path
 
-from nl2robot.commands.options import add_planner
+from nl2robot.commands.options import add_planner, whole
 from nl2robot.errors import ExitStatus
 from nl2robot.paraphrases import DEFAULT_WORLD, Total
 
@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_planner(parser, default="grammar")
     parser.add_argument(
-        "--most", type=int, metavar="N", help="only N commands of the file, by chance (seed 0)"
+        "--most", type=whole(1), metavar="N", help="only N commands of the file, by chance (seed 0)"
     )
     parser.add_argument("--misses", action="store_true", help="list what was not right, and why")
     parser.add_argument("--json", action="store_true", help="the figures as one JSON object")
@@ -39,10 +39,11 @@ def run(options: argparse.Namespace) -> int:
 
     knowledge = Knowledge(load_world(options.world, names_only=True))
     rows = load(Path(options.file))
-    if options.most is not None and 0 <= options.most < len(rows):
+    if options.most is not None and options.most < len(rows):
         rows = random.Random(0).sample(rows, options.most)
     terminal = Terminal()
-    bar = track(rows, "commands", console=Console(stderr=True), transient=True)
+    aside = Console(stderr=True)
+    bar = track(rows, "commands", console=aside, transient=True, disable=not aside.is_terminal)
     scores = [score(row, knowledge, options.planner) for row in bar]
     if options.json:
         figures = total(scores)

@@ -9,7 +9,7 @@ from typing import Final
 from grammar.checking import Objection
 from grammar.explain import explain, explain_steps
 from grammar.naming import naming
-from grammar.plan import Call, Plan
+from grammar.plan import Plan
 from grammar.planning.planner import Draft, Question, Refusal
 from grammar.planning.turn import Turn
 from grammar.speech import speech
@@ -28,8 +28,6 @@ LONGEST_OF_ONE: Final = 320
 """The same, where it is all that is to be done."""
 MUST_NOT: Final = frozenset({"refused", "harmful"})
 """Objections after which no other planner need be asked."""
-_REMEMBERING: Final = Plan(steps=(Call("location", save_as="start"),))
-"""What a robot does for itself: nobody is asked about that."""
 CLAUSE: Final = ":"
 """Ends a line that says when, or how often, the lines below it are done."""
 
@@ -128,9 +126,8 @@ def _either(turn: Turn, one: Chosen, other: Chosen) -> Open | None:
     short question tells them apart."""
     called = naming(turn.lexicon, turn.language).called
     language = turn.language.code
-    unseen = {text for _, text in explain_steps(_REMEMBERING, language, called)}
     lines = [
-        [text for _, text in explain_steps(each.plan, language, called) if text not in unseen]
+        [text for _, text in explain_steps(each.plan, language, called, deeds_only=True)]
         for each in (one, other)
     ]
     mine, theirs = _difference(*lines)
