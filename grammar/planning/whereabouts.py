@@ -24,7 +24,7 @@ def brought_to_speaker(turn: Turn, plan: Plan) -> Plan:
     if where is None:
         return plan
     told = {at for each in Sources(turn, plan).found for at in each.tokens}
-    if told.intersection(range(where.start, where.end)):
+    if told.intersection(_sense(turn), range(where.start, where.end)):
         return plan
     steps = replaced(plan.steps, Recall(START), Text(where.value))
     return normal(without_unused(msgspec.structs.replace(plan, steps=steps)))
@@ -33,7 +33,7 @@ def brought_to_speaker(turn: Turn, plan: Plan) -> Plan:
 def speakers_place(turn: Turn) -> Mention | None:
     """The place of which somebody says nothing but to be there: "I'm waiting in the gym"."""
     words = weighty(turn.language)
-    sense = {at for at, _ in content(turn.tokens, turn.language)}
+    sense = _sense(turn)
     for each in turn.mentions:
         if each.sort != "place":
             continue
@@ -44,6 +44,11 @@ def speakers_place(turn: Turn) -> Mention | None:
         if clause[0] in words.speakers and words.staying & {*clause} and rest <= words.staying:
             return each
     return None
+
+
+def _sense(turn: Turn) -> set[int]:
+    """The tokens of words with a sense of their own: "the" of "the gym" is said of all things."""
+    return {at for at, _ in content(turn.tokens, turn.language)}
 
 
 def _sentence(turn: Turn, at: int) -> tuple[int, int]:

@@ -24,6 +24,7 @@ def last_place(language: str, words: str) -> str:
     ("language", "words"),
     [
         ("en", "Bring me the cup. I am waiting in the hallway."),
+        ("en", "Tell Henry that lunch is on the table and come back. I'm in the hallway."),
         ("de", "Bring mir die Tasse, ich sitze im Flur."),
         ("fr", "Apporte-moi la tasse, je suis dans le couloir."),
     ],
