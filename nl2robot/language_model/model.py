@@ -7,8 +7,10 @@ can grow side by side over one beginning, and one that is given up costs nothing
 
 from __future__ import annotations
 
+import mmap
 import os
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
@@ -18,7 +20,8 @@ from numpy.typing import NDArray
 
 from grammar.planning.model.decoding import Full
 from nl2robot.language_model.changes import changes
-from nl2robot.language_model.files import GRAPH, LEVELS, SCALES, TOKENS
+from nl2robot.language_model.files import GRAPH, LEVELS, SCALES, TOKENS, WEIGHTS
+from nl2robot.language_model.memory import give_back
 from nl2robot.language_model.tokens import Tokens
 from nl2robot.language_model.weights import BLOCK, Floats
 
@@ -42,8 +45,10 @@ class Branch:
     tokens: tuple[int, ...] = ()
     spans: tuple[tuple[int, int], ...] = ()
     """The rows, first to last and behind it, in order."""
-    scores: Floats | None = field(default=None, repr=False, compare=False)
-    """Of what may follow, as logarithms of probabilities."""
+    reading: int = field(default=0, repr=False, compare=False)
+    """Which reading of the model it comes of, ..."""
+    row: int = field(default=0, repr=False, compare=False)
+    """... and at which place."""
 
     def with_rows(self, start: int, end: int) -> tuple[tuple[int, int], ...]:
         if self.spans and self.spans[-1][1] == start:
@@ -67,8 +72,8 @@ class OnnxModel:
 
         self.tokens = Tokens.load(folder / TOKENS)
         self.room = room
-        self._levels = np.load(folder / LEVELS, mmap_mode="r")
-        self._scales = np.load(folder / SCALES, mmap_mode="r")
+        self._levels = _looked_up(folder / LEVELS)
+        self._scales = _looked_up(folder / SCALES)
         options = onnxruntime.SessionOptions()
         options.intra_op_num_threads = threads or os.cpu_count() or 1
         options.enable_cpu_mem_arena = False  # it would keep what the longest prompt needed
@@ -93,9 +98,14 @@ class OnnxModel:
             name: onnxruntime.OrtValue.ortvalue_from_numpy(each)
             for name, each in changes(inputs, learned)
         }
+        give_back(folder / WEIGHTS)
         self._options = onnxruntime.RunOptions
         self.used = 0
         """Rows that are taken."""
+        self._reading = 0
+        """How often it has read."""
+        self._scores: Floats = np.zeros((0, 0), np.float32)
+        """Of what may follow what was read last, as logarithms of probabilities."""
 
     # --- reading
 
@@ -123,15 +133,16 @@ class OnnxModel:
         for first, last in branch.spans:
             sees[..., first:last] = 0
         sees[0, 0, :, start:] = _earlier(len(tokens))
-        scores = self._computed([*tokens], [*range(len(tokens))], [*places], sees)
+        self._compute([*tokens], [*range(len(tokens))], [*places], sees)
         self.used += len(tokens)
         return [
             Branch(
                 (*branch.tokens, *tokens[: number + 1]),
                 branch.with_rows(start, start + number + 1),
-                row,
+                self._reading,
+                number,
             )
-            for number, row in enumerate(scores)
+            for number in range(len(tokens))
         ]
 
     def _read(self, pieces: Sequence[tuple[Branch, Sequence[int]]]) -> list[Branch]:
@@ -151,13 +162,13 @@ class OnnxModel:
             asked.append(last - 1)
             rows = branch.with_rows(own.start, own.stop)
             read.append(Branch((*branch.tokens, *tokens), rows))
-        scores = self._computed(new, asked, places, sees)
+        self._compute(new, asked, places, sees)
         self.used = total
-        return [replace(each, scores=row) for each, row in zip(read, scores, strict=True)]
+        return [replace(each, reading=self._reading, row=row) for row, each in enumerate(read)]
 
-    def _computed(
-        self, new: list[int], asked: list[int], places: list[int], sees: Floats
-    ) -> Floats:
+    def _compute(self, new: list[int], asked: list[int], places: list[int], sees: Floats) -> None:
+        """The scores of what may follow each of the new tokens that are asked for, by their
+        numbers among them."""
         total = self.used + len(new)
         binding = self._session.io_binding()
         for name, value in {
@@ -189,7 +200,8 @@ class OnnxModel:
         scores: Floats = binding.get_outputs()[-1].numpy()[0]
         scores -= scores.max(-1, keepdims=True)
         scores -= np.log(np.exp(scores).sum(-1, keepdims=True))
-        return scores
+        self._scores = scores
+        self._reading += 1
 
     def _embedded(self, tokens: list[int]) -> Floats:
         levels = self._levels[tokens].astype(np.float32) - 128
@@ -207,11 +219,17 @@ class OnnxModel:
     def resume(self) -> None:
         self._cancelled = False
 
+    def scores(self, branch: Branch) -> Floats:
+        """Of what may follow a branch of the last reading, as logarithms of probabilities. What
+        follows others is forgotten: that would be half a megabyte for each."""
+        assert branch.reading == self._reading, "something else was read since"
+        scores: Floats = self._scores[branch.row]
+        return scores
+
     def following(self, branch: Branch) -> Iterator[tuple[int, float]]:
-        """The tokens that may follow, the likeliest first, with the logarithms of their
-        probabilities."""
-        assert branch.scores is not None, "nothing was read"
-        scores, written = branch.scores, self.tokens.written
+        """The tokens that may follow a branch of the last reading, the likeliest first, with the
+        logarithms of their probabilities."""
+        scores, written = self.scores(branch), self.tokens.written
         likely = np.argpartition(-scores, _LIKELY)[:_LIKELY]
         seen = likely[np.argsort(-scores[likely], kind="stable")]
         yield from ((written[place], float(scores[place])) for place in seen)
@@ -223,6 +241,14 @@ class OnnxModel:
     def forget(self, used: int) -> None:
         """Give up all rows from this one on."""
         self.used = used
+
+
+def _looked_up(file: Path) -> Any:
+    """A table of which only a few rows are read: the system need not read those around them."""
+    table: Any = np.load(file, mmap_mode="r")
+    with suppress(AttributeError):  # Windows takes no advice
+        table._mmap.madvise(mmap.MADV_RANDOM)
+    return table
 
 
 def _earlier(tokens: int) -> NDArray[np.float64]:
