@@ -55,6 +55,8 @@ class Slots:
         self._adverb = re.compile(self.language.speech.get("adverbs", r"(?!)")).search
         self._possessive = str(self.language.speech.get("possessive", "")).strip()
         self._no_nouns = frozenset(self.language.speech.get("no_nouns", ()))
+        self._measures = self.language.words_called("measures")
+        self._no_heads = frozenset(self.language.speech.get("no_heads", ()))
         self._noun_joins = frozenset(self.language.speech.get("noun_joins", ()))
         clause = self.language.speech.get("clause", {})
         no_verbs = ("pronouns", "determiners", "prepositions", "and", "subordinating", "reflexive")
@@ -196,8 +198,19 @@ class Slots:
         return [
             (end, cost, int(value))
             for end, cost, value in self._number(at)
-            if value >= 1 and value == int(value) and not (cost and end == at + 1)
+            if value >= 1
+            and value == int(value)
+            and not (cost and end == at + 1)
+            and not self._is_measure(end)
         ]
+
+    def _is_measure(self, at: int) -> bool:
+        return at < len(self.tokens) and self.tokens[at].norm in self._measures
+
+    def _measured(self, at: int) -> bool:
+        """Whether a number stands here that tells how big something is: "a twelve ounce coffee"."""
+        goes_on = at and any(end > at for end, _, _ in self._number(at - 1))  # "twenty-five"
+        return not goes_on and self._is_measure(at + 1)
 
     # --- single tokens
 
@@ -262,10 +275,12 @@ class Slots:
             if token.norm in self._noun_joins and matches:
                 continue  # "glass of water"
             closed = token.norm in self.language.closed and not self._noun_after_all(at, position)
+            if token.value is not None and position == at:
+                if not self._measured(at):
+                    break  # a number is no noun
+                continue
             if token.kind not in ("word", "quote") or closed:
                 break
-            if token.value is not None and position == at:
-                break  # a number is no noun
             if self._noun_over(at, position) or self._adverb(token.norm):
                 break
             if position > at and self._named("person", position):
@@ -274,6 +289,8 @@ class Slots:
                 break
             before = doubt
             doubt += MISSPELT_NOUN if position in self.corrections else 0.0
+            if token.norm in self._no_heads and not self._is_definite(at, position):
+                continue  # "move left", "move a little"; but "the left cup", "on the left"
             if self._is_look(position):
                 continue  # "der blaue oder der rote Hefter": no noun ends with an adjective
             length = position + 1 - at
@@ -304,6 +321,11 @@ class Slots:
         ends = after is None or after.kind == "mark" or after.norm in self.language.closed
         introduced = position > at or self.tokens[position - 1].norm in self._judge.words.definite
         return introduced and ends and (after is None or after.norm not in not_before)
+
+    def _is_definite(self, at: int, position: int) -> bool:
+        """Whether a noun that begins at a token and ends with this one has "the" before it."""
+        before = at - 1 if position == at else position - 1
+        return before >= 0 and self.tokens[before].norm in self._judge.words.definite
 
     def _is_look(self, position: int) -> bool:
         """Whether a small letter shows that this is no noun but a word for how things look."""

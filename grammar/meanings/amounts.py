@@ -22,6 +22,13 @@ def quantity(d: Discourse, node: Node) -> float:
     return result
 
 
+@meaning("percentage")
+def percentage(d: Discourse, node: Node) -> float:
+    """So many percent; a fraction is a part of the whole: "to a half"."""
+    number = float(d.get(node, "number"))
+    return 100 * number if 0 < number < 1 else number
+
+
 @meaning("clock_time")
 def clock_time(d: Discourse, node: Node) -> str:
     """A time of day as "HH:MM"."""

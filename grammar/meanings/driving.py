@@ -325,6 +325,19 @@ def turn(d: Discourse, node: Node) -> Steps:
     return [Call("turn", {"degrees": as_value(-degrees if side == "right" else degrees)})]
 
 
+@meaning("move_aside")
+def move_aside(d: Discourse, node: Node) -> Steps:
+    """To one side, looking ahead as before: a robot on wheels has to turn for that."""
+    metres = float(d.get(node, "metres"))
+    degrees = -90.0 if d.get(node, "side") == "right" else 90.0
+    d.at = None
+    return [
+        Call("turn", {"degrees": as_value(degrees)}),
+        Call("move", {"metres": as_value(metres)}),
+        Call("turn", {"degrees": as_value(-degrees)}),
+    ]
+
+
 @meaning("drive")
 def drive(d: Discourse, node: Node) -> Steps:
     linear = float(d.get(node, "linear", 0))

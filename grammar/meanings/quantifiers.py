@@ -249,8 +249,7 @@ def speaks_of_several(d: Discourse, node: Node, part: Node) -> bool:
 
 
 def all_of(d: Discourse, node: Node, part: Node) -> bool:
-    """Whether it speaks of all there are: "the boxes in the supply room", "go round the offices and
-    bring the cups to the kitchen"."""
+    """Whether it speaks of all there are: "bring the cups to the kitchen"."""
     head = part.parts.get("head")
     if d.tokens[part.start].norm not in d.language.speech.get("definite", ()) or head is None:
         return False
@@ -265,8 +264,7 @@ def all_of(d: Discourse, node: Node, part: Node) -> bool:
     before = d.thing, d.thing_last
     thing: Thing = d.build(part)
     d.thing, d.thing_last = before
-    in_round = d.in_loop and isinstance(d.at, Recall)
-    return not thing.here and (in_round or thing.place is not None or bool(thing.furniture))
+    return not thing.here
 
 
 def said_as_named(d: Discourse, head: Leaf) -> bool:
