@@ -10,6 +10,7 @@ import functools
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 from typing import Final
 
 from grammar.chart import Match
@@ -34,6 +35,9 @@ ASKED_ON: Final = 6.0
 RECEIVER_IN_TEXT: Final = 4.0
 """Cost of a text that begins with the one it is told to: "ihr ihre Proben sind fertig"."""
 
+LONGEST_RECEIVER: Final = 4
+"""Words of a name that nobody knows, with what stands before it: "au docteur Ostrowski"."""
+
 
 class OpenText:
     """The open slots over the tokens of one sentence."""
@@ -41,6 +45,7 @@ class OpenText:
     def __init__(self, tokens: Sequence[Token], language: Language, judge: Judge) -> None:
         self.tokens = tokens
         self.words = _words_of(language)
+        self._language = language
         self.judge = judge
         self._command_words = command_words(language)
         self._infinitive = language.speech.get("infinitive")  # "s'il préfère jouer ou lire"
@@ -49,6 +54,8 @@ class OpenText:
         """Free text of any length; it costs more where it goes on over another command."""
         words = self.words
         matches: list[Match] = []
+        if self._names_receiver(at):
+            return []
         cost = ASKED_IN_TEXT if self.judge.asks(at, len(self.tokens)) else 0.0
         if self.judge.given_to(at) or self._never_first(at):
             cost += RECEIVER_IN_TEXT
@@ -62,7 +69,7 @@ class OpenText:
             if token.kind == "mark":
                 if position == at:
                     return []
-                if self._goes_on(position + 1):
+                if self._goes_on(position + 1) or self._is_aside(at, position + 1):
                     break
                 if token.norm == STOP:
                     if position + 1 < len(self.tokens) and self._condition(position + 1):
@@ -122,6 +129,29 @@ class OpenText:
         told = before is not None and before.kind != "mark"
         reported = before is not None and before.norm in self.judge.words.that
         return told and not reported and self.tokens[at].norm in self.judge.words.never_first
+
+    def _names_receiver(self, at: int) -> bool:
+        """Whether what begins here belongs to whom something is told, since nobody knows them:
+        "tell Doctor Ostrowski that the results are in", "tell Doctor Ostrowski the results are in";
+        but not "tell the visitor Zoe is here"."""
+        first = self.tokens[at]
+        like_a_name = first.norm in self.words.to_whom or self._is_unknown(at) or first.capital
+        if at < 1 or not like_a_name or first.norm in self.judge.words.definite:
+            return False
+        for position in range(at + 1, min(at + LONGEST_RECEIVER + 1, len(self.tokens))):
+            token, before = self.tokens[position], self.tokens[position - 1]
+            if token.kind != "word" or before.kind != "word":
+                break
+            if token.norm in self.judge.words.that and before.norm not in self._language.closed:
+                return not self.judge.is_clause(at, position)
+        titled = self.tokens[at - 1].norm in self.words.titles
+        bare = at < 2 or self.tokens[at - 2].norm not in self.judge.words.definite
+        return titled and bare and first.capital and self._is_unknown(at)
+
+    def _is_unknown(self, at: int) -> bool:
+        token = self.tokens[at]
+        known = token.norm in self._language.words or token.norm in self._language.closed
+        return token.kind == "word" and not known
 
     @functools.cached_property
     def _filler_words(self) -> frozenset[int]:
@@ -191,6 +221,17 @@ class OpenText:
         """Whether after a comma or full stop something else is said to be done: ", then"."""
         return at < len(self.tokens) and self.tokens[at].norm in self.words.ends
 
+    def _is_aside(self, begin: int, at: int) -> bool:
+        """Whether somebody says where they are behind a question that they have asked: "ask Bob
+        whether he is hungry, I'm in the lobby"."""
+        if at + 1 >= len(self.tokens):
+            return False
+        clause = takewhile(lambda token: token.kind != "mark", reversed(self.tokens[:begin]))
+        asking = self.judge.words.asking | self.words.elided_if
+        asks = any(token.norm in asking for token in clause)
+        speaks = self.tokens[at].norm in self.words.speakers
+        return asks and speaks and self.tokens[at + 1].norm in self.words.staying
+
     def _condition(self, at: int) -> bool:
         """Whether a condition of its own begins: "and if so, ...", "Otherwise ..."."""
         if self.tokens[at].norm not in self.words.conditions:
@@ -229,6 +270,12 @@ class _Words:
     spoken_fillers: frozenset[str]
     noun_fillers: frozenset[str]
     time_fillers: frozenset[str]
+    to_whom: frozenset[str]
+    elided_if: frozenset[str]
+    speakers: frozenset[str]
+    staying: frozenset[str]
+    titles: frozenset[str]
+    """Words for people that may stand before a name: "doctor"."""
     news: Phrases
     answer_tails: Phrases
 
@@ -240,6 +287,10 @@ def _words_of(language: Language) -> _Words:
 
     def phrases(name: str) -> Phrases:
         return Phrases(str(entry).split() for entry in language.speech.get(name, ()))
+
+    def within(kind: str, name: str) -> frozenset[str]:
+        listed = language.speech.get(kind, {}).get(name, ())
+        return frozenset(token for each in listed for token in language.tokens_of(str(each)))
 
     return _Words(
         joins=single("joins"),
@@ -254,6 +305,16 @@ def _words_of(language: Language) -> _Words:
         spoken_fillers=single("spoken_fillers"),
         noun_fillers=single("noun_fillers"),
         time_fillers=single("time_fillers"),
+        to_whom=within("free_text", "to_whom"),
+        elided_if=within("free_text", "elided_if"),
+        speakers=within("weighty", "speakers"),
+        staying=within("weighty", "staying"),
+        titles=frozenset(
+            words[0]
+            for ways in language.lists.get("person_kind", {}).values()
+            for words in ways
+            if len(words) == 1
+        ),
         news=phrases("news_begins"),
         answer_tails=phrases("answer_tails"),
     )

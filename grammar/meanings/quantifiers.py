@@ -264,7 +264,10 @@ def all_of(d: Discourse, node: Node, part: Node) -> bool:
     before = d.thing, d.thing_last
     thing: Thing = d.build(part)
     d.thing, d.thing_last = before
-    return not thing.here
+    in_round = d.in_loop and isinstance(d.at, Recall)
+    somewhere = in_round or thing.place is not None or bool(thing.furniture)
+    # Where the world knows no such thing, its plural may be the name of one: "the pickles".
+    return not thing.here and (somewhere or (isinstance(head, Leaf) and head.slot == "object"))
 
 
 def said_as_named(d: Discourse, head: Leaf) -> bool:
