@@ -9,9 +9,9 @@ from typing import Final
 import msgspec
 
 from grammar.plan import methods
+from grammar.planning.besides import heeded
 from grammar.planning.planner import Answer, Draft, Drafts, Question, Refusal, Service, Watch
 from grammar.planning.turn import Turn
-from grammar.planning.whereabouts import brought_to_speaker
 from grammar.refusals import forbidden
 from grammar.understand import understand
 from grammar.understanding import Understanding
@@ -34,7 +34,7 @@ class RulesPlanner:
         if understood.request is not None:
             return Service(understood.request, understood.context)
         if understood.plan is not None:
-            plan = brought_to_speaker(turn, understood.plan)
+            plan = heeded(turn, understood.plan)
             context = replace(understood.context, plan=plan)
             return Drafts((Draft(plan, NAME, understood.confidence, context, exact=True),))
         if understood.status == "rejected" and (halt := _halt(turn)) is not None:

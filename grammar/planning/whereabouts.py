@@ -8,7 +8,8 @@ from grammar.checking.sources import Sources
 from grammar.checking.words import content, weighty
 from grammar.discourse import START
 from grammar.normal import normal
-from grammar.plan import Plan, Recall, Text
+from grammar.plan import Call, Plan, Recall, Text
+from grammar.planning.asides import asides, clauses
 from grammar.planning.mentions import Mention
 from grammar.planning.turn import Turn
 from grammar.tidy import replaced, without_unused
@@ -46,6 +47,22 @@ def speakers_place(turn: Turn) -> Mention | None:
     return None
 
 
+def brought_where_it_happened(turn: Turn, plan: Plan) -> Plan:
+    """A plan that fetches somebody for no other reason than what is said to be so elsewhere brings
+    them there: "somebody has fallen in ward b, fetch a doctor"."""
+    fetched = [each for each in nodes(plan.steps) if isinstance(each, Call)]
+    fetched = [each for each in fetched if each.method == "guide"]
+    if not fetched or any(each.arguments.get("place") != Recall(START) for each in fetched):
+        return plan
+    for start, end in asides(turn, plan):
+        within = [each for each in turn.mentions if start <= each.start and each.end <= end]
+        places = {each.value for each in within if each.sort == "place"}
+        if len(places) == 1 and any(each.sort == "person" for each in within):
+            steps = replaced(plan.steps, Recall(START), Text(places.pop()))
+            return normal(without_unused(msgspec.structs.replace(plan, steps=steps)))
+    return plan
+
+
 def _sense(turn: Turn) -> set[int]:
     """The tokens of words with a sense of their own: "the" of "the gym" is said of all things."""
     return {at for at, _ in content(turn.tokens, turn.language)}
@@ -53,6 +70,4 @@ def _sense(turn: Turn) -> set[int]:
 
 def _sentence(turn: Turn, at: int) -> tuple[int, int]:
     """The tokens between two marks."""
-    marks = [place for place, token in enumerate(turn.tokens) if token.kind == "mark"]
-    start = max((place + 1 for place in marks if place < at), default=0)
-    return start, min((place for place in marks if place > at), default=len(turn.tokens))
+    return next((start, end) for start, end in clauses(turn) if start <= at < end)

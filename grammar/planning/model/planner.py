@@ -11,6 +11,7 @@ from typing import Final
 import msgspec
 
 from grammar.normal import normal
+from grammar.planning.besides import heeded
 from grammar.planning.model.expansion import expanded
 from grammar.planning.model.expressions import CALLS
 from grammar.planning.model.prompt import request, vocabulary
@@ -28,7 +29,6 @@ from grammar.planning.planner import (
     Watch,
 )
 from grammar.planning.turn import Turn
-from grammar.planning.whereabouts import brought_to_speaker
 from grammar.reading import NotAPlan
 from grammar.understanding import Context
 
@@ -121,7 +121,7 @@ def _draft(turn: Turn, written: Written, share: float) -> Draft | None:
     people = vocabulary(turn).people
     try:
         plan = normal(expanded(written.text, people, turn.lexicon, turn.language))
-        plan = brought_to_speaker(turn, plan)
+        plan = heeded(turn, plan)
     except NotAPlan:
         return None
     context = Context(
