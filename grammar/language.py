@@ -387,6 +387,14 @@ def _number_words(numbers: Mapping[str, Any], letters: Mapping[str, str]) -> dic
         for ten, much in tens.items():
             for unit, more in units.items():
                 words.setdefault(pattern.format(unit=unit, ten=ten), much + more)
+    hundred = numbers.get("hundred")
+    if hundred and letters:  # as they are written; a recogniser hears them as several words
+        below = {"": 0.0, **{word: value for word, value in words.items() if value < 100}}
+        below = {word: value for word, value in below.items() if value == int(value)}
+        units = {"": 1.0, **{word: value for word, value in words.items() if 0 < value < 10}}
+        for unit, many in units.items():
+            for rest, more in below.items():
+                words.setdefault(f"{unit}{hundred}{rest}", 100 * many + more)
     for word, value in tuple(words.items()):
         for letter, instead in letters.items():
             word = word.replace(letter, instead)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from grammar.chart import Match
 from grammar.language import Language
@@ -17,6 +17,8 @@ class Numerals:
         self.tokens = tokens
         self.language = language
         self._first_words = _first_words(language)
+        self._ones = frozenset(language.numbers.get("ones", ()))
+        self._zeros = frozenset(language.numbers.get("zeros", ()))
 
     def starting(self, at: int) -> list[Match]:
         """All numbers that begin at a token: "2.5", "twenty five", "two hundred and ten", "two and
@@ -34,6 +36,8 @@ class Numerals:
         while position < len(self.tokens):
             token = self.tokens[position]
             value, more = self._compound(position) or (token.value, 1)
+            if value is None and current and current % 100 == 0 and token.norm in self._ones:
+                value = 1.0  # "cent un"
             if value is not None:
                 if (
                     current is not None
@@ -67,6 +71,26 @@ class Numerals:
                 matches.append((end, 0.0, whole[2] + value))
         matches += [(end, 0.2, value) for end, value in self._said("phrases", at)]
         return matches
+
+    def read_out(self, at: int) -> Iterator[tuple[int, str]]:
+        """Numbers of at least two parts that are read out one by one, as those of rooms are: "one
+        oh one", "two fourteen"; where each ends, and its digits."""
+        digits = ""
+        for position in range(at, len(self.tokens)):
+            part = self._part(self.tokens[position])
+            if part is None:
+                return
+            digits += part
+            if position > at:
+                yield position + 1, digits
+
+    def _part(self, token: Token) -> str | None:
+        if token.norm in self._zeros:
+            return "0"
+        if token.norm in self._ones:
+            return "1"
+        value = token.value
+        return f"{value:g}" if value is not None and value in range(100) else None
 
     def _compound(self, at: int) -> tuple[float, int] | None:
         """A number said in several words that do not add up one by one, "quatre-vingt-dix", and

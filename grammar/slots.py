@@ -175,12 +175,14 @@ class Slots:
                 yield at + 1, second
 
     def _numbered(self, trie: Trie, at: int) -> Iterable[tuple[int, Trie]]:
-        """ "room two hundred and five" for "room 205", with where the number ends."""
-        if self.tokens[at].kind != "word" or not any(key.isdigit() for key in trie.branches):
+        """ "room two hundred and five" and "room two oh five" for "room 205", with where the number
+        ends."""
+        if not any(key.isdigit() for key in trie.branches):
             return
-        for end, cost, value in self._number(at):
-            branch = trie.branches.get(f"{value:g}")
-            if branch is not None and end > at + 1 and not cost:
+        as_one = ((end, f"{value:g}") for end, cost, value in self._number(at) if not cost)
+        for end, digits in dict.fromkeys((*as_one, *self._numerals.read_out(at))):
+            branch = trie.branches.get(digits)
+            if branch is not None and (end > at + 1 or digits != self.tokens[at].norm):
                 yield end, branch
 
     def _cuts(self, word: str) -> range:
