@@ -144,12 +144,16 @@ class Changes(Turn):
 
     def _added(self, said: str) -> Understanding | None:
         """ "and then wave": at the end of the command before."""
-        whole = self.joined(self.text)
+        joins = self.language.speech["joins"]
+        begins = self.reader(self.text, Context()).tokens[0].norm in joins
+        whole = self.joined(self.text if begins else f"{joins[0]} {said}")
         separate = self.separate(said)
         elsewhere = self._there_too(said, whole)
         if elsewhere is not None:
             return elsewhere
-        if self.commands(said):
+        before, new = self.before(), self.reader(said, Context())
+        asks = any(text.rstrip().endswith("?") for text in (self.text, self.context.text))
+        if self.commands(said) and not (asks and is_pieces(new)):  # "and ward c?" is asked, too
             alone = self.reader(said, self.context).understand()
             more = len(calls(alone.plan)) if alone.plan is not None else 1
             least = len(calls(self.context.plan)) + more if self.context.plan else 1
@@ -161,7 +165,6 @@ class Changes(Turn):
                     return result
             return None
         result = self.read(whole, self.base)
-        before, new = self.before(), self.reader(said, Context())
         if result is not None and not self.swallowed(whole) and not before.spoken_earlier(new):
             return result
         listed = self._row_for(said)

@@ -44,6 +44,7 @@ from grammar.so_many import with_numbers
 from grammar.speech import speech
 from grammar.tidy import Unbound, charging_last, is_one_of_each, returning, scoped, without_unused
 from grammar.tokens import COMMA, Token
+from grammar.traversal import nodes
 from grammar.understanding import Clarification, Context, Understanding, rejected
 
 _log: Final = logging.getLogger(__name__)
@@ -120,6 +121,7 @@ class Reader:
             self.text,
             thing=self.context.thing,
             person=self.context.person,
+            named=self._named_before(),
             place=self.context.place,
             origin=self.context.origin,
             source=self.context.source,
@@ -204,6 +206,14 @@ class Reader:
                 before=self.context.referents(),
             ),
         )
+
+    def _named_before(self) -> list[str]:
+        """Who was spoken of by name in the command before: "him" is whoever of them is a man."""
+        people = {each.name for each in self.lexicon.people}
+        plan = self.context.plan
+        said = nodes(plan.steps) if plan is not None else ()
+        names = (each.value for each in said if isinstance(each, Text) and each.value in people)
+        return list(dict.fromkeys(names))
 
     def _confidence(self, tree: Node, discourse: Discourse) -> float:
         doubts = 0.15 * (len(tree.corrections) + self.slips) + 0.1 * len(discourse.assumptions)
