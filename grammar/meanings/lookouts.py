@@ -93,7 +93,7 @@ class Lookout:
         d.done[at] = replace(loop, steps=(*loop.steps, *self.trait.first, noted))
         d.done.insert(0, Remember(found, Items(())))
         d.round.lookout = None
-        return Told(found_places(d, tell, found), [])
+        return Told(found_places(d, tell, found, so=condition), [])
 
     def counted(self, d: Discourse) -> Told:
         """How many of them there are at all the places."""

@@ -204,4 +204,4 @@ def met_on_round(d: Discourse, places: Value | None) -> Told:
         first.append(round_of(d, places, notes, here.name))
     d.report = d.round.lookout = None
     some = d.say("people_seen", value=Recall(found))
-    return Told([if_any(found, d.say("nobody_seen"), some)], first)
+    return Told([if_any(found, d.say("nobody_there"), some)], first)

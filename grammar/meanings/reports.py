@@ -7,6 +7,7 @@ somewhere else that is for the speaker is brought back to them.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Final
 
 from grammar.chart import Node
 from grammar.discourse import START, Discourse, Steps, Thing, Where
@@ -228,6 +229,10 @@ def told(d: Discourse, found: Report, person: Thing | None) -> Steps:
     return speak_to(d, person, [saying])
 
 
+IF_NONE: Final = {"people_seen": "nobody_there"}
+"""What is said instead where there is none to be told of."""
+
+
 def saying_of(d: Discourse, found: Report) -> Call | If:
     """What tells a report."""
     words = dict(found.words)
@@ -238,7 +243,10 @@ def saying_of(d: Discourse, found: Report) -> Call | If:
     values: dict[str, Value | str] = {**words}
     if found.value is not None:
         values["value"] = found.value
-    return d.say(found.phrase, **values)
+    said = d.say(found.phrase, **values)
+    if found.value is not None and found.phrase in IF_NONE:
+        return If(Holds(found.value), (said,), (d.say(IF_NONE[found.phrase]),))
+    return said
 
 
 def kept(d: Discourse) -> str | None:

@@ -7,7 +7,7 @@ from dataclasses import replace as replace_thing
 from msgspec.structs import replace
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import Discourse, Steps, Thing
+from grammar.discourse import ANYONE, Discourse, Steps, Thing
 from grammar.doubts import NotUnderstood
 from grammar.meanings.answers import Said
 from grammar.meanings.conditions import negated
@@ -30,12 +30,13 @@ from grammar.meanings.reports import Report, saying_of
 from grammar.meanings.sights import told_where
 from grammar.meanings.surveys import asked_yet, note, replacing
 from grammar.meanings.traits import Trait
-from grammar.naming import joined_up
+from grammar.naming import joined_up, some
 from grammar.plan import (
     Ask,
     Call,
     Collect,
     Compare,
+    Condition,
     Either,
     ForEach,
     Holds,
@@ -43,6 +44,7 @@ from grammar.plan import (
     Increase,
     Items,
     Length,
+    Not,
     Number,
     Recall,
     Remember,
@@ -178,7 +180,7 @@ def _lines(d: Discourse, loop: ForEach) -> tuple[Steps, Steps]:
     noted = d.variable("found")
     if found.otherwise is not None:  # "see whether anybody is there": where there is somebody
         notes: Steps = [If(Holds(found.value), (Collect(noted, here),))]
-        words = found_places(d, "which", noted)
+        words = found_places(d, "which", noted, so=Holds(found.value))
     else:
         seen = d.variable(found.name)
         line = Sentence((here, Text(": "), Recall(seen)))
@@ -188,7 +190,7 @@ def _lines(d: Discourse, loop: ForEach) -> tuple[Steps, Steps]:
             notes = [notes[0], If(any_there, (Collect(noted, line),))]
         words = [d.say(found.phrase, **dict(found.words), value=Recall(noted))]
         if found.value in (Ask("people"), Ask("objects")):
-            none = d.say("nobody_seen" if found.value == Ask("people") else "no_such_places")
+            none = d.say("nobody_there" if found.value == Ask("people") else "no_such_places")
             words = [If(Compare(Length(Recall(noted)), "==", Number(0)), (none,), tuple(words))]
     return words, [Remember(noted, Items(())), replacing(loop, d.report_step, notes)]
 
@@ -338,7 +340,7 @@ def places_told(d: Discourse, node: Node) -> Told:
             going.append(Remember(others, Items(())))
         going.append(round_of(d, places_of(d, node), [*trait.first, noted], place))
     gone_round = loop.items if isinstance(loop, ForEach) else places_of(d, node)
-    words = found_places(d, tell, found, gone_round)
+    words = found_places(d, tell, found, gone_round, told_of)
     if rest:
         left = Compare(Length(Recall(others)), ">", Number(0))
         words.append(If(left, (d.say("not_such_places", places=Recall(others)),)))
@@ -369,18 +371,42 @@ def same_places(d: Discourse, node: Node, loop: Step | None) -> bool:
     return all(each in known for each in loop.items.items)
 
 
-def found_places(d: Discourse, tell: str, found: str, places: Value | None = None) -> Steps:
+def found_places(
+    d: Discourse,
+    tell: str,
+    found: str,
+    places: Value | None = None,
+    so: Condition | None = None,
+) -> Steps:
+    """What is told of the places that were found, of which it is `so`: "Without a stapler: ..."."""
     number = Length(Recall(found))
     if tell == "share" and places is not None:
         return [d.say("share_of_places", share=Share(number, how_many(places)))]
     if tell == "many":
         return [d.say("so_many_places", number=number)]
-    none, some = d.say("no_such_places"), d.say("such_places", places=Recall(found))
+    none, told = d.say("no_such_places"), d.say("such_places", places=Recall(found))
+    what = found_with(d, so)
+    if what is not None:
+        none = d.say("no_places_with", what=what)
+        told = d.say("places_with", what=what, places=Recall(found))
     if tell == "any":
-        none, some = d.say("no_none"), d.say("yes_these", places=Recall(found))
+        none, told = d.say("no_none"), d.say("yes_these", places=Recall(found))
     elif tell == "all":
-        none, some = d.say("yes_all"), d.say("no_not_these", places=Recall(found))
-    return [If(Compare(number, "==", Number(0)), (none,), (some,))]
+        none, told = d.say("yes_all"), d.say("no_not_these", places=Recall(found))
+    return [If(Compare(number, "==", Number(0)), (none,), (told,))]
+
+
+def found_with(d: Discourse, so: Condition | None) -> str | None:
+    """What was looked for, as a heading: "Without a stapler"; None if that is more than a thing."""
+    without = isinstance(so, Not)
+    match so.condition if isinstance(so, Not) else so:
+        case Holds(value=Ask(method="sees", arguments={"thing": Text(value=thing)})):
+            if thing == ANYONE:
+                return d.language.phrase("with_nobody" if without else "with_people")
+            called = d.called(thing)
+            name = "without_thing" if without else "with_thing"
+            return d.language.phrase(name, thing=called, some=some(called, d.language))
+    return None
 
 
 def how_many(places: Value) -> Value:
