@@ -145,8 +145,9 @@ class Changes(Turn):
     def _added(self, said: str) -> Understanding | None:
         """ "and then wave": at the end of the command before."""
         joins = self.language.speech["joins"]
+        listed = self._row_for(said)
         begins = self.reader(self.text, Context()).tokens[0].norm in joins
-        whole = self.joined(self.text if begins else f"{joins[0]} {said}")
+        whole = self.joined(self.text if begins or listed else f"{joins[0]} {said}")
         separate = self.separate(said)
         elsewhere = self._there_too(said, whole)
         if elsewhere is not None:
@@ -167,7 +168,6 @@ class Changes(Turn):
         result = self.read(whole, self.base)
         if result is not None and not self.swallowed(whole) and not before.spoken_earlier(new):
             return result
-        listed = self._row_for(said)
         if listed is not None:
             row, named, piece = listed
             return self.first_read([row.with_one(named, piece)])

@@ -17,6 +17,7 @@ from grammar.chart import Match
 from grammar.freetext import Judge
 from grammar.language import Language
 from grammar.phrases import Phrases
+from grammar.roles import ANYBODY
 from grammar.slips import command_words
 from grammar.tokens import COLON, COMMA, STOP, Token
 
@@ -311,9 +312,9 @@ def _words_of(language: Language) -> _Words:
         staying=within("weighty", "staying"),
         titles=frozenset(
             words[0]
-            for ways in language.lists.get("person_kind", {}).values()
+            for kind, ways in language.lists.get("person_kind", {}).items()
             for words in ways
-            if len(words) == 1
+            if len(words) == 1 and kind != ANYBODY
         ),
         news=phrases("news_begins"),
         answer_tails=phrases("answer_tails"),

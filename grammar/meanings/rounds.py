@@ -403,9 +403,12 @@ def found_with(d: Discourse, so: Condition | None) -> str | None:
         case Holds(value=Ask(method="sees", arguments={"thing": Text(value=thing)})):
             if thing == ANYONE:
                 return d.language.phrase("with_nobody" if without else "with_people")
+            if thing.startswith(f"{ANYONE} "):
+                return None  # "somebody asleep" is no heading
             called = d.called(thing)
             name = "without_thing" if without else "with_thing"
-            return d.language.phrase(name, thing=called, some=some(called, d.language))
+            articles = d.language.speech.get("headed_with_articles")
+            return d.language.phrase(name, thing=some(called, d.language) if articles else called)
     return None
 
 

@@ -16,7 +16,7 @@ from grammar.speech import speech
 from nl2robot.deliberation.considering import Considered, consider
 from nl2robot.knowledge import Knowledge
 
-ACCEPTED: Final = 0.5
+ACCEPTED: Final = 0.6
 """From this probability on a program is shown as understood."""
 ASKED: Final = 0.15
 """From this one on it is asked whether it was meant."""

@@ -231,7 +231,7 @@ def test_order_conditions_and_loops(sentence: str, meaning: str) -> None:
         (
             "tell me who is in the waiting room",
             'start = location(); goto("waiting room"); names = people(); goto(start);'
-            ' say("I see these people: {names}.")',
+            ' if names { say("I see these people: {names}.") } else { say("Nobody.") }',
         ),
         (
             "go to the supply room, no, the laundry",

@@ -87,6 +87,8 @@ def _either(piece: str) -> str:
 def _patterns(words: Words) -> Iterator[str]:
     for group in (words.do, words.value, words.negative, words.holds, words.fails):
         yield from group
+    for denied in (*words.negative, *words.fails):
+        yield denied.replace(" pas ", " ")  # "je ne trouve personne"
     yield from words.fields.values()
     for operators in words.compared.values():
         yield from operators.values()
