@@ -45,8 +45,9 @@ def with_reasons(turn: Turn, plan: Plan) -> Plan:
         turn.language.tokens_of(each) for each in turn.language.speech.get("reasons", ())
     )
     norms = [token.norm for token in turn.tokens]
-    for start, end in asides(turn, plan):
-        message = _message(turn, plan) if any(reasons.lengths(norms, start)) else None
+    given = [each for each in clauses(turn) if any(reasons.lengths(norms, each[0]))]
+    for start, end in asides(turn, plan) if given else ():
+        message = _message(turn, plan) if (start, end) in given else None
         if message is None:
             continue
         text, at = message

@@ -100,12 +100,17 @@ def _only(turn: Turn, draft: Draft) -> Chosen | Refusal:
 
 def between(turn: Turn, exact: Chosen, other: Chosen | Open | Refusal) -> Chosen | Open | Refusal:
     """What comes of a draft of an exact planner that may be wrong, and of what another one says: if
-    that is the same, it is right. Otherwise the other one is believed."""
+    that is the same, it is right. Otherwise the other one is believed, if it is sure; else it is
+    asked which of the two is meant."""
     from nl2robot.deliberation.voting import same
 
     match other:
-        case Chosen(considered=theirs) | Open(offers=(Offer(chosen=Chosen(considered=theirs)),)):
+        case Chosen(considered=theirs):
             return exact if same(turn, exact.considered, theirs) else other
+        case Open(offers=(Offer(chosen=theirs),)):
+            if same(turn, exact.considered, theirs.considered):
+                return exact
+            return _either(turn, theirs, exact) or other
         case _:
             return other
 

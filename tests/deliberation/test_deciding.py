@@ -8,7 +8,8 @@ import pytest
 from grammar.planning.planner import Draft, Refusal
 from grammar.understanding import Context
 from nl2robot.deliberation import confidence, deciding
-from nl2robot.deliberation.deciding import Chosen, Open, decide
+from nl2robot.deliberation.considering import consider
+from nl2robot.deliberation.deciding import Chosen, Open, between, decide
 from nl2robot.knowledge import Knowledge
 from tests.deliberation.drafting import WARD, draft, drafts, turn
 
@@ -139,6 +140,47 @@ def test_a_question_that_nobody_could_listen_to_is_not_asked() -> None:
     result = decided(text, f'goto("ward a")\n{say}', f'{say}goto("ward a")\n')
     told = [offer.told for offer in result.offers] if isinstance(result, Open) else []
     assert all(len(each) <= deciding.LONGEST for each in told)
+
+
+# --- two planners
+
+
+def of_rules(text: str, written: str) -> Chosen:
+    asked = turn(text)
+    considered = consider(asked, draft(asked, written))
+    assert considered is not None
+    return Chosen(considered, 0.2)
+
+
+def test_two_planners_of_which_neither_is_sure_are_asked_about_by_what_differs(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    text = "ward a should get a wave or a hello"
+    rules = of_rules(text, 'goto("ward a")\nsay("Hello!")\n')
+    monkeypatch.setattr(confidence, "confidence", lambda *known: 0.3)
+    model = decided(text, 'goto("ward a")\ngesture("wave")\n')
+    question = between(turn(text), rules, model)
+    assert isinstance(question, Open)
+    assert question.question.message == "Shall I make the gesture wave, or say “Hello!”?"
+    assert [offer.chosen.plan for offer in question.offers][1] == rules.plan
+
+
+def test_what_two_planners_mean_is_right_however_unsure_each_is(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    text = "ward a should get a wave"
+    rules = of_rules(text, 'goto("ward a")\ngesture("wave")\n')
+    monkeypatch.setattr(confidence, "confidence", lambda *known: 0.3)
+    model = decided(text, 'goto("ward a")\ngesture("wave")\n')
+    assert between(turn(text), rules, model) is rules
+
+
+def test_a_planner_that_is_sure_is_believed_against_one_that_is_not() -> None:
+    text = "ward a should get a wave or a hello"
+    rules = of_rules(text, 'goto("ward a")\nsay("Hello!")\n')
+    model = decided(text, 'goto("ward a")\ngesture("wave")\n')
+    assert isinstance(model, Chosen)
+    assert between(turn(text), rules, model) is model
 
 
 # --- refusals
