@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, capital
+from grammar.doubts import NotUnderstood
 from grammar.meanings.about_guests import guest_in, guest_spoken_of, host_told, others_spoken_of
 from grammar.meanings.finding import go, speak_to
 from grammar.meanings.genders import gender_of_thing
@@ -88,12 +89,31 @@ def told_to(d: Discourse, part: Leaf | Node, person: Thing | None) -> str:
         return sentence_form(in_words(d, part.start, part.end, room))
     changed = {**indirect(d, part), **turned(d, part.start, part.end, person)}
     ordered = direct_clause(d, part.start, part.end, changed)
-    if ordered == d.words(part.start, part.end):
+    said = d.words(part.start, part.end)
+    if ordered == said:
         ordered = addressed(d, part.start, part.end, person)
     reports = d.tokens[part.start - 1].norm in d.language.speech.get("reporting", ())
-    if reports and d.tokens[part.start].norm in d.language.speech.get("robot_pronouns", ()):
+    of_robot = d.tokens[part.start].norm in d.language.speech.get("robot_pronouns", ())
+    both = ordered != said and person is not None and not person.me
+    if of_robot and both:  # "that you agree with him": the receiver is "him", and so no "you"
+        return sentence_form(_said_of_itself(d, part, ordered))
+    if of_robot and reports:
         ordered = _said_by_robot(d, ordered)
     return sentence_form(ordered)
+
+
+def _said_of_itself(d: Discourse, part: Leaf | Node, clause: str) -> str:
+    """What can only be said of the robot, as it says it. Raises `NotUnderstood` where the language
+    does not tell how."""
+    own = _said_by_robot(d, clause)
+    if own != clause:
+        return own
+    first, _, rest = clause.partition(" ")
+    itself: str | None = d.language.speech.get("of_robot", {}).get(first.lower())
+    if itself is None:
+        words = d.words(part.start, part.end)
+        raise NotUnderstood(d.language.phrase("not_understood", part=words))
+    return f"{itself} {rest}"
 
 
 def indirect(d: Discourse, part: Leaf | Node) -> dict[int, str]:

@@ -156,6 +156,20 @@ def test_what_is_said_of_a_name_is_still_said(words: str, text: str) -> None:
     assert f'robot.say("{text}")' in program("en", words)
 
 
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        ("tell Bob that you agree with him", "I agree with you."),
+        ("tell Bob you are proud of him", "I am proud of you."),
+        ("tell Alice that you have her keys", "I have your keys."),
+        ("tell Bob that you can pick him up at five", "I can pick you up at five."),
+        ("tell Alice that you can sit down", "You can sit down."),
+    ],
+)
+def test_who_is_told_something_is_not_who_says_it(words: str, text: str) -> None:
+    assert f'robot.say("{text}")' in program("en", words)
+
+
 # --- slots that swallow
 
 
