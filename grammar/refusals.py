@@ -23,6 +23,11 @@ HARM: Final = frozenset({"no_harm", "no_medicine"})
 IN_HAND: Final = frozenset({"grab", "give", "put"})
 SPOKEN: Final = frozenset({"say", "ask", "show"})
 SEEN: Final = frozenset({"find", "sees", "count", "wait_for", "describe"})
+MAY_HOLD_MEDICINE: Final = frozenset(
+    {None, "anaesthetist", "carer", "doctor", "midwife", "nurse", "paramedic", "pharmacist"}
+    | {"physiotherapist", "porter", "radiologist", "receptionist", "surgeon", "therapist"}
+)
+"""Kinds of people who care for others; None: somebody of whom only the name is known."""
 
 
 def forbidden(tokens: Sequence[Token], language: Language) -> str | None:
@@ -112,16 +117,19 @@ def _is_dangerous(words: Sequence[str], language: Language) -> bool:
 
 
 def _treats(giving: Call | Ask, lexicon: Lexicon, language: Language) -> bool:
-    """Whether medicine is to be given to somebody who is treated here: that is not for a robot."""
+    """Whether medicine is to be given to somebody who might take it: that is not for a robot. To
+    those who care for others it is brought, to colleagues of whom no more is known, and to the
+    speaker."""
     thing, person = giving.arguments.get("thing"), giving.arguments.get("person")
-    if not isinstance(thing, Text) or not isinstance(person, Text):
+    if not isinstance(thing, Text) or person is None:
         return False
-    words, treated = language.tokens_of(thing.value), language.speech.get("treated", ())
-    medicine = language.speech.get("medicine", ())
+    words, medicine = language.tokens_of(thing.value), language.speech.get("medicine", ())
     if not any(_headed(words, language.tokens_of(each), language) for each in medicine):
         return False
+    if not isinstance(person, Text):
+        return True
     kinds = {each.kind for each in lexicon.people if each.name == person.value}
-    return not kinds.isdisjoint(treated) or person.value.split()[0] in treated
+    return not (kinds or {person.value.split()[0]}) <= MAY_HOLD_MEDICINE
 
 
 def out_of_range(plan: Plan, language: Language) -> str | None:

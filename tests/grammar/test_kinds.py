@@ -225,6 +225,32 @@ def test_where_the_speaker_is_is_not_asked(language: str, words: str) -> None:
     assert not any(each in question.lower() for each in ("lobby", "empfang", "accueil", "i'm"))
 
 
+# --- what must not be done
+
+
+@pytest.mark.parametrize(
+    ("language", "words"),
+    [
+        ("en", "give {} three of the blue pills"),
+        ("de", "gib {} drei Tabletten"),
+        ("fr", "donne trois comprimés à {}"),
+    ],
+)
+def test_medicine_is_given_to_nobody_who_might_take_it(language: str, words: str) -> None:
+    whom = {
+        "en": ("the child in ward b", "the visitor", "Henry", "every patient", "the old man"),
+        "de": ("dem Kind", "dem Besucher", "Henry", "der Frau"),
+        "fr": ("l'enfant", "Henry", "la femme"),
+    }
+    for each in whom[language]:
+        assert said(language, words.format(each)).program is None, each
+
+
+def test_medicine_is_brought_to_those_who_care_for_others() -> None:
+    for each in ("the nurse in ward a", "the doctor", "the pharmacist"):
+        assert "pill" in program("en", f"bring the pills to {each}")
+
+
 # --- reasons and urgency
 
 
