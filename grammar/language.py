@@ -288,7 +288,9 @@ def _spelling(data: Mapping[str, Any]) -> Spelling:
         contractions=spelling.get("contractions", {}),
         endings=spelling.get("endings", {}),
         abbreviations=frozenset(spelling.get("abbreviations", ())),
-        numbers=_number_words(data.get("numbers", {}), letters),
+        numbers=_with_hundreds(
+            data.get("numbers", {}), _number_words(data.get("numbers", {}), letters)
+        ),
         symbols=spelling.get("symbols", {}),
         letters=letters,
         hours=frozenset(spelling.get("hours", ())),
@@ -377,6 +379,22 @@ def _spelled(data: Mapping[str, Any], network: Network) -> frozenset[str]:
     return frozenset(spelled | {*data.get("fillers", ()), *data.get("closed", ())})
 
 
+def _with_hundreds(numbers: Mapping[str, Any], words: dict[str, float]) -> dict[str, float]:
+    """These and those above that are written in one word, as German "zweihundertfünf"; there are a
+    thousand, which nobody has to hear one by one."""
+    hundred = numbers.get("hundred")
+    if not hundred:
+        return words
+    whole = {word: value for word, value in words.items() if value < 100 and value == int(value)}
+    units = {"": 1.0, **{word: value for word, value in whole.items() if 0 < value < 10}}
+    above = {
+        f"{unit}{hundred}{rest}": 100 * many + more
+        for unit, many in units.items()
+        for rest, more in {"": 0.0, **whole}.items()
+    }
+    return above | words
+
+
 def _number_words(numbers: Mapping[str, Any], letters: Mapping[str, str]) -> dict[str, float]:
     """One-word numbers: those listed, and compounds such as German "fünfundzwanzig"."""
     words = {str(word): float(value) for word, value in numbers.get("words", {}).items()}
@@ -387,14 +405,6 @@ def _number_words(numbers: Mapping[str, Any], letters: Mapping[str, str]) -> dic
         for ten, much in tens.items():
             for unit, more in units.items():
                 words.setdefault(pattern.format(unit=unit, ten=ten), much + more)
-    hundred = numbers.get("hundred")
-    if hundred and letters:  # as they are written; a recogniser hears them as several words
-        below = {"": 0.0, **{word: value for word, value in words.items() if value < 100}}
-        below = {word: value for word, value in below.items() if value == int(value)}
-        units = {"": 1.0, **{word: value for word, value in words.items() if 0 < value < 10}}
-        for unit, many in units.items():
-            for rest, more in below.items():
-                words.setdefault(f"{unit}{hundred}{rest}", 100 * many + more)
     for word, value in tuple(words.items()):
         for letter, instead in letters.items():
             word = word.replace(letter, instead)

@@ -94,8 +94,10 @@ def told_to(d: Discourse, part: Leaf | Node, person: Thing | None) -> str:
         ordered = addressed(d, part.start, part.end, person)
     reports = d.tokens[part.start - 1].norm in d.language.speech.get("reporting", ())
     of_robot = d.tokens[part.start].norm in d.language.speech.get("robot_pronouns", ())
-    both = ordered != said and person is not None and not person.me
-    if of_robot and both:  # "that you agree with him": the receiver is "him", and so no "you"
+    of_receiver = ordered != said and person is not None and not person.me
+    if (
+        of_robot and of_receiver
+    ):  # "that you agree with him": the receiver is "him", and so no "you"
         return sentence_form(_said_of_itself(d, part, ordered))
     if of_robot and reports:
         ordered = _said_by_robot(d, ordered)

@@ -41,6 +41,9 @@ from grammar.plan import (
 )
 from grammar.tidy import mentions, nodes
 
+IF_NONE: Final = {"people_seen": "nobody_there"}
+"""What is said instead where there is none to be told of."""
+
 
 @dataclass(frozen=True)
 class Report:
@@ -227,10 +230,6 @@ def told(d: Discourse, found: Report, person: Thing | None) -> Steps:
     d.report, d.report_step = found, saying
     d.answer = d.news = d.counted = d.checked = None
     return speak_to(d, person, [saying])
-
-
-IF_NONE: Final = {"people_seen": "nobody_there"}
-"""What is said instead where there is none to be told of."""
 
 
 def saying_of(d: Discourse, found: Report) -> Call | If:

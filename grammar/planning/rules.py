@@ -9,7 +9,7 @@ from typing import Final
 import msgspec
 
 from grammar.plan import methods
-from grammar.planning.besides import heeded
+from grammar.planning.heeding import heeded
 from grammar.planning.planner import Answer, Draft, Drafts, Question, Refusal, Service, Watch
 from grammar.planning.turn import Turn
 from grammar.refusals import forbidden

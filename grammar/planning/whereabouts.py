@@ -50,9 +50,12 @@ def speakers_place(turn: Turn) -> Mention | None:
 def brought_where_it_happened(turn: Turn, plan: Plan) -> Plan:
     """A plan that fetches somebody for no other reason than what is said to be so elsewhere brings
     them there: "somebody has fallen in ward b, fetch a doctor"."""
-    fetched = [each for each in nodes(plan.steps) if isinstance(each, Call)]
-    fetched = [each for each in fetched if each.method == "guide"]
-    if not fetched or any(each.arguments.get("place") != Recall(START) for each in fetched):
+    led_to = {
+        each.arguments.get("place")
+        for each in nodes(plan.steps)
+        if isinstance(each, Call) and each.method == "guide"
+    }
+    if led_to != {Recall(START)}:
         return plan
     for start, end in asides(turn, plan):
         within = [each for each in turn.mentions if start <= each.start and each.end <= end]

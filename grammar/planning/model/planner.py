@@ -11,7 +11,7 @@ from typing import Final
 import msgspec
 
 from grammar.normal import normal
-from grammar.planning.besides import heeded
+from grammar.planning.heeding import heeded
 from grammar.planning.model.expansion import expanded
 from grammar.planning.model.expressions import CALLS
 from grammar.planning.model.prompt import request, vocabulary
