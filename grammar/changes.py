@@ -19,6 +19,8 @@ from grammar.understanding import Context, Understanding, rejected
 
 MANNER: Final = frozenset({"set_volume", "set_language"})
 """What is set before something is said rather than after it."""
+ADDRESSING: Final = frozenset({"find", "say", "ask"})
+"""What somebody is told or asked something by."""
 
 
 class Changes(Turn):
@@ -165,6 +167,9 @@ class Changes(Turn):
                 ):
                     return result
             return None
+        likewise = self._likewise(new)
+        if likewise is not None:
+            return likewise
         result = self.read(whole, self.base)
         if result is not None and not self.swallowed(whole) and not before.spoken_earlier(new):
             return result
@@ -177,6 +182,20 @@ class Changes(Turn):
         if like is None and is_pieces(new):
             return None  # "and in Clara's" is nothing to say, whatever was to be said
         return like or result or self.read(separate, self.base)
+
+    def _likewise(self, new: Reader) -> Understanding | None:
+        """ "and Bob", "Bob too": told or asked what somebody else was, with "you" for him, too."""
+        plan = self.context.plan
+        row = next((row for row in pieces_of(new) if len(row) == 1), [])
+        if plan is None or not methods(plan) <= ADDRESSING or not row:
+            return None
+        if row[0].rule != "person_ref" or not row[0].known:
+            return None
+        too = self.language.speech["too"][0]
+        named = new.words(row[0].start, row[0].end)
+        result = self.read(self.separate(f"{named} {too}"), self.base)
+        more = len(calls(result.plan)) - len(calls(plan)) if result and result.plan else 0
+        return result if more > 0 else None
 
     def _there_too(self, said: str, whole: str) -> Understanding | None:
         """ "and in the kitchen", after "ask everyone in the lobby ...": not only to go there."""

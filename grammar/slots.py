@@ -16,8 +16,9 @@ from grammar.freetext import Judge
 from grammar.names import Names, Trie
 from grammar.numerals import Numerals
 from grammar.open_text import FREE_WORD, OpenText
+from grammar.phrases import Phrases
 from grammar.slips import command_words, plain_forms
-from grammar.tokens import Token
+from grammar.tokens import COMMA, Token
 from grammar.wordforms import singular
 
 WHERE_TO: Final = 2.5
@@ -266,7 +267,38 @@ class Slots:
     # --- open slots
 
     def _text(self, at: int) -> list[Match]:
-        return [] if at in self._inside_names else self._open_text.text(at)
+        if at in self._inside_names:
+            return []
+        end = min((join for join in self._others_too if join > at), default=len(self.tokens))
+        return [match for match in self._open_text.text(at) if match[0] <= end]
+
+    @functools.cached_property
+    def _others_too(self) -> frozenset[int]:
+        """Where it is said behind a text of whom the same holds: "... and Bob as well"."""
+        too = Phrases(self.language.tokens_of(each) for each in self.language.speech["too"])
+        norms = self._judge.all_norms
+        joins = self._judge.joins
+        found = set()
+        for at in range(1, len(self.tokens)):
+            if norms[at - 1] not in joins and norms[at - 1] != COMMA:
+                continue
+            led = too.longest(norms, at)
+            to = at + led < len(norms) and norms[at + led] in self._open_text.words.to_whom
+            for end in self._somebody(at + led + to):
+                last = end + too.longest(norms, end)
+                ends = last >= len(self.tokens) or self.tokens[last].kind == "mark"
+                if ends and (led or last > end):
+                    comma = at > 1 and norms[at - 1] != COMMA and norms[at - 2] == COMMA
+                    found.add(at - 2 if comma else at - 1)
+        return frozenset(found)
+
+    def _somebody(self, at: int) -> set[int]:
+        """Where the name of a person may end that begins here, also of one that nobody knows."""
+        ends = set(self._named("person", at))
+        at += at < len(self.tokens) and self.tokens[at].norm in self._open_text.words.titles
+        if at < len(self.tokens) and self.tokens[at].capital:
+            ends |= {end for end, *_ in self._stranger(at)}
+        return ends
 
     def _noun(self, at: int) -> list[Match]:
         """Any noun with its adjectives: words that are no function words."""

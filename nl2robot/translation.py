@@ -217,6 +217,8 @@ def _planned(turn: Turn, knowledge: Knowledge, name: str, watch: Watch) -> tuple
         return turn, decided
     by_model = _decided(turn, planner("model").plan(turn, watch), knowledge)
     if isinstance(by_model, Refusal) and not by_model.final:
+        if by_model.absent and isinstance(decided, Refusal):
+            decided = replace(decided, message=f"{decided.message} {by_model.message}")
         return turn, decided  # the rules say which word they do not know
     if isinstance(decided, Chosen) and not isinstance(by_model, Question | Service):
         return turn, between(turn, decided, by_model)

@@ -66,6 +66,8 @@ class Refusal:
     """Whether another planner need not be asked: this must not be done, or it is known that it
     cannot."""
     context: Context = field(default_factory=Context)
+    absent: bool = False
+    """Whether the planner could not think at all: the message says why."""
 
 
 @dataclass(frozen=True)

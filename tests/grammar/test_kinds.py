@@ -435,3 +435,74 @@ def test_a_report_says_what_it_is_about(words: str, heading: str) -> None:
 )
 def test_where_there_is_nobody_that_is_said(language: str, words: str, nobody: str) -> None:
     assert f'robot.say("{nobody}")' in program(language, words)
+
+
+# --- order
+
+
+@pytest.mark.parametrize(
+    ("language", "words"),
+    [
+        ("en", "take Bob to radiology, but wave first"),
+        ("en", "take Bob to radiology, but first wave"),
+        ("en", "take Bob to radiology. But before that, wave"),
+        ("de", "bring Bob in die Radiologie, aber winke vorher"),
+        ("de", "bring Bob in die Radiologie, aber zuerst winke"),
+        ("fr", "accompagne Bob en radiologie, mais fais signe d'abord"),
+        ("fr", "accompagne Bob en radiologie, mais d'abord fais signe"),
+    ],
+)
+def test_what_comes_first_is_done_first_though_it_is_said_last(language: str, words: str) -> None:
+    found = program(language, words)
+    assert found.index('robot.gesture("wave")') < found.index('robot.guide("Bob"'), found
+
+
+# --- slots that swallow anything
+
+
+@pytest.mark.parametrize(
+    ("language", "words", "text"),
+    [
+        ("en", "tell Alice that lunch is ready, and {} as well", "Lunch is ready."),
+        ("en", "tell Alice that lunch is ready and {} too", "Lunch is ready."),
+        ("en", "ask Alice what she needs, and also {}", "What do you need?"),
+        ("de", "sag Alice, dass das Essen fertig ist, und {} auch", "Das Essen ist fertig."),
+        ("fr", "dis à Alice que le repas est prêt, et à {} aussi", "Le repas est prêt."),
+    ],
+)
+def test_whom_the_same_holds_for_is_no_part_of_the_text(
+    language: str, words: str, text: str
+) -> None:
+    found = program(language, words.format("Bob"))
+    assert found.count(f'"{text}"') == 2, found
+    unknown = said(language, words.format("Ostrowski"))
+    assert unknown.program is None, unknown.program
+
+
+@pytest.mark.parametrize(
+    ("language", "first", "then"),
+    [
+        ("en", "ask Alice whether she wants tea", "and Bob"),
+        ("en", "ask Alice if she is hungry", "Bob too"),
+        ("en", "tell Alice that she may go home", "and Bob"),
+        ("de", "frag Alice, ob sie Tee möchte", "und Bob"),
+        ("fr", "demande à Alice si elle veut du thé", "et Bob aussi"),
+    ],
+)
+def test_whoever_is_asked_as_well_is_asked_about_themselves(
+    language: str, first: str, then: str
+) -> None:
+    found = after(language, first, then)
+    text = found.split('"')[3]
+    assert "Alice" not in text and found.count(f'"{text}"') == 2, found
+
+
+@pytest.mark.parametrize("words", ["move {} a little to the left", "turn {} to the right"])
+@pytest.mark.parametrize("thing", ["the cup", "the stapler", "the box"])
+def test_things_are_carried_and_never_pushed(words: str, thing: str) -> None:
+    assert said("en", words.format(thing)).program is None
+
+
+def test_an_article_speaks_of_a_place_and_not_of_a_point() -> None:
+    assert said("en", "go to the one oh one").program is None
+    assert "robot.goto(3, 4)" in program("en", "go to 3 4")

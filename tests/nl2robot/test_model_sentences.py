@@ -240,12 +240,15 @@ def test_what_a_model_does_not_know_either_the_rules_answer(
     assert (answer.status, answer.message) == (alone.status, alone.message)
 
 
-def test_a_model_that_is_ill_is_as_good_as_none(language: str, scripted: Scripted) -> None:
+def test_a_model_that_is_ill_is_as_good_as_none_and_says_so(
+    language: str, scripted: Scripted
+) -> None:
     alone = said(ODD[language], language, "grammar")
-    writer = scripted({ODD[language]: [WAVE]}, ill="The language model has ended unexpectedly.")
+    ill = "The language model has ended unexpectedly."
+    writer = scripted({ODD[language]: [WAVE]}, ill=ill)
     answer = said(ODD[language], language)
     assert len(writer.asked) == 1
-    assert (answer.status, answer.message) == (alone.status, alone.message)
+    assert (answer.status, answer.message) == (alone.status, f"{alone.message} {ill}")
 
 
 # --- which planner

@@ -65,7 +65,7 @@ class ModelPlanner:
         except WritingInterrupted as error:
             raise Interrupted from error
         except Unavailable as error:
-            return Refusal(str(error))
+            return Refusal(str(error), absent=True)
         return self._answer(turn, written)
 
     def _written(self, turn: Turn, watch: Watch) -> list[Written]:
