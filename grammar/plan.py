@@ -466,10 +466,3 @@ msgspec.json.Decoder(Plan)  # learned before there are threads, see `robot_api.s
 def from_data(data: Any) -> Plan:
     """The plan of such data. Raises `msgspec.ValidationError`, whose message names the spot."""
     return msgspec.convert(data, Plan)
-
-
-def schema() -> dict[str, Any]:
-    """The JSON Schema of a plan. It knows the robot's methods and their parameters."""
-    from grammar.schema import plan_schema  # which is made from what stands here
-
-    return plan_schema()
