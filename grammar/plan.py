@@ -3,8 +3,9 @@
 A plan is a list of steps over the robot methods of `robot_api.methods`, with conditions, loops and
 remembered values; it is the language-independent middle of the project. `grammar.program` writes
 it as Python, `grammar.reading` reads it back, `grammar.explain` puts it into plain words,
-`grammar.normal` gives the one form of all plans that say the same, `schema()` the JSON Schema.
-Every node is a tagged `msgspec.Struct`, so `to_data` and `from_data` round-trip through JSON.
+`grammar.normal` gives the one form of all plans that say the same, `grammar.schema` the JSON
+Schema. Every node is a tagged `msgspec.Struct`, so `to_data` and `from_data` round-trip through
+JSON.
 
 Richer commands ("bring the stapler from the supply room to Alice") are not nodes of their own: they
 are spelled out as the calls they consist of, so that what is explained is what is done.

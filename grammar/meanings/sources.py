@@ -7,7 +7,7 @@ command before is made anew with it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -16,7 +16,6 @@ from grammar.discourse import Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.language import Language
 from grammar.meanings.deliveries import inside, meant_for
-from grammar.meanings.one_round import Make
 from grammar.meanings.registry import meaning
 from grammar.plan import Ask, Call, Items, Recall, Step, Text, Value
 from grammar.tidy import nodes
@@ -27,8 +26,8 @@ from grammar.wordforms import singular
 class Fetching:
     """A command that fetches things of which nobody has said where they are."""
 
-    node: Node
-    make: Make
+    again: Callable[[], Steps]
+    """Makes it once more."""
     steps: Steps
     things: frozenset[Value]
     scene: dict[str, Any]
@@ -88,12 +87,16 @@ def content(words: str, language: Language) -> frozenset[str]:
 
 
 def keep_fetching(
-    d: Discourse, node: Node, make: Make, steps: Steps, scene: dict[str, Any], known: frozenset[str]
+    d: Discourse,
+    again: Callable[[], Steps],
+    steps: Steps,
+    scene: dict[str, Any],
+    known: frozenset[str],
 ) -> None:
     """Keep a command that takes things from nobody knows where."""
     things = frozenset(unsourced(steps))
     if things:
-        d.fetching = Fetching(node, make, steps, things, scene, known)
+        d.fetching = Fetching(again, steps, things, scene, known)
 
 
 def unsourced(steps: Steps) -> Iterator[Value]:
@@ -129,13 +132,11 @@ def just_fetched(d: Discourse) -> Fetching | None:
 
 def made_anew(d: Discourse, fetching: Fetching, source: Where | None) -> Steps:
     """The steps of a command, with what is fetched taken from there."""
-    from grammar.meanings.quantifiers import distributed
-
     del d.done[-len(fetching.steps) :]
     d.set_scene(fetching.scene)
     d.variables.intersection_update(fetching.variables)
     outer, d.taken_from = d.taken_from, source
-    steps = distributed(d, fetching.node, fetching.make)
+    steps = fetching.again()
     d.taken_from = outer
     return steps
 
