@@ -17,6 +17,7 @@ import grammar.meanings.besides
 import grammar.meanings.best_places
 import grammar.meanings.body
 import grammar.meanings.branches
+import grammar.meanings.carrying
 import grammar.meanings.checked
 import grammar.meanings.chosen
 import grammar.meanings.conditions

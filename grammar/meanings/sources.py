@@ -15,7 +15,7 @@ from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.language import Language
-from grammar.meanings.deliveries import inside, meant_for
+from grammar.meanings.deliveries import inside
 from grammar.meanings.registry import meaning
 from grammar.plan import Ask, Call, Items, Recall, Step, Text, Value
 from grammar.tidy import nodes
@@ -154,25 +154,6 @@ def sourced(d: Discourse, node: Node) -> Steps | None:
         return None
     source: Where = d.get(node, "from")
     return made_anew(d, fetching, source) if source.place is not None else None
-
-
-@meaning("can_get")
-def can_get(d: Discourse, node: Node) -> Steps:
-    """ "you can take them from the lounge": no more than where they are, unless nothing else has
-    been said of them."""
-    from grammar.meanings.carrying import deliver
-
-    spot: Where = d.get(node, "from")
-    again = sourced(d, node)
-    if again is not None:
-        return again
-    thing: Thing = d.get(node, "thing")
-    before = d.delivery
-    there = replace(thing, place=spot.place, furniture=spot.furniture, pronoun=False)
-    told_where(d, there)
-    d.thing, d.thing_last = there, True
-    fetched = before is not None and is_called(d, there, before.thing.value)
-    return [] if fetched or not thing.pronoun else deliver(d, there, *meant_for(d, there))
 
 
 @meaning("all_there")

@@ -12,9 +12,12 @@ from grammar.freetext import words_for
 from grammar.language import Language, languages, load_language
 from grammar.meanings.about_guests import host_told
 from grammar.meanings.finding import speak_to
+from grammar.meanings.news import go_back
 from grammar.meanings.persons import is_me
+from grammar.meanings.polls import said_by
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning
+from grammar.meanings.reports import known_words, tell_speaker, told_again
 from grammar.plan import Call, ForEach, Items, Number, Recall, Text, Value
 from grammar.tidy import nodes
 
@@ -124,28 +127,9 @@ def count_aloud(d: Discourse, node: Node) -> Steps:
     return [ForEach(number.name, Items(tuple(map(Number, numbers))), (each,))]
 
 
-@meaning("said_with")
-def said_with(d: Discourse, node: Node) -> Steps:
-    """Say some words as part of a phrase: "invite them to the party"."""
-    part = node.parts["text"]
-    from grammar.meanings.messages import addressed
-
-    person: Thing | None = d.get(node, "person_ref")
-    robot = words_for(d.language).addressing & set(d.language.speech.get("addressed_robot", ()))
-    if robot & set(d.norms(part.start, part.end)):  # "invite them to follow you": no fixed words
-        phrase = d.language.phrase("cannot_say", part=d.words(part.start, part.end))
-        raise NotUnderstood(phrase, gap=(part.start, part.end))
-    words = addressed(d, part.start, part.end, person)
-    return speak_to(d, person, [d.say(str(node.production.fixed["phrase"]), what=words)])
-
-
 @meaning("say_it")
 def say_it(d: Discourse, node: Node) -> Steps:
     """ "and say it": the answer, the code or the news of before."""
-    from grammar.meanings.news import go_back
-    from grammar.meanings.polls import said_by
-    from grammar.meanings.reports import known_words, tell_speaker, told_again
-
     host_told(d, node)
     person: Thing | None = d.get(node, "person_ref")
     told = node.parts.get("person_ref")

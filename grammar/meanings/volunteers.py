@@ -15,9 +15,11 @@ import msgspec
 from grammar.chart import Node
 from grammar.discourse import ANYONE, START, Branched, Discourse, Meeting, Steps, Thing
 from grammar.meanings.asking import asked, remember_answer
+from grammar.meanings.branches import if_found_so
 from grammar.meanings.descriptions import described
 from grammar.meanings.finding import go
 from grammar.meanings.found_places import first_of_round
+from grammar.meanings.guards import in_vain
 from grammar.meanings.opposites import with_else
 from grammar.meanings.options import options_of
 from grammar.meanings.persons import by_furniture, known_by_name
@@ -143,8 +145,6 @@ def when_found(d: Discourse, node: Node) -> Steps:
         return waited_for(d, node)
     if search is not None and d.thing_last and d.thing is not None:
         d.thing = replace(d.thing, here=True, place=None)
-    from grammar.meanings.branches import if_found_so
-
     node = with_else(d, node)
     if search is not None and "otherwise" in node.parts:
         return if_found_so(d, node, search)
@@ -154,8 +154,6 @@ def when_found(d: Discourse, node: Node) -> Steps:
     if search is None or not isinstance(last, If):
         return then
     d.done.pop()
-    from grammar.meanings.control import in_vain
-
     missing = in_vain(search, then) if takes else tuple(search.missing)
     whole = If(search.found, tuple(then), missing)
     if d.thing is not None and d.thing_last:
