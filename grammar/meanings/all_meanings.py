@@ -43,8 +43,10 @@ import grammar.meanings.nouns
 import grammar.meanings.offers
 import grammar.meanings.people
 import grammar.meanings.persons
+import grammar.meanings.place_conditions
 import grammar.meanings.place_sets
 import grammar.meanings.places
+import grammar.meanings.places_meant
 import grammar.meanings.polls
 import grammar.meanings.presence
 import grammar.meanings.quantifiers
@@ -72,4 +74,5 @@ import grammar.meanings.traits
 import grammar.meanings.visiting
 import grammar.meanings.volunteers
 import grammar.meanings.waiting
+import grammar.meanings.when_found
 import grammar.meanings.whereabouts  # noqa: F401 (each enters its meanings)

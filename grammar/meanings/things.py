@@ -36,14 +36,8 @@ from grammar.meanings.nouns import thing_it
 from grammar.meanings.offers import if_they_want_it
 from grammar.meanings.people import brought_here, led_back, led_on
 from grammar.meanings.persons import guest_for, is_me
-from grammar.meanings.places import (
-    extraposed,
-    home_of,
-    kind_places,
-    piece_called,
-    place_there,
-    sought,
-)
+from grammar.meanings.places import extraposed, home_of, kind_places, piece_called, sought
+from grammar.meanings.places_meant import place_there
 from grammar.meanings.registry import meaning
 from grammar.meanings.remarks import fetched_there, known_to_be, mislaid
 from grammar.meanings.reports import Report, found_out
