@@ -10,6 +10,7 @@ import grammar.meanings.agreement
 import grammar.meanings.amounts
 import grammar.meanings.answered
 import grammar.meanings.answered_numbers
+import grammar.meanings.answering
 import grammar.meanings.answers
 import grammar.meanings.asked_to_do
 import grammar.meanings.asking_until
@@ -29,6 +30,7 @@ import grammar.meanings.driving
 import grammar.meanings.exceptions
 import grammar.meanings.exchanges
 import grammar.meanings.facts
+import grammar.meanings.findings
 import grammar.meanings.found_places
 import grammar.meanings.further
 import grammar.meanings.gaps
@@ -41,6 +43,7 @@ import grammar.meanings.messages
 import grammar.meanings.news
 import grammar.meanings.nouns
 import grammar.meanings.offers
+import grammar.meanings.orders_to_tell
 import grammar.meanings.people
 import grammar.meanings.persons
 import grammar.meanings.place_conditions
@@ -54,7 +57,6 @@ import grammar.meanings.questions
 import grammar.meanings.references
 import grammar.meanings.remarks
 import grammar.meanings.repeating
-import grammar.meanings.reports
 import grammar.meanings.requests
 import grammar.meanings.rounds
 import grammar.meanings.sharing

@@ -16,8 +16,8 @@ from grammar.meanings.guards import guard_finds
 from grammar.meanings.in_time import note_waiting
 from grammar.meanings.inquiries import owed, wonder_told
 from grammar.meanings.lookouts import told_at_last, why, why_only
+from grammar.meanings.orders_to_tell import summed_at_end
 from grammar.meanings.registry import meaning
-from grammar.meanings.reports import summed_at_end
 from grammar.meanings.stops import gone_to, looked_at_each, said_at_each, said_on_tour
 from grammar.meanings.things import goes_on
 from grammar.meanings.visiting import with_each_asked

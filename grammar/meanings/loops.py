@@ -21,6 +21,7 @@ from grammar.meanings.guards import guard_finds
 from grammar.meanings.news import BACK
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
+from grammar.meanings.several_places import until_found
 from grammar.meanings.surveys import moved
 from grammar.meanings.waiting import (
     at_least,
@@ -420,8 +421,6 @@ def each_place(d: Discourse, items: Value, steps: Leaf | Node | None, goes: bool
         d.in_loop, d.stop = outer
     first = body[0] if body else None
     moves = isinstance(first, Call) and first.method in ("goto", "guide", "find")
-    from grammar.meanings.several_places import until_found
-
     search = until_found(d, here, items, body)
     if search:  # "look for it in all wards": until it is found
         d.at = d.with_person = None

@@ -20,6 +20,7 @@ from grammar.meanings.news import BACK
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import kind_places, own_place
 from grammar.meanings.registry import meaning
+from grammar.meanings.several_places import over_places
 from grammar.meanings.speaking import ready_made, spoken
 from grammar.meanings.strangers import announced_one
 from grammar.meanings.waiting import awaited
@@ -282,8 +283,6 @@ def fetch_it(d: Discourse) -> Steps:
 @meaning("guide_list")
 def guide_list(d: Discourse, node: Node) -> Steps:
     """ "guide the visitors through all labs"."""
-    from grammar.meanings.several_places import over_places
-
     person = led(d, node)
     return [
         *meet(d, person),
