@@ -11,10 +11,10 @@ from grammar.edits import Edit, Sentence, same_word
 from grammar.listed import RULES, Row, rows_of
 from grammar.pieces import Piece, is_pieces, pieces_of
 from grammar.plan import Call, Plan, Text, calls, methods
+from grammar.reader import Reader
 from grammar.requests import Request
 from grammar.told_apart import one_told_apart, thing_alone, with_other_look
 from grammar.turn import Turn
-from grammar.understand import Reader
 from grammar.understanding import Context, Understanding, rejected
 
 MANNER: Final = frozenset({"set_volume", "set_language"})

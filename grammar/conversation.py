@@ -19,8 +19,8 @@ from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.pieces import is_pieces, leading
 from grammar.plan import methods
+from grammar.reader import Reader
 from grammar.told_apart import one_told_apart, with_other_look
-from grammar.understand import Reader
 from grammar.understanding import Context, Understanding, rejected
 
 

@@ -15,6 +15,7 @@ from grammar.chart import Leaf, Node
 from grammar.doubts import Ambiguous, NotUnderstood
 from grammar.language import Language
 from grammar.lexicon import Lexicon, Name
+from grammar.meanings.registry import MEANINGS
 from grammar.naming import joined_up, naming
 from grammar.plan import Ask, Call, Number, Recall, Remember, Sentence, Step, Text, Value
 from grammar.referents import Branched, Claim, Meeting, Round, Thing, Where
@@ -25,6 +26,9 @@ START: Final = "start"
 """The variable that holds the place where the command was given."""
 SETTING: Final = "setting"
 """The part of a command that says where or when it is to be done."""
+EACH: Final = "each_spoken_of"
+"""The meaning by which commands are made: once for each of several that one speaks of
+(`grammar.meanings.quantifiers`)."""
 COMMANDS: Final = frozenset({"command", "place_corrected"})
 """Rules whose noun phrases may speak of several."""
 ANYONE: Final = "person"
@@ -286,19 +290,16 @@ class Discourse:
 
     def build(self, part: Leaf | Node) -> Any:
         """What a part of the parse means."""
-        from grammar.meanings import MEANINGS
-        from grammar.meanings.quantifiers import distributed
-
         if isinstance(part, Leaf):
             return self._leaf(part)
         if id(part) in self.bound:
             return self.bound[id(part)]
         if SETTING in part.parts:
-            return distributed(self, part, lambda: MEANINGS[SETTING](self, part))
+            return MEANINGS[EACH](self, part)
         meaning = MEANINGS.get(part.means)
         if part.production.rule in COMMANDS and (meaning or part.means in METHODS):
             self.place_before = self.place
-            return distributed(self, part, lambda: self._command(part))
+            return MEANINGS[EACH](self, part)
         if meaning is not None:
             return meaning(self, part)
         if part.means in METHODS:
@@ -326,10 +327,9 @@ class Discourse:
                     known[name].clear()
                     known[name].update(value)
 
-    def _command(self, node: Node) -> Steps:
-        from grammar.meanings import MEANINGS
-
-        meaning = MEANINGS.get(node.means)
+    def one_command(self, node: Node) -> Steps:
+        """A command, where its noun phrases stand for one each."""
+        meaning = MEANINGS.get(SETTING if SETTING in node.parts else node.means)
         return [self.call_of(node)] if meaning is None else meaning(self, node)
 
     def get(self, node: Node, name: str, default: Any = None) -> Any:

@@ -37,7 +37,7 @@ from grammar.readings import SEQUENCE
 from grammar.tokens import Token
 
 if TYPE_CHECKING:
-    from grammar.understand import Reader
+    from grammar.reader import Reader
     from grammar.understanding import Context
 
 EditKind = Literal[

@@ -9,7 +9,7 @@ from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.pieces import Piece, leading, leaves, words_listed
-from grammar.understand import Reader
+from grammar.reader import Reader
 
 KINDS: Final = {
     "place": "place",

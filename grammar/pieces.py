@@ -13,7 +13,7 @@ from grammar.slips import command_words
 from grammar.slots import UNKNOWN_NAME
 
 if TYPE_CHECKING:
-    from grammar.understand import Reader
+    from grammar.reader import Reader
 
 CORRECTABLE: Final = (
     "place_ref",

@@ -3,8 +3,9 @@
 A plan is a list of steps over the robot methods of `robot_api.methods`, with conditions, loops and
 remembered values; it is the language-independent middle of the project. `grammar.program` writes
 it as Python, `grammar.reading` reads it back, `grammar.explain` puts it into plain words,
-`grammar.normal` gives the one form of all plans that say the same, `schema()` the JSON Schema.
-Every node is a tagged `msgspec.Struct`, so `to_data` and `from_data` round-trip through JSON.
+`grammar.normal` gives the one form of all plans that say the same, `grammar.schema` the JSON
+Schema. Every node is a tagged `msgspec.Struct`, so `to_data` and `from_data` round-trip through
+JSON.
 
 Richer commands ("bring the stapler from the supply room to Alice") are not nodes of their own: they
 are spelled out as the calls they consist of, so that what is explained is what is done.
@@ -466,10 +467,3 @@ msgspec.json.Decoder(Plan)  # learned before there are threads, see `robot_api.s
 def from_data(data: Any) -> Plan:
     """The plan of such data. Raises `msgspec.ValidationError`, whose message names the spot."""
     return msgspec.convert(data, Plan)
-
-
-def schema() -> dict[str, Any]:
-    """The JSON Schema of a plan. It knows the robot's methods and their parameters."""
-    from grammar.schema import plan_schema  # which is made from what stands here
-
-    return plan_schema()

@@ -21,18 +21,16 @@ import itertools
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
 
 from grammar.chart import TooMuch
 from grammar.language import Language
+from grammar.lexicon import Lexicon
 from grammar.network import RuleError
+from grammar.reader import Reader
 from grammar.templates import NOTHING, Choice, Part, Sequence, Template, Word, parse_template
 from grammar.tokens import words_of_template
-
-if TYPE_CHECKING:
-    from grammar.lexicon import Lexicon
-    from grammar.understand import Reader
-    from grammar.understanding import Context
+from grammar.understanding import Context
 
 MOST: Final = 4
 """Times that one sentence is said otherwise."""
@@ -57,8 +55,6 @@ class Rewording:
 
 def said_plainly(text: str, lexicon: Lexicon, language: Language, context: Context) -> str:
     """The sentence without words that would be taken for something else."""
-    from grammar.understand import Reader
-
     listed = _listed(language)
     if ANY_WORD not in listed and listed.keys().isdisjoint(language.tokens_of(text)):
         return text
@@ -67,8 +63,6 @@ def said_plainly(text: str, lexicon: Lexicon, language: Language, context: Conte
 
 
 def _reworded(reader: Reader, rewordings: Mapping[str, tuple[Rewording, ...]]) -> Iterator[str]:
-    from grammar.understand import Reader
-
     for _ in range(MOST):
         text = next(_matches(reader, rewordings), None)
         if text is None:

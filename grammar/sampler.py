@@ -18,6 +18,7 @@ from typing import Final
 
 from grammar.language import Language, load_language
 from grammar.lexicon import Lexicon
+from grammar.names import names_of
 from grammar.network import Production, parts_of
 from grammar.plan import Plan
 from grammar.samples import names_for, samples
@@ -198,8 +199,6 @@ class _Sampler:
 
     def known(self, name: str) -> list[str]:
         """What a slot matches that only the names of the world fill, such as {place_tail}."""
-        from grammar.names import names_of
-
         found: list[str] = []
         trie = names_of(self.language, self.lexicon).tries.get(name)
         todo = [("", trie)] if trie else []

@@ -11,7 +11,7 @@ from grammar.pieces import PRONOUNS, leading, words_listed
 
 if TYPE_CHECKING:
     from grammar.edits import Sentence
-    from grammar.understand import Reader
+    from grammar.reader import Reader
 
 MOST_ENDING: Final = 3
 """Letters that an adjective may be longer than another of its forms."""

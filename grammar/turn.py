@@ -17,8 +17,8 @@ from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.pieces import is_pieces, leaves, pieces_of
 from grammar.plan import calls
+from grammar.reader import Reader
 from grammar.requests import Request
-from grammar.understand import Reader
 from grammar.understanding import Context, Understanding
 
 SPEAKING: Final = frozenset({"say", "ask", "answer", "listen"})

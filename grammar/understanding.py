@@ -89,6 +89,9 @@ class Understanding:
     """Which words were read as what, as far as the sentence was understood."""
     unclear: str = ""
     """The words that were not understood, or could mean several things."""
+    quoted: str = ""
+    """The sentence with quotation marks around words that may be meant to be said, until it is
+    known whether it would be understood so: then it is a suggestion."""
     request: Request | None = None
     """What is asked of the application instead; such a sentence has no plan."""
     context: Context = field(default_factory=Context)

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from grammar.discourse import Discourse
+from grammar.names import names_of
 from grammar.tokens import COLON, COMMA
 
 SHORTEST_VERB: Final = 4
@@ -240,8 +241,6 @@ def _owns(d: Discourse, groups: Sequence[Group], end: int) -> bool:
 
 def _named(d: Discourse, groups: Sequence[Group], at: int) -> int:
     """How many words there are up to the end of a name of the world that begins here; 0 if none."""
-    from grammar.names import names_of
-
     tries = names_of(d.language, d.lexicon).tries
     longest = 0
     for slot in ("person", "place"):

@@ -57,6 +57,6 @@ class _Stumbled(logging.Handler):
 def _no_meaning_stumbles() -> Iterator[None]:
     """A person gets an answer though a meaning stumbles over their sentence; a test does not."""
     handler = _Stumbled()
-    logging.getLogger("grammar.understand").addHandler(handler)
+    logging.getLogger("grammar.reader").addHandler(handler)
     yield
-    logging.getLogger("grammar.understand").removeHandler(handler)
+    logging.getLogger("grammar.reader").removeHandler(handler)

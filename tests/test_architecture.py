@@ -3,6 +3,8 @@
 import ast
 import subprocess
 import sys
+from collections.abc import Iterable
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -24,8 +26,12 @@ HEAVY = {
 
 
 def imports_of(file: Path) -> set[str]:
+    return imported(ast.walk(ast.parse(file.read_text(encoding="utf-8"))))
+
+
+def imported(nodes: Iterable[ast.AST]) -> set[str]:
     found = set()
-    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+    for node in nodes:
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
@@ -52,6 +58,49 @@ def test_only_the_simulated_side_of_robot_api_knows_the_simulator() -> None:
         if any(module.split(".")[0] == "sim" for module in imports_of(file)):
             place = file.relative_to(ROOT / "robot_api")
             assert place.parts[0] == "capabilities" or place.name == "drivers.py", place
+
+
+def modules_of(package: str) -> dict[str, Path]:
+    files = sorted((ROOT / package).rglob("*.py"))
+    dotted = {".".join(file.relative_to(ROOT).with_suffix("").parts): file for file in files}
+    return {name.removesuffix(".__init__"): file for name, file in dotted.items()}
+
+
+def packages(module: str) -> set[str]:
+    """The packages that a module is in, which are imported before it."""
+    parts = module.split(".")
+    return {".".join(parts[:end]) for end in range(1, len(parts))}
+
+
+def statements(file: Path) -> list[ast.stmt]:
+    """Those of a module, without imports that only its types need."""
+    body = ast.parse(file.read_text(encoding="utf-8")).body
+    return [node for node in body if not (isinstance(node, ast.If) and for_types(node))]
+
+
+def for_types(branch: ast.If) -> bool:
+    return isinstance(branch.test, ast.Name) and branch.test.id == "TYPE_CHECKING"
+
+
+def test_no_module_of_the_grammar_imports_another_inside_a_function() -> None:
+    for name, file in modules_of("grammar").items():
+        inner = [each for node in statements(file) for each in ast.walk(node) if each is not node]
+        ours = {module for module in imported(inner) if module.split(".")[0] in OURS}
+        assert not ours, f"{name} imports {', '.join(sorted(ours))} where nobody sees it"
+
+
+def test_the_modules_of_the_grammar_know_each_other_without_a_circle() -> None:
+    modules = modules_of("grammar")
+    known: dict[str, set[str]] = {}
+    for name, file in modules.items():
+        found = imported(statements(file)) & modules.keys()
+        # To know a module is to know what its package imports; not so inside the package.
+        around = {package for each in found for package in packages(each)}
+        known[name] = found | (around - packages(name) - {name})
+    try:
+        TopologicalSorter(known).prepare()
+    except CycleError as circle:
+        pytest.fail(" is imported by ".join(circle.args[1]))
 
 
 def test_translate_starts_without_the_heavy_libraries() -> None:

@@ -9,8 +9,7 @@ from typing import Final
 from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import Discourse, Steps
 from grammar.meanings.arrivals import may_be_another
-from grammar.meanings.branches import ABOUT_ANSWERS
-from grammar.meanings.conditions import negated
+from grammar.meanings.conditions import ABOUT_ANSWERS, negated
 from grammar.meanings.deliveries import inside
 from grammar.meanings.searches import only_told_missing
 from grammar.plan import Ask, Both, Call, Compare, Condition, Holds, If, Not, Number, Recall, Text

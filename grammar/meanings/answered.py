@@ -11,6 +11,7 @@ from grammar.doubts import NotUnderstood
 from grammar.meanings.agreement import same_answers
 from grammar.meanings.answers import Said, Wanted, yes
 from grammar.meanings.answers import wanted as wanted_answer
+from grammar.meanings.checked import checked
 from grammar.meanings.conditions import negated
 from grammar.meanings.deliveries import delivered_last
 from grammar.meanings.news import in_round
@@ -227,8 +228,6 @@ def said_so(d: Discourse, no: bool, there_is_none: bool = False) -> Condition:
         d.met = Meeting(delivery.thing, holds=False, sought=True)
         return Not(Holds(Ask("find", {"thing": delivery.thing.value})))
     if d.answer is None:
-        from grammar.meanings.checked import checked
-
         about = d.report.thing if d.report is not None else None
         looked = seen_there(d)
         known = checked(d) if looked is None else None

@@ -10,7 +10,9 @@ import msgspec
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing
 from grammar.doubts import NotUnderstood
+from grammar.meanings.answered import of_those_asked
 from grammar.meanings.answers import Wanted
+from grammar.meanings.polls import counted
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import (
     Survey,
@@ -63,9 +65,6 @@ def counting_to(d: Discourse, node: Node) -> Compare:
 
 def reached(d: Discourse, node: Node) -> Condition:
     """Whether so many of those who were asked have given an answer."""
-    from grammar.meanings.answered import of_those_asked
-    from grammar.meanings.polls import counted
-
     surveys = polled_before(d)
     said = d.get(node, "answer")
     wanted = None if said is None else Wanted((str(said),))

@@ -5,10 +5,12 @@ from __future__ import annotations
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, as_value
 from grammar.doubts import NotUnderstood
+from grammar.meanings.asking import remember_answer
 from grammar.meanings.finding import speak_to
-from grammar.meanings.news import on_screen
+from grammar.meanings.options import split_options
+from grammar.meanings.orders_to_tell import on_screen
 from grammar.meanings.registry import meaning
-from grammar.meanings.reports import Report
+from grammar.meanings.reports import Report, kept
 from grammar.meanings.surveys import each_asked
 from grammar.plan import Call, Items, Recall, Text
 
@@ -43,8 +45,6 @@ def show_fact(d: Discourse, node: Node) -> Steps:
 
 def found_out(d: Discourse) -> str:
     """The variable with what was found out last; what would have been said of it is not."""
-    from grammar.meanings.reports import kept
-
     name = d.answer or d.code or kept(d)
     if name is None:
         raise NotUnderstood(d.language.phrase("show_what"))
@@ -54,9 +54,6 @@ def found_out(d: Discourse) -> str:
 @meaning("touch")
 def touch(d: Discourse, node: Node) -> Steps:
     """Let somebody choose on the touchscreen; the choice can be used afterwards."""
-    from grammar.meanings.asking import remember_answer
-    from grammar.meanings.options import split_options
-
     part = node.parts["text"]
     options = split_options(d, part.start, part.end)
     name = remember_answer(d, options, "choice")

@@ -16,6 +16,7 @@ from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import ANYONE, START, Branched, Claim, Discourse, Meeting, Steps, Thing
 from grammar.doubts import NotUnderstood
 from grammar.meanings.absences import Addressed, addressed_before
+from grammar.meanings.alternatives import excludes
 from grammar.meanings.answered import said_so
 from grammar.meanings.claims import (
     claim_of,
@@ -26,7 +27,7 @@ from grammar.meanings.claims import (
     told_so,
     turned,
 )
-from grammar.meanings.conditions import condition_of, negated
+from grammar.meanings.conditions import ABOUT_ANSWERS, condition_of, negated
 from grammar.meanings.deliveries import (
     Taken,
     delivered_last,
@@ -76,13 +77,6 @@ from grammar.plan import (
 )
 from grammar.tidy import mentions, nodes
 
-ABOUT_ANSWERS: Final = frozenset(
-    {
-        *("so", "answered", "answer_counts", "answers_many", "answers_same", "unanswered"),
-        *("answer_is", "answers_reached", "answered_besides"),
-        *("code_is", "cannot_check"),
-    }
-)
 LOOKING: Final = frozenset({"look_in", "look_on", "find", "go_find"})
 """Commands that look for something and do nothing else."""
 
@@ -352,8 +346,6 @@ def _leads_to_telling(step: Step, polls: list[Recall]) -> bool:
 def as_before(d: Discourse, condition: Condition) -> None:
     """Go back to the scene of the condition just before if only one of the two can be: "if she says
     no, tell Bob. If she says yes, ask her ...", for whom nobody has left."""
-    from grammar.meanings.alternatives import excludes
-
     before = d.branched
     last = d.done[-1] if d.done else None
     if before is None or last is not before.step or not isinstance(last, If):

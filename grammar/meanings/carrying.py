@@ -8,14 +8,17 @@ from dataclasses import replace
 from grammar.chart import Node
 from grammar.discourse import ANYONE, START, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
-from grammar.meanings.deliveries import Delivery, for_them, kept_in_hand, ordered_now
+from grammar.meanings.deliveries import Delivery, for_them, kept_in_hand, meant_for, ordered_now
 from grammar.meanings.finding import go, look_for, meet, where_sent
 from grammar.meanings.holders import from_whoever_has_it
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import sought
+from grammar.meanings.registry import meaning
 from grammar.meanings.searches import search_of
-from grammar.meanings.sources import where_told
+from grammar.meanings.sources import is_called, sourced, told_where, where_told
 from grammar.meanings.surveys import Survey, note
+from grammar.meanings.there import seen_there
+from grammar.meanings.thing_lists import off_the_list
 from grammar.plan import Ask, Call, Holds, If, Items, Recall, Step, Text, Value
 from grammar.tidy import nodes
 
@@ -75,8 +78,6 @@ def wished_for(d: Discourse, thing: Thing) -> bool:
 def where_seen(d: Discourse, thing: Thing) -> Thing:
     """A thing at the place that was only looked at for it: "see whether there is a cup in the
     kitchen and bring it to me"."""
-    from grammar.meanings.there import seen_there
-
     about = d.report.thing if d.report is not None else None
     if not thing.pronoun or about is None or about.value != thing.value:
         return thing
@@ -144,8 +145,6 @@ def _is_given(step: Step, thing: Thing) -> bool:
 
 def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None) -> Steps:
     """Pick a thing up, go where it is to be, and put it down or hand it over."""
-    from grammar.meanings.thing_lists import off_the_list
-
     thing = off_the_list(d, thing)
     take_along_again(d, thing, person)
     need = ordered_now(d, thing, person)
@@ -281,3 +280,20 @@ def fetch_before_waiting(d: Discourse, thing: Thing, person: Thing) -> None:
 def is_waiting(step: Step) -> bool:
     """Whether a step goes somewhere or waits there for somebody."""
     return isinstance(step, Call) and step.method in ("goto", "wait_for")
+
+
+@meaning("can_get")
+def can_get(d: Discourse, node: Node) -> Steps:
+    """ "you can take them from the lounge": no more than where they are, unless nothing else has
+    been said of them."""
+    spot: Where = d.get(node, "from")
+    again = sourced(d, node)
+    if again is not None:
+        return again
+    thing: Thing = d.get(node, "thing")
+    before = d.delivery
+    there = replace(thing, place=spot.place, furniture=spot.furniture, pronoun=False)
+    told_where(d, there)
+    d.thing, d.thing_last = there, True
+    fetched = before is not None and is_called(d, there, before.thing.value)
+    return [] if fetched or not thing.pronoun else deliver(d, there, *meant_for(d, there))

@@ -6,16 +6,17 @@ from dataclasses import replace
 
 from grammar.chart import Node, what_it_means
 from grammar.discourse import Discourse
-from grammar.meanings import news, polls
+from grammar.meanings.news import Told, not_back_yet, take_back
+from grammar.meanings.polls import how_many_words
 from grammar.meanings.registry import meaning
-from grammar.meanings.reports import Report, not_back_yet
+from grammar.meanings.reports import Report
 from grammar.meanings.surveys import asked_before, in_loop, of_one_question
 from grammar.plan import Holds, If, Recall, Remember, Truth, Value
 from grammar.wordorder import direct_clause
 
 
 @meaning("whether_told")
-def whether_told(d: Discourse, node: Node) -> news.Told:
+def whether_told(d: Discourse, node: Node) -> Told:
     """ "whether there are five chairs in the lobby", "whether the kitchen is empty": of any
     condition, found out there and told elsewhere."""
     part = node.parts["condition"]
@@ -29,27 +30,27 @@ def whether_told(d: Discourse, node: Node) -> news.Told:
         told_yes, told_no = d.say("so_yes"), d.say("so_no")
     told = If(Holds(Recall(d.checked)), (told_yes,), (told_no,))
     d.report = None
-    return news.Told([told], [*before, no, If(condition, (yes,))])
+    return Told([told], [*before, no, If(condition, (yes,))])
 
 
 @meaning("poll_whether")
-def poll_whether(d: Discourse, node: Node) -> news.Told:
+def poll_whether(d: Discourse, node: Node) -> Told:
     """ "whether all agree", "if anybody said no": also how many have said so."""
     surveys = of_one_question(asked_before(d))
     counted = what_it_means(node.parts["condition"]) == "answers_many"
     if not counted or (len(surveys) == 1 and not in_loop(d, surveys[0].call)):
         return whether_told(d, node)
     condition = d.get(node, "condition")
-    counts = polls.how_many_words(d, surveys, d.said)
+    counts = how_many_words(d, surveys, d.said)
     so, not_so = d.say("yes_so", counts=counts), d.say("no_so", counts=counts)
-    return news.Told([If(condition, (so,), (not_so,))], [])
+    return Told([If(condition, (so,), (not_so,))], [])
 
 
 def checked(d: Discourse) -> Value | None:
     """What was checked last, for "if so" and "if not"; that nobody was named to tell it to is then
     no reason to tell the speaker."""
     if d.checked is not None and d.news is not None:
-        news.take_back(d, d.news)
+        take_back(d, d.news)
         return Recall(d.checked)
     found: Report | None = d.report
     if found is None or found.otherwise is None or found.value is None:

@@ -10,7 +10,7 @@ from typing import Any
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.doubts import NotUnderstood
-from grammar.meanings.one_round import guarded
+from grammar.meanings.guards import guard_finds
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import Survey, uses_answer
 from grammar.plan import Call, Condition, If, Recall
@@ -50,7 +50,7 @@ def by_choice(
     bodies: list[Steps] = []
     for each in alternatives:
         d.set_scene(before)
-        bodies.append(guarded(d, d.sequence(lambda each=each: d.done.extend(one(each)))))  # type: ignore[misc]
+        bodies.append(guard_finds(d, d.sequence(lambda each=each: d.done.extend(one(each)))))  # type: ignore[misc]
     d.at = d.with_person = None
     otherwise: Steps = []
     for condition, body in reversed(list(zip(chosen, bodies, strict=True))):

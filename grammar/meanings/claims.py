@@ -15,9 +15,10 @@ from grammar.discourse import (
     Thing,
 )
 from grammar.meanings.finding import go, not_found, speak_to
+from grammar.meanings.orders_to_tell import coming_back, tell_speaker
 from grammar.meanings.persons import is_me
 from grammar.meanings.polls import polled
-from grammar.meanings.reports import coming_back, known_words, tell_speaker
+from grammar.meanings.reports import known_words
 from grammar.meanings.rooms import in_words, room_spoken_of
 from grammar.meanings.sights import named_some
 from grammar.meanings.speaking import put_for, sentence_form

@@ -36,6 +36,14 @@ from grammar.tidy import nodes
 
 TELLING: Final = frozenset({"tell_that", "tell_me_that"})
 """Clauses that only say whom to tell of what was found out."""
+ABOUT_ANSWERS: Final = frozenset(
+    {
+        *("so", "answered", "answer_counts", "answers_many", "answers_same", "unanswered"),
+        *("answer_is", "answers_reached", "answered_besides"),
+        *("code_is", "cannot_check"),
+    }
+)
+"""Conditions on what somebody has said."""
 
 
 @meaning("and")

@@ -5,52 +5,37 @@ from __future__ import annotations
 from typing import Any, Final
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import START, Discourse, Steps, Thing
+from grammar.discourse import Discourse, Steps
 from grammar.doubts import NotUnderstood
 from grammar.meanings.alternatives import done_first, exclusive, for_all, itself, side_by_side
 from grammar.meanings.branches import in_branch
-from grammar.meanings.finding import go, not_found
+from grammar.meanings.finding import go
 from grammar.meanings.found_places import if_such
 from grammar.meanings.going_on import in_round
+from grammar.meanings.guards import guard_finds
 from grammar.meanings.in_time import note_waiting
 from grammar.meanings.inquiries import owed, wonder_told
 from grammar.meanings.lookouts import told_at_last, why, why_only
+from grammar.meanings.orders_to_tell import summed_at_end
 from grammar.meanings.registry import meaning
-from grammar.meanings.reports import summed_at_end
-from grammar.meanings.searches import Search, search_of
 from grammar.meanings.stops import gone_to, looked_at_each, said_at_each, said_on_tour
-from grammar.meanings.surveys import moved
 from grammar.meanings.things import goes_on
 from grammar.meanings.visiting import with_each_asked
 from grammar.meanings.volunteers import guard_found
 from grammar.meanings.waiting import until_then
 from grammar.plan import (
-    Ask,
     Call,
-    Collect,
-    Holds,
-    If,
-    Increase,
     Items,
-    Not,
     Recall,
-    Remember,
     Step,
-    Text,
-    Try,
     Value,
 )
 from grammar.tidy import mentions, nodes
 
-NEEDS_IT: Final = frozenset({"grab", "put", "give", "guide", "follow", "describe"})
-"""Methods that say themselves when what was looked for is not there."""
 WAYS: Final = frozenset({"goto", "find", "location"})
 """Methods that only lead to where something is done."""
 SAID: Final = frozenset({"statement", "remark", "remark_name", "remark_where"})
 """Clauses that say how something is, and ask for nothing."""
-KEPT_WITH: Final = (Call, Remember, Collect, Increase, Try)
-"""Steps that are done with who was found, if they follow."""
-LED: Final = frozenset({"guide", "follow"})
 
 
 @meaning("steps")
@@ -144,102 +129,6 @@ def chained(part: Leaf | Node) -> Node:
     return part
 
 
-def guard_finds(d: Discourse, done: Steps) -> Steps:
-    """Where something is looked for, what follows holds only if it is found.
-
-    Steps that need the thing fail by themselves and say so; speaking to somebody who was not found
-    would not, so it goes under a condition."""
-    result: Steps = []
-    for number, step in enumerate(done):
-        following = done[number + 1] if number + 1 < len(done) else None
-        search = search_of(step) if isinstance(step, If) else None
-        if search is not None and isinstance(following, Call) and following.method == "grab":
-            handled = handling(done[number + 1 :])
-            result.append(If(search.found, tuple(handled), in_vain(search, handled)))
-            return [*result, *guard_finds(d, done[number + 1 + len(handled) :])]
-        if not (isinstance(step, Call) and step.method == "find"):
-            result.append(step)
-            continue
-        # One of several who is not found must not keep the others from it.
-        one_of_them = isinstance(step.arguments["thing"], Recall)
-        needs_it = NEEDS_IT - LED if one_of_them else NEEDS_IT
-        if taken_to_them(done[number : number + 3]):
-            return [*result, done[number + 1], step, *guard_finds(d, done[number + 2 :])]
-        if isinstance(following, Call) and following.method in needs_it:
-            result.append(step)
-            continue
-        found = Holds(Ask("find", step.arguments))
-        missing = not_found(d, found_thing(d, step))
-        body: Steps = []
-        for later in done[number + 1 :]:
-            if isinstance(later, Call) and later.method == "grab" and asked_last(body):
-                body += handed_over(later, done[number + 1 + len(body) :])
-                break  # who is not found gives nothing
-            if isinstance(later, Call) and (
-                later.method in ("goto", "find", "dock") or later.method in needs_it
-            ):
-                break
-            if not isinstance(later, KEPT_WITH) and not only_speaks(later):
-                break
-            body.append(later)
-        if body:
-            result.append(If(found, tuple(body), (missing,)))
-        else:
-            result.append(If(Not(found), (missing,)))
-        return [*result, *guard_finds(d, done[number + 1 + len(body) :])]
-    return result
-
-
-def taken_to_them(steps: Steps) -> bool:
-    """ "find Alice and give her this letter": whether it is taken along to who is looked for."""
-    calls = [each for each in steps if isinstance(each, Call)]
-    return [each.method for each in calls] == ["find", "grab", "give"] and (
-        calls[0].arguments["thing"] == calls[2].arguments.get("person")
-        and calls[1].arguments["thing"] == calls[2].arguments["thing"]
-    )
-
-
-def asked_last(steps: Steps) -> bool:
-    last = steps[-1] if steps else None
-    return isinstance(last, Call) and last.method == "ask"
-
-
-def handed_over(taking: Call, steps: Steps) -> Steps:
-    """Some steps from taking a thing up to the one that gives it away."""
-    thing = taking.arguments["thing"]
-    for number, step in enumerate(steps):
-        let_go = isinstance(step, Call) and step.method in ("give", "put")
-        if let_go and isinstance(step, Call) and step.arguments["thing"] == thing:
-            return steps[: number + 1]
-    return steps[:1]
-
-
-def only_speaks(step: Step) -> bool:
-    """Whether it says one of several things, by what the robot knows without looking."""
-    calls = {each.method for each in nodes((step,)) if isinstance(each, Call)}
-    asked = {each.method for each in nodes((step,)) if isinstance(each, Ask)}
-    return isinstance(step, If) and calls == {"say"} and asked <= {"clock", "battery"}
-
-
-def handling(steps: Steps) -> Steps:
-    """What is done with a thing, from taking it to the last step with it and what is said there."""
-    taken = steps[0]
-    assert isinstance(taken, Call)
-    thing = taken.arguments["thing"]
-    last = max(at for at, step in enumerate(steps) if mentions((step,), thing))
-    while last + 1 < len(steps) and not moved([steps[last + 1]]):
-        last += 1
-    return steps[: last + 1]
-
-
-def in_vain(search: Search, instead_of: Steps) -> tuple[Step, ...]:
-    """What is done if something was not found: who waits for it is told so where they wait."""
-    back = Call("goto", {"place": Recall(START)})
-    told = any(isinstance(each, Call) and each.method == "say" for each in search.missing)
-    comes = back in instead_of and told and back not in search.missing
-    return (back, *search.missing) if comes else tuple(search.missing)
-
-
 def speak_codes(d: Discourse, done: Steps) -> Steps:
     """A code that is scanned for nothing else is read out."""
     result: Steps = []
@@ -250,12 +139,6 @@ def speak_codes(d: Discourse, done: Steps) -> Steps:
             if not mentions(done[number + 1 :], code):
                 result.append(d.say("code_is", value=code))
     return result
-
-
-def found_thing(d: Discourse, step: Call) -> Thing:
-    value = step.arguments["thing"]
-    named = isinstance(value, Text) and any(value.value == each.name for each in d.lexicon.people)
-    return Thing(value, known=named, person=named)
 
 
 def done_already(d: Discourse, node: Node) -> bool:

@@ -342,3 +342,11 @@ def missed_at_home(d: Discourse, delivery: Delivery | None, met: Meeting | None)
     if home is None or met.thing.place != home:
         return met
     return replace(met, thing=replace(receiver, place=home))
+
+
+def given_last(d: Discourse) -> bool:
+    """Whether the last step was to hand something to the speaker, or to do so with several."""
+    last = d.done[-1] if d.done else None
+    return last is not None and (
+        last == d.delivered_in or (isinstance(last, Call) and last.method == "give")
+    )

@@ -11,10 +11,11 @@ from grammar.doubts import NotUnderstood
 from grammar.meanings.finding import go, look_for, noun_of, where_sent
 from grammar.meanings.leading import lead
 from grammar.meanings.loops import for_each_of_them, looped
+from grammar.meanings.orders_to_tell import tell_speaker
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning
-from grammar.meanings.reports import counted_alone, tell_speaker
+from grammar.meanings.reports import counted_alone
 from grammar.meanings.searches import searched
 from grammar.meanings.strangers import announced_one
 from grammar.meanings.waiting import wait_until

@@ -9,7 +9,7 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.genders import gender_of_thing, pronoun_of
-from grammar.meanings.persons import is_me
+from grammar.meanings.persons import is_me, together
 from grammar.meanings.places import sought
 from grammar.naming import person_called, the
 from grammar.plan import (
@@ -107,13 +107,6 @@ def in_state(d: Discourse, node: Node, thing: Thing) -> Thing:
         raise NotUnderstood(d.language.phrase("cannot_check", what=words), gap=gap)
     so = Text(d.language.phrase("in_state", state=state, thing=thing.text))
     return replace(thing, value=so)
-
-
-def together(several: list[Thing]) -> Thing:
-    """Several people or things as one group."""
-    names = Items(tuple(each.value for each in several))
-    people = all(each.person for each in several)
-    return Thing(Text(ANYONE), person=people, plural=True, known=True, group=names)
 
 
 def found(d: Discourse, thing: Thing) -> Call:

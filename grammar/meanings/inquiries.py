@@ -12,10 +12,10 @@ from grammar.doubts import NotUnderstood
 from grammar.meanings.carrying import deliver
 from grammar.meanings.finding import speak_to
 from grammar.meanings.news import go_back
+from grammar.meanings.orders_to_tell import tell_speaker
 from grammar.meanings.places import only_taken_apart
 from grammar.meanings.questions import ask_one
 from grammar.meanings.registry import meaning
-from grammar.meanings.reports import tell_speaker
 from grammar.meanings.surveys import Survey, each_asked, in_loop
 from grammar.meanings.whom_asked import several_of_a_kind
 from grammar.plan import Call, Recall, Repeat, Text, Value

@@ -15,7 +15,7 @@ from typing import Final
 from msgspec.structs import replace
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import Discourse, Steps, Thing, as_value
+from grammar.discourse import Discourse, Steps, Thing
 from grammar.doubts import NotUnderstood
 from grammar.meanings.conditions import negated
 from grammar.meanings.deliveries import first_clause, inside
@@ -28,7 +28,7 @@ from grammar.meanings.gone_round import (
     same_round,
     visits_alone,
 )
-from grammar.meanings.news import BACK, News, Told, go_back, in_round, last_found
+from grammar.meanings.news import BACK, News, Told, go_back
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import kind_places, sought
 from grammar.meanings.registry import meaning
@@ -183,27 +183,6 @@ def looks_out(d: Discourse, clause: Node) -> bool:
     one = definite(d, part, thing)
     d.round.lookout = Lookout(visits.variable, visits.items, seen, thing, d.depth, one, "which")
     return True
-
-
-@meaning("lookout_told")
-def lookout_told(d: Discourse, node: Node) -> Told:
-    """ "whether there is one", "where you saw one": of what was looked for."""
-    lookout: Lookout | None = d.round.lookout
-    tell = str(node.production.fixed["tell"])
-    if lookout is not None:
-        return lookout.told(d, tell)
-    here = d.at if in_round(d) else d.round.here
-    if here is not None:  # "if one has none, tell me which one"
-        return Told([d.say("such_places", places=as_value(here))], [])
-    found_before_coming_back(d)
-    looked = looked_on_visits(d, node)
-    if looked is not None:
-        return looked.told(d, tell)
-    if d.news is not None:
-        return last_found(d)
-    if d.round.such is None:
-        return where_met(d, another_meant(d, node)) or told_of_search(d, tell)
-    return Told([d.say("it_is_there", place=Recall(d.round.such))], [])
 
 
 def told_of_lookout(d: Discourse, many: bool) -> Told | None:

@@ -13,14 +13,15 @@ from grammar.doubts import NotUnderstood
 from grammar.meanings.asking_until import until_answered
 from grammar.meanings.claims import meet_there
 from grammar.meanings.conditions import FULL_HOUR, condition_of, negated
-from grammar.meanings.control import guard_finds
 from grammar.meanings.deliveries import first_clause
 from grammar.meanings.finding import go, look_for, not_found, noun_of
 from grammar.meanings.going_on import about_places, brought_behind, in_round, told_last
 from grammar.meanings.gone_round import of_those, same_round
+from grammar.meanings.guards import guard_finds
 from grammar.meanings.news import BACK
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
+from grammar.meanings.several_places import until_found
 from grammar.meanings.surveys import moved
 from grammar.meanings.waiting import (
     at_least,
@@ -420,8 +421,6 @@ def each_place(d: Discourse, items: Value, steps: Leaf | Node | None, goes: bool
         d.in_loop, d.stop = outer
     first = body[0] if body else None
     moves = isinstance(first, Call) and first.method in ("goto", "guide", "find")
-    from grammar.meanings.several_places import until_found
-
     search = until_found(d, here, items, body)
     if search:  # "look for it in all wards": until it is found
         d.at = d.with_person = None

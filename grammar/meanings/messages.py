@@ -13,6 +13,7 @@ from typing import Any, Final
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, capital
 from grammar.doubts import NotUnderstood
+from grammar.freetext import words_for
 from grammar.meanings.about_guests import guest_in, guest_spoken_of, host_told, others_spoken_of
 from grammar.meanings.finding import go, speak_to
 from grammar.meanings.genders import gender_of_thing
@@ -385,3 +386,16 @@ def remind(d: Discourse, node: Node) -> Steps:
         what = turn_to_you(d, part.start, part.end)
     words = d.sentence(phrase, what=what, value=sentence_form(what))
     return [*delay, *speak_to(d, person, [Call("say", {"text": words})])]
+
+
+@meaning("said_with")
+def said_with(d: Discourse, node: Node) -> Steps:
+    """Say some words as part of a phrase: "invite them to the party"."""
+    part = node.parts["text"]
+    person: Thing | None = d.get(node, "person_ref")
+    robot = words_for(d.language).addressing & set(d.language.speech.get("addressed_robot", ()))
+    if robot & set(d.norms(part.start, part.end)):  # "invite them to follow you": no fixed words
+        phrase = d.language.phrase("cannot_say", part=d.words(part.start, part.end))
+        raise NotUnderstood(phrase, gap=(part.start, part.end))
+    words = addressed(d, part.start, part.end, person)
+    return speak_to(d, person, [d.say(str(node.production.fixed["phrase"]), what=words)])

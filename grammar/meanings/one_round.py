@@ -10,6 +10,7 @@ from grammar.discourse import (
     Discourse,
     Steps,
 )
+from grammar.meanings.guards import guard_finds
 from grammar.plan import (
     Ask,
     Call,
@@ -31,12 +32,6 @@ def round_of_steps(d: Discourse, make: Make) -> Steps:
     outer, d.in_loop = d.in_loop, True
     steps = d.sequence(lambda: d.done.extend(make()))
     d.in_loop = outer
-    return guarded(d, steps)
-
-
-def guarded(d: Discourse, steps: Steps) -> Steps:
-    from grammar.meanings.control import guard_finds
-
     return guard_finds(d, steps)
 
 

@@ -7,6 +7,7 @@ from typing import Final
 from grammar.chart import Node
 from grammar.discourse import Discourse
 from grammar.doubts import NotUnderstood
+from grammar.names import names_of
 from grammar.plan import Ask, Items, Text, Value
 from grammar.tokens import COLON, COMMA
 from grammar.wordforms import singular
@@ -51,8 +52,6 @@ def _with_nouns(d: Discourse, node: Node, options: tuple[str, ...]) -> tuple[str
 
 def _is_attribute(d: Discourse, word: str) -> bool:
     """Whether a word says how a thing looks: "red", "small"."""
-    from grammar.names import names_of
-
     tries = names_of(d.language, d.lexicon).tries
     known = (tries[each] for each in ("attribute", "colour") if each in tries)
     branches = [trie.branches.get(word.lower()) for trie in known]
@@ -268,8 +267,6 @@ def places_asked_for(d: Discourse, question: Node) -> Value | None:
 
 def place_at_end(d: Discourse, start: int, end: int) -> str | None:
     """The place whose name the last words are."""
-    from grammar.names import names_of
-
     trie = names_of(d.language, d.lexicon).tries.get("place")
     for begin in range(start, end):
         node = trie
@@ -291,8 +288,6 @@ def people_named(d: Discourse, start: int, end: int) -> list[str]:
 
 
 def _named(d: Discourse, kind: str, start: int, end: int) -> list[str]:
-    from grammar.names import names_of
-
     known: list[str] = []
     for at in range(start, end):
         branch = names_of(d.language, d.lexicon).tries.get(kind)
@@ -305,8 +300,6 @@ def _named(d: Discourse, kind: str, start: int, end: int) -> list[str]:
 
 def names_people(d: Discourse, start: int, end: int) -> bool:
     """Whether some words speak of somebody: "see the visitor now" offers nothing to bring."""
-    from grammar.names import names_of
-
     kinds = names_of(d.language, d.lexicon).tries.get("person_kind")
     if kinds is None:
         return False

@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from grammar.chart import Node, what_it_means
-from grammar.meanings.branches import ABOUT_ANSWERS
+from grammar.meanings.conditions import ABOUT_ANSWERS
 from grammar.meanings.deliveries import inside
 
 ASKING = frozenset({"ask", "ask_again", "ask_more", "ask_on", "ask_topic"})

@@ -10,7 +10,7 @@ from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where, as_value
 from grammar.doubts import Ambiguous, NotUnderstood
 from grammar.meanings.carrying import deliver
 from grammar.meanings.conditions import condition_of
-from grammar.meanings.deliveries import inside
+from grammar.meanings.deliveries import given_last, inside
 from grammar.meanings.finding import look_for, meet, named, speak_to, where_sent
 from grammar.meanings.genders import means_thing
 from grammar.meanings.hosts import place_just_named, place_of_named
@@ -20,9 +20,9 @@ from grammar.meanings.news import BACK
 from grammar.meanings.persons import is_me
 from grammar.meanings.places import kind_places, own_place
 from grammar.meanings.registry import meaning
+from grammar.meanings.several_places import over_places
 from grammar.meanings.speaking import ready_made, spoken
 from grammar.meanings.strangers import announced_one
-from grammar.meanings.things import given_last
 from grammar.meanings.waiting import awaited
 from grammar.naming import place_called
 from grammar.plan import Call, Forever, Items, Recall, Text, Value
@@ -283,8 +283,6 @@ def fetch_it(d: Discourse) -> Steps:
 @meaning("guide_list")
 def guide_list(d: Discourse, node: Node) -> Steps:
     """ "guide the visitors through all labs"."""
-    from grammar.meanings.several_places import over_places
-
     person = led(d, node)
     return [
         *meet(d, person),

@@ -193,8 +193,6 @@ def host_here(d: Discourse, node: Node) -> Thing | None:
 @meaning("person_group")
 def person_group(d: Discourse, node: Node) -> Thing:
     """ "Alice, Bob and Carol"."""
-    from grammar.meanings.finding import together
-
     d.person = together(listed(d, node))
     d.group = d.person.group
     return d.person
@@ -203,8 +201,6 @@ def person_group(d: Discourse, node: Node) -> Thing:
 @meaning("person_either")
 def person_either(d: Discourse, node: Node) -> list[Thing] | Thing:
     """ "Alice or Bob": one of them; for a condition, both as a group."""
-    from grammar.meanings.finding import together
-
     people = listed(d, node)
     return people if d.taking_apart else together(people)
 
@@ -304,3 +300,10 @@ def person_me(d: Discourse, node: Node) -> Thing:
 
 def is_me(person: Thing | None) -> bool:
     return person is not None and person.me
+
+
+def together(several: list[Thing]) -> Thing:
+    """Several people or things as one group."""
+    names = Items(tuple(each.value for each in several))
+    people = all(each.person for each in several)
+    return Thing(Text(ANYONE), person=people, plural=True, known=True, group=names)

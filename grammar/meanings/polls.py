@@ -18,7 +18,7 @@ from grammar.discourse import Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.answers import Said, Wanted, is_about, wanted, yes
 from grammar.meanings.follow_ups import said_in_all, said_one_by_one
-from grammar.meanings.news import Told, last_found
+from grammar.meanings.news import Told
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import (
     Survey,
@@ -33,6 +33,7 @@ from grammar.meanings.surveys import (
 )
 from grammar.plan import (
     Ask,
+    Both,
     Call,
     Collect,
     Compare,
@@ -64,35 +65,6 @@ FIGURES: Final = {
 """What one number is made of many, and the phrases that tell it."""
 ASKED_WHERE: Final = {"which": "where", "many": "many"}
 """What is told of the places of a round, as what is told of those who were asked there."""
-
-
-@meaning("poll")
-def poll(d: Discourse, node: Node) -> Told:
-    """What was answered: of all, or of those who gave one answer."""
-    kind, said = str(node.production.fixed["kind"]), said_in(d, node)
-    if "it" in node.production.fixed and not asked_yet(d):
-        return who_it_is(d, node)
-    if kind in ("each", "answers") and (d.report is not None or d.counted is not None):
-        return last_found(d)  # "the numbers": what was counted
-    if said is not None and kind in ("who", "many", "share") and not asked_yet(d):
-        return polled_now(d, kind, said)
-    return polled(d, kind, said)
-
-
-def who_it_is(d: Discourse, node: Node) -> Told:
-    """ "who it is", where nobody was asked anything: whoever has come."""
-    from grammar.meanings.reports import told_report
-    from grammar.meanings.sights import who_came
-
-    return told_report(d, who_came(d, node))
-
-
-def polled_now(d: Discourse, kind: str, said: Said) -> Told:
-    """ "find out who wants coffee": everybody here is asked."""
-    from grammar.meanings.questions import ask_everybody_here
-
-    d.done += ask_everybody_here(d, said.start, said.end)
-    return polled(d, kind, None)
 
 
 def said_in(d: Discourse, node: Node) -> Said | None:
@@ -182,8 +154,6 @@ def _named(d: Discourse, surveys: list[Survey], answer: Wanted, names: list[Valu
 
 
 def _and_not(condition: Condition, other: Condition) -> Condition:
-    from grammar.plan import Both
-
     return Both((condition, Not(other)))
 
 

@@ -9,9 +9,11 @@ from msgspec.structs import replace
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.doubts import NotUnderstood
-from grammar.meanings.finding import go, together
+from grammar.meanings.finding import go
+from grammar.meanings.findings import found_told
 from grammar.meanings.gone_round import last_round, places_of, round_of, round_of_visits
-from grammar.meanings.news import News, Told, go_back, last_found, take_back
+from grammar.meanings.news import News, Told, go_back, take_back
+from grammar.meanings.persons import together
 from grammar.meanings.places import unknown_place
 from grammar.meanings.registry import meaning
 from grammar.meanings.some_places import Claims
@@ -48,7 +50,7 @@ NONE_AND_SOME: Final = ("nobody_of_them", "these_are_there")
 def presence_told(d: Discourse, node: Node) -> Told:
     """ "which of Alice and Bob are in their offices", "who of them is there", "who is missing"."""
     if "people" not in node.parts:
-        return last_found(d) if d.news is not None else met_on_round(d, None)
+        return found_told(d) if d.news is not None else met_on_round(d, None)
     people = people_of(d, node)
     if "kind" not in node.parts:
         missing = bool(node.production.fixed.get("missing"))
@@ -178,7 +180,7 @@ def who_where(d: Discourse, node: Node) -> Told:
     """ "who is where", "who is in each of them", "who is in offices 1 to 4"."""
     if "kinds" in node.parts or "place_list" in node.parts:
         return met_on_round(d, places_of(d, node))
-    return last_found(d) if d.news is not None else met_on_round(d, None)
+    return found_told(d) if d.news is not None else met_on_round(d, None)
 
 
 def met_on_round(d: Discourse, places: Value | None) -> Told:

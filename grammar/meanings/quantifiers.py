@@ -18,12 +18,13 @@ from itertools import takewhile
 from typing import Any, Final
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import ANYONE, SETTING, Discourse, Steps, Thing
+from grammar.discourse import ANYONE, EACH, SETTING, Discourse, Steps, Thing
 from grammar.meanings.answers import wanted
 from grammar.meanings.deliveries import inside
 from grammar.meanings.finding import found, go, not_found, waited_for
 from grammar.meanings.one_round import Make, One, leaves, round_of_steps
 from grammar.meanings.persons import kind_in_plural
+from grammar.meanings.registry import meaning
 from grammar.meanings.several_places import (
     over_any_place,
     over_either_place,
@@ -101,6 +102,12 @@ CLAUSES: Final = frozenset({"command", "closing", "clause", "steps", "body", "wh
 """Rules in which commands of their own stand."""
 
 
+@meaning(EACH)
+def each_spoken_of(d: Discourse, node: Node) -> Steps:
+    """A command that a rule names, for each of those that it speaks of."""
+    return distributed(d, node, lambda: d.one_command(node))
+
+
 def distributed(d: Discourse, node: Node, make: Make) -> Steps:
     """The steps of a command, in a loop for each of its noun phrases that speak of several."""
     again = [] if put_more_exactly(d, node) else sourced(d, node)
@@ -128,7 +135,7 @@ def distributed(d: Discourse, node: Node, make: Make) -> Steps:
     steps = over(d, sources, lambda: taken_from_there(d, node, several, make))
     d.only_fetches = outer
     if node.means in FETCHES:
-        keep_fetching(d, node, make, steps, scene, known)
+        keep_fetching(d, lambda: distributed(d, node, make), steps, scene, known)
     return steps
 
 

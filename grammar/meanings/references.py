@@ -14,7 +14,7 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse
 from grammar.doubts import NotUnderstood
 from grammar.meanings.news import Told
-from grammar.meanings.polls import polled
+from grammar.meanings.polls import chosen_most, polled
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import Survey, asked_before, in_loop
 from grammar.plan import Call, Forever, Recall, Sentence, Text, Value
@@ -150,8 +150,6 @@ def _spoken_of(d: Discourse, start: int, end: int) -> Iterator[tuple[int, int, V
         survey, last = None, at + 1
         most = next((each for each in _of_most(d) if _stand_here(d, each, at, end)), None)
         if most is not None:
-            from grammar.meanings.polls import chosen_most
-
             yield at, at + len(most), chosen_most(d, asked_before(d))
             at += len(most)
             continue

@@ -1,14 +1,21 @@
-"""Where meanings are entered by name."""
+"""Where meanings are entered by the names that rules call them by.
+
+The discourse finds them here without knowing any of the modules that enter them, and has made by
+them whatever the rules name in a sentence. They are all here once
+`grammar.meanings.all_meanings` is imported.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from grammar.chart import Node
-from grammar.discourse import Discourse
 
-Meaning = Callable[[Discourse, Node], Any]
+if TYPE_CHECKING:
+    from grammar.discourse import Discourse
+
+Meaning = Callable[["Discourse", Node], Any]
 
 MEANINGS: dict[str, Meaning] = {}
 

@@ -8,7 +8,7 @@ from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, as_value
 from grammar.doubts import NotUnderstood
 from grammar.meanings.conditions import condition_of
-from grammar.meanings.control import guard_finds
+from grammar.meanings.guards import guard_finds
 from grammar.meanings.loops import looped, one_round
 from grammar.meanings.places import kind_places, owner_of
 from grammar.meanings.registry import meaning

@@ -1,45 +1,19 @@
-"""Routines: commands that go by a name, and what is asked of the application about them."""
+"""What is asked of the application about routines, commands that go by a name; and their steps
+among others (`grammar.understand` enters what the name of one means)."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import msgspec
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import START, Discourse, Steps
-from grammar.doubts import NotUnderstood
+from grammar.discourse import Discourse, Steps
 from grammar.lexicon import Name, Routine
 from grammar.meanings.registry import meaning
-from grammar.plan import Call, ForEach, Plan, Remember, Text
+from grammar.plan import Call, ForEach, Plan, Remember
 from grammar.requests import Kind, Request
 from grammar.tidy import nodes
-
-
-@meaning("routine")
-def routine(d: Discourse, node: Node) -> Steps:
-    """A routine's name stands for the steps of its sentence, understood in the world as it is now.
-    In there the routine itself is unknown, so that none can go round in circles."""
-    from grammar.understand import understand
-
-    called: Routine = d.get(node, "routine")
-    others = tuple(each for each in d.lexicon.routines if each.name != called.name)
-    inner = understand(called.sentence, replace(d.lexicon, routines=others), d.language.code)
-    if inner.plan is None:
-        reason = inner.message or d.language.phrase("not_understood_at_all")
-        raise NotUnderstood(d.language.phrase("routine_broken", name=called.name, reason=reason))
-    if inner.confidence < 1:
-        d.assumptions.append(called.name)
-    if d.needs_start or node.end < len(d.tokens) - 1:
-        d.variables.add(START)  # the sentence around may need the name
-    steps = with_own_names(d, inner.plan)
-    d.at = d.place = d.thing = d.person = d.with_person = None
-    if steps and isinstance(steps[-1], Call) and steps[-1].method == "goto":
-        place = steps[-1].arguments.get("place")
-        if isinstance(place, Text):
-            d.went(place)
-    return steps
 
 
 def with_own_names(d: Discourse, plan: Plan) -> Steps:

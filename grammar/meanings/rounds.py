@@ -21,9 +21,9 @@ from grammar.meanings.gone_round import (
     round_of_visits,
     visits_alone,
 )
-from grammar.meanings.news import News, Told, go_back, last_found, take_back
+from grammar.meanings.news import News, Told, go_back, take_back
 from grammar.meanings.persons import is_me
-from grammar.meanings.places import kind_places, sought
+from grammar.meanings.places import sought
 from grammar.meanings.polls import ASKED_WHERE, asked_there, polled
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import Report, saying_of
@@ -70,23 +70,6 @@ def brought_back(d: Discourse, node: Node, told: Told) -> Steps:
     d.went(start)
     d.told = told.words[-1]
     return [Call("goto", {"place": start}), *told.words]
-
-
-@meaning("round_told")
-def round_told(d: Discourse, node: Node) -> Told:
-    """ "the total", "how many cups there are in each", "where most are"."""
-    thing: Thing | None = d.get(node, "thing")
-    kind = str(node.production.fixed["kind"])
-    nothing_yet = d.counted is None and d.report is None and last_round(d) is None
-    if nothing_yet and thing is not None:
-        round_of_visits(d)  # "go to the lobby and the hall and tell me how many there are in all"
-    if thing is not None and "kind" in node.parts and nothing_yet:
-        # "tell me which ward has the fewest beds": to count them is left to do
-        return around(d, kind, thing, kind_places(d, d.get(node, "kind")))
-    counted_here = d.report is not None and d.report.name == "count" and last_round(d) is None
-    if kind in ("total", "each") and d.counted is None and counted_here:
-        return last_found(d)  # "count the patients and tell me the total", in one place
-    return summed_up(d, kind, thing)
 
 
 def summed_up(d: Discourse, kind: str, thing: Thing | None = None) -> Told:

@@ -14,7 +14,8 @@ from grammar.discourse import (
 from grammar.meanings.best_places import Best, Such, first_such, survey
 from grammar.meanings.chosen import by_choice, chosen_of
 from grammar.meanings.finding import found, look_for, not_found
-from grammar.meanings.one_round import One, guarded, round_of_steps
+from grammar.meanings.guards import guard_finds
+from grammar.meanings.one_round import One, round_of_steps
 from grammar.meanings.places import stands_behind_it
 from grammar.meanings.searches import named_places, search_in, searched
 from grammar.meanings.several_things import (
@@ -112,7 +113,7 @@ def over_place_such(d: Discourse, node: Node, such: Such, one: One) -> Steps:
     """ "an empty office": the first that is; if none is, that is said."""
     going, place, none = first_such(d, such)
     d.place = place
-    return [*going, If(none, (d.say("no_such_places"),), tuple(guarded(d, one(place))))]
+    return [*going, If(none, (d.say("no_such_places"),), tuple(guard_finds(d, one(place))))]
 
 
 def over_place_where(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
@@ -142,4 +143,4 @@ def over_place_where(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
     there = Holds(Ask("find", found(d, thing).arguments))
     if body[:1] == [Call("guide", {"person": Text(ANYONE), "place": place})]:
         body = [Call("goto", {"place": d.start()}), *body]  # whoever is led waits where it began
-    return [If(there, (here, *guarded(d, body)), (not_found(d, thing),))]
+    return [If(there, (here, *guard_finds(d, body)), (not_found(d, thing),))]

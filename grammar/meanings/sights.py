@@ -7,15 +7,15 @@ from dataclasses import replace
 from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import ANYONE, START, Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
-from grammar.meanings import news
 from grammar.meanings.answered_numbers import number_answered
 from grammar.meanings.descriptions import described
 from grammar.meanings.finding import found, in_state, is_here, not_found, whether_found
+from grammar.meanings.news import Told
 from grammar.meanings.nouns import best_of_those, is_best
 from grammar.meanings.places import at_own_place, place_called_after, sought
 from grammar.meanings.polls import polled, told_as_asked
 from grammar.meanings.registry import meaning
-from grammar.meanings.reports import Report, told_report
+from grammar.meanings.reports import Report
 from grammar.meanings.surveys import asked_yet, in_loop
 from grammar.naming import person_called, place_called, some, the
 from grammar.pieces import leaves
@@ -430,11 +430,11 @@ def where_found(d: Discourse, node: Node) -> Steps:
     return located(d, thing)
 
 
-def told_where(d: Discourse, thing: Thing | None) -> news.Told:
+def told_where(d: Discourse, thing: Thing | None) -> Told:
     """ "where the wheelchair is", if no places were spoken of: it may be anywhere."""
     if thing is None or thing.pronoun:
         raise NotUnderstood(d.language.phrase("which_places"))
-    return news.Told(located(d, thing), [])
+    return Told(located(d, thing), [])
 
 
 def located(d: Discourse, thing: Thing) -> Steps:
@@ -455,12 +455,6 @@ def located(d: Discourse, thing: Thing) -> Steps:
             (back, not_found(d, thing)),
         )
     ]
-
-
-@meaning("counted_too")
-def counted_too(d: Discourse, node: Node) -> news.Told:
-    """ "tell me how many people are in the kitchen and how many in the lobby"."""
-    return told_report(d, counted_there(d, node))
 
 
 @meaning("counted_there")

@@ -1,6 +1,7 @@
-"""Conditions on how many of several places something is true of: "any meeting room is free", "all
-labs are empty", "more than two wards have no wheelchair". It is found out on a round of them; where
-one such place is enough, that is what "there" is from then on."""
+"""How many of several places something is true of, as a condition: "any meeting room is free", "all
+labs are empty", "more than two wards have no wheelchair"; and what is done at each where it is. It
+is found out on a round of them; where one such place is enough, that is what "there" is from then
+on."""
 
 from __future__ import annotations
 
@@ -8,16 +9,18 @@ from dataclasses import dataclass
 from typing import Final
 
 from grammar.chart import Node
-from grammar.discourse import ANYONE, Claim, Discourse, Steps, Thing, as_value
+from grammar.discourse import ANYONE, Claim, Discourse, Steps, Thing, Where, as_value
 from grammar.meanings.best_places import Such, first_such
+from grammar.meanings.carrying import deliver
 from grammar.meanings.conditions import TELLING, negated
 from grammar.meanings.deliveries import inside
 from grammar.meanings.found_places import sought_place
 from grammar.meanings.gone_round import last_round, round_of
 from grammar.meanings.news import in_round
+from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.rounds import how_many
-from grammar.meanings.traits import for_each_place_such
+from grammar.meanings.traits import Trait
 from grammar.plan import (
     Collect,
     Compare,
@@ -128,3 +131,22 @@ def if_any_such(d: Discourse, node: Node) -> Steps:
     if told_of:
         d.claim = Claim(d.round.claims.yes, d.known_by_now())
     return [*before, If(condition, tuple(d.build(node.parts["steps"])))]
+
+
+@meaning("for_each_place_such")
+def for_each_place_such(d: Discourse, node: Node) -> Steps:
+    """ "bring a stapler to every office that has none": done where it is seen to be so."""
+    place = Recall(d.variable("place"))
+    thing: Thing | None = d.get(node, "thing")
+    d.at = d.place = place
+    trait: Trait = d.get(node, "place_trait")
+    outer, d.in_loop = d.in_loop, True
+    if thing is not None:
+        d.at = None
+        body = deliver(d, thing, None, Where(place))
+    else:
+        body = d.build(node.parts["steps"])
+    d.in_loop = outer
+    d.at = d.with_person = None
+    found_out = (*trait.first, If(trait.condition, tuple(body)))
+    return [round_of(d, kind_places(d, d.get(node, "kinds")), [*found_out], place.name)]

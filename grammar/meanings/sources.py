@@ -7,7 +7,7 @@ command before is made anew with it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -15,8 +15,7 @@ from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.language import Language
-from grammar.meanings.deliveries import inside, meant_for
-from grammar.meanings.one_round import Make
+from grammar.meanings.deliveries import inside
 from grammar.meanings.registry import meaning
 from grammar.plan import Ask, Call, Items, Recall, Step, Text, Value
 from grammar.tidy import nodes
@@ -27,8 +26,8 @@ from grammar.wordforms import singular
 class Fetching:
     """A command that fetches things of which nobody has said where they are."""
 
-    node: Node
-    make: Make
+    again: Callable[[], Steps]
+    """Makes it once more."""
     steps: Steps
     things: frozenset[Value]
     scene: dict[str, Any]
@@ -88,12 +87,16 @@ def content(words: str, language: Language) -> frozenset[str]:
 
 
 def keep_fetching(
-    d: Discourse, node: Node, make: Make, steps: Steps, scene: dict[str, Any], known: frozenset[str]
+    d: Discourse,
+    again: Callable[[], Steps],
+    steps: Steps,
+    scene: dict[str, Any],
+    known: frozenset[str],
 ) -> None:
     """Keep a command that takes things from nobody knows where."""
     things = frozenset(unsourced(steps))
     if things:
-        d.fetching = Fetching(node, make, steps, things, scene, known)
+        d.fetching = Fetching(again, steps, things, scene, known)
 
 
 def unsourced(steps: Steps) -> Iterator[Value]:
@@ -129,13 +132,11 @@ def just_fetched(d: Discourse) -> Fetching | None:
 
 def made_anew(d: Discourse, fetching: Fetching, source: Where | None) -> Steps:
     """The steps of a command, with what is fetched taken from there."""
-    from grammar.meanings.quantifiers import distributed
-
     del d.done[-len(fetching.steps) :]
     d.set_scene(fetching.scene)
     d.variables.intersection_update(fetching.variables)
     outer, d.taken_from = d.taken_from, source
-    steps = distributed(d, fetching.node, fetching.make)
+    steps = fetching.again()
     d.taken_from = outer
     return steps
 
@@ -153,25 +154,6 @@ def sourced(d: Discourse, node: Node) -> Steps | None:
         return None
     source: Where = d.get(node, "from")
     return made_anew(d, fetching, source) if source.place is not None else None
-
-
-@meaning("can_get")
-def can_get(d: Discourse, node: Node) -> Steps:
-    """ "you can take them from the lounge": no more than where they are, unless nothing else has
-    been said of them."""
-    from grammar.meanings.carrying import deliver
-
-    spot: Where = d.get(node, "from")
-    again = sourced(d, node)
-    if again is not None:
-        return again
-    thing: Thing = d.get(node, "thing")
-    before = d.delivery
-    there = replace(thing, place=spot.place, furniture=spot.furniture, pronoun=False)
-    told_where(d, there)
-    d.thing, d.thing_last = there, True
-    fetched = before is not None and is_called(d, there, before.thing.value)
-    return [] if fetched or not thing.pronoun else deliver(d, there, *meant_for(d, there))
 
 
 @meaning("all_there")

@@ -6,13 +6,11 @@ import re
 from typing import Final
 
 from grammar.chart import Leaf, Node
-from grammar.discourse import Discourse, Steps, Thing, capital
+from grammar.discourse import Discourse, Steps, capital
 from grammar.doubts import NotUnderstood
 from grammar.freetext import words_for
 from grammar.language import Language, languages, load_language
-from grammar.meanings.about_guests import host_told
 from grammar.meanings.finding import speak_to
-from grammar.meanings.persons import is_me
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning
 from grammar.plan import Call, ForEach, Items, Number, Recall, Text, Value
@@ -122,43 +120,6 @@ def count_aloud(d: Discourse, node: Node) -> Steps:
     number = Recall(d.variable("number"))
     each = Call("say", {"text": number})
     return [ForEach(number.name, Items(tuple(map(Number, numbers))), (each,))]
-
-
-@meaning("said_with")
-def said_with(d: Discourse, node: Node) -> Steps:
-    """Say some words as part of a phrase: "invite them to the party"."""
-    part = node.parts["text"]
-    from grammar.meanings.messages import addressed
-
-    person: Thing | None = d.get(node, "person_ref")
-    robot = words_for(d.language).addressing & set(d.language.speech.get("addressed_robot", ()))
-    if robot & set(d.norms(part.start, part.end)):  # "invite them to follow you": no fixed words
-        phrase = d.language.phrase("cannot_say", part=d.words(part.start, part.end))
-        raise NotUnderstood(phrase, gap=(part.start, part.end))
-    words = addressed(d, part.start, part.end, person)
-    return speak_to(d, person, [d.say(str(node.production.fixed["phrase"]), what=words)])
-
-
-@meaning("say_it")
-def say_it(d: Discourse, node: Node) -> Steps:
-    """ "and say it": the answer, the code or the news of before."""
-    from grammar.meanings.news import go_back
-    from grammar.meanings.polls import said_by
-    from grammar.meanings.reports import known_words, tell_speaker, told_again
-
-    host_told(d, node)
-    person: Thing | None = d.get(node, "person_ref")
-    told = node.parts.get("person_ref")
-    of_whom = said_by(d, node.start if told is None else told.end, node.end)
-    to_me = is_me(person) or bool(node.production.fixed.get("to_me"))
-    if of_whom is not None:
-        return [*go_back(d, []), *of_whom] if to_me else speak_to(d, person, of_whom)
-    if to_me:
-        return tell_speaker(d)
-    somebody = person is not None and (person.known or person.plural or person.place is not None)
-    if somebody and (d.news or d.report) is not None and d.answer is None and d.code is None:
-        return told_again(d, person)  # "lunch is ready; say it to Bob"
-    return speak_to(d, person, known_words(d))
 
 
 @meaning("phrase")

@@ -33,9 +33,9 @@ from grammar.meanings.deliveries import (
 from grammar.meanings.finding import speak_to
 from grammar.meanings.in_time import too_late
 from grammar.meanings.news import go_back
+from grammar.meanings.orders_to_tell import coming_back, told_again
 from grammar.meanings.persons import is_me
 from grammar.meanings.registry import meaning
-from grammar.meanings.reports import coming_back, told_again
 from grammar.meanings.speaking import clause_of
 from grammar.meanings.surveys import in_loop
 from grammar.plan import (

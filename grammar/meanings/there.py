@@ -10,6 +10,7 @@ from grammar.chart import Node
 from grammar.discourse import ANYONE, START, Discourse, Meeting, Thing, Where
 from grammar.doubts import NotUnderstood
 from grammar.meanings.answers import yes
+from grammar.meanings.checked import checked
 from grammar.meanings.conditions import negated
 from grammar.meanings.deliveries import delivered_last
 from grammar.meanings.finding import noun_of, whether_found
@@ -17,6 +18,7 @@ from grammar.meanings.news import BACK, in_round
 from grammar.meanings.places import at_own_place, own_place, owner_of, sought
 from grammar.meanings.polls import counted as counted_answers
 from grammar.meanings.registry import meaning
+from grammar.meanings.reports import Report
 from grammar.meanings.searches import (
     just_awaited,
     just_looked_for,
@@ -24,6 +26,7 @@ from grammar.meanings.searches import (
     searches,
 )
 from grammar.meanings.surveys import Survey, asked_before, asked_yet, of_one_question
+from grammar.meanings.volunteers import just_found
 from grammar.plan import (
     Ask,
     Both,
@@ -195,8 +198,6 @@ def is_there(d: Discourse, thing: Thing, search: bool = False) -> Condition:
 
 def just_agreed(d: Discourse, no: bool = False) -> Condition | None:
     """Whether the search that the step before is has found somebody who says yes."""
-    from grammar.meanings.volunteers import just_found
-
     known = just_found(d)
     if known is None:
         return None
@@ -207,9 +208,6 @@ def just_agreed(d: Discourse, no: bool = False) -> Condition | None:
 
 def just_checked(d: Discourse, thing: Thing) -> Condition | None:
     """The check before, if it was for this: "see if there is a cup. If there is a cup, ..."."""
-    from grammar.meanings.checked import checked
-    from grammar.meanings.reports import Report
-
     report: Report | None = d.report
     about = report.thing if report is not None else None
     if about is None or thing.place not in (None, about.place):
@@ -222,9 +220,6 @@ def just_checked(d: Discourse, thing: Thing) -> Condition | None:
 
 def seen_there(d: Discourse) -> Condition | None:
     """What was checked in a place that was gone to only for that, as a search in that place."""
-    from grammar.meanings.checked import checked
-    from grammar.meanings.reports import Report
-
     report: Report | None = d.report
     about = report.thing if report is not None else None
     if about is None or about.place is None or checked(d) is None:

@@ -11,6 +11,7 @@ from grammar.meanings.carrying import deliver, pick_up, take_back_delivery, the_
 from grammar.meanings.chosen import handed_already
 from grammar.meanings.deliveries import (
     Delivery,
+    given_last,
     is_needed,
     meant_for,
     places_gone_to,
@@ -28,21 +29,19 @@ from grammar.meanings.finding import (
     where_sent,
 )
 from grammar.meanings.holders import take_from_holder
+from grammar.meanings.hosting import guide_to_person, led_to
 from grammar.meanings.inquiries import as_many_as_answered
+from grammar.meanings.leading import lead
 from grammar.meanings.nouns import thing_it
 from grammar.meanings.offers import if_they_want_it
+from grammar.meanings.people import brought_here, led_back, led_on
 from grammar.meanings.persons import guest_for, is_me
-from grammar.meanings.places import (
-    extraposed,
-    home_of,
-    kind_places,
-    piece_called,
-    place_there,
-    sought,
-)
+from grammar.meanings.places import extraposed, home_of, kind_places, piece_called, sought
+from grammar.meanings.places_meant import place_there
 from grammar.meanings.registry import meaning
 from grammar.meanings.remarks import fetched_there, known_to_be, mislaid
 from grammar.meanings.reports import Report, found_out
+from grammar.meanings.several_places import over_places
 from grammar.meanings.sights import best_there, which_there
 from grammar.meanings.sources import all_there_are, told_where
 from grammar.meanings.speaking import sentence_form
@@ -153,13 +152,10 @@ def put(d: Discourse, node: Node) -> Steps:
     on_it = where_gone_to(d, node)
     thing: Thing = whereto_told(d, d.get(node, "thing") or thing_it(d, node))
     if thing.person and "thing" not in node.parts and where is not None:
-        from grammar.meanings.people import led_on
-
-        if (further := led_on(d, thing, d.build(where).place)) is not None:
+        further = led_on(d, thing, d.build(where).place)
+        if further is not None:
             return further
     if thing.person and node.production.fixed.get("brought"):
-        from grammar.meanings.people import led_back
-
         return led_back(d, thing)  # "va chercher Clara et ramène-la"
     if thing.person and thing.known:  # "otherwise put it there", where only Bob was spoken of
         words = d.words(node.start, node.end)
@@ -254,14 +250,6 @@ def put_each(d: Discourse, node: Node) -> Steps:
     return steps
 
 
-def given_last(d: Discourse) -> bool:
-    """Whether the last step was to hand something to the speaker, or to do so with several."""
-    last = d.done[-1] if d.done else None
-    return last is not None and (
-        last == d.delivered_in or (isinstance(last, Call) and last.method == "give")
-    )
-
-
 def means_who_is_met(d: Discourse, node: Node) -> bool:
     """Whether "them", who are brought to somebody, are who stands before the robot: "ask people
     until one agrees, then bring them to Clara"."""
@@ -279,8 +267,6 @@ def means_who_is_met(d: Discourse, node: Node) -> bool:
 
 
 def with_them(d: Discourse, node: Node) -> Steps:
-    from grammar.meanings.hosting import guide_to_person
-
     them = node.parts["thing"]
     d.bound[id(them)] = d.person
     try:
@@ -304,12 +290,8 @@ def bring(d: Discourse, node: Node) -> Steps:
         thing = replace(thing, place=source.place, furniture=source.furniture)
     person: Thing | None = d.get(node, "person_ref")
     if thing.person and thing.pronoun is False and person is not None and is_me(person):
-        from grammar.meanings.people import brought_here
-
         return brought_here(d, thing)
     if thing.person and person is not None and not is_me(person):
-        from grammar.meanings.hosting import led_to
-
         thing = guest_for(d, node.parts.get("thing"), thing) or thing
         part = node.parts["person_ref"]  # "fetch the visitor and take them to Clara"
         same = person.value == thing.value
@@ -323,8 +305,6 @@ def bring(d: Discourse, node: Node) -> Steps:
         word = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("what_is_it", word=word), gap=(node.start, node.end))
     if thing.person and (person is None or is_me(person)):  # "find Bob and bring him to me"
-        from grammar.meanings.leading import lead
-
         target: Where | None = d.get(node, "where")
         to = d.start() if target is None or target.place is None else target.place
         steps = meet(d, thing)
@@ -410,7 +390,6 @@ def find_to_answer(d: Discourse, node: Node) -> Steps:
 @meaning("bring_each")
 def bring_each(d: Discourse, node: Node) -> Steps:
     """ "bring every ward a blanket": one after the other."""
-    from grammar.meanings.several_places import over_places
 
     def one(place: Value) -> Steps:
         return deliver(d, d.get(node, "thing"), None, Where(place))

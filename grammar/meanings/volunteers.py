@@ -13,19 +13,15 @@ from typing import Any
 import msgspec
 
 from grammar.chart import Node
-from grammar.discourse import ANYONE, START, Branched, Discourse, Meeting, Steps, Thing
+from grammar.discourse import ANYONE, START, Discourse, Steps, Thing
 from grammar.meanings.asking import asked, remember_answer
 from grammar.meanings.descriptions import described
 from grammar.meanings.finding import go
-from grammar.meanings.found_places import first_of_round
-from grammar.meanings.opposites import with_else
 from grammar.meanings.options import options_of
 from grammar.meanings.persons import by_furniture, known_by_name
 from grammar.meanings.places import kind_places, only_taken_apart
 from grammar.meanings.registry import meaning
-from grammar.meanings.searches import search_of
 from grammar.meanings.surveys import moved
-from grammar.meanings.waiting import wait_until
 from grammar.plan import (
     Ask,
     Call,
@@ -128,53 +124,10 @@ def _nobody(found: Recall) -> Condition:
     return Compare(found, "==", Text(""))
 
 
-@meaning("when_found")
-def when_found(d: Discourse, node: Node) -> Steps:
-    """ "when you find one, ...": after a search it is done with whoever was found."""
-    if d.round.stop is not None:  # at each place where it is so
-        there: Steps = d.build(node.parts["then"])
-        return there
-    last = d.done[-1] if d.done else None
-    search = search_of(last)
-    if search is None and _found_by(last) is None:
-        if first_of_round(d):  # "check which room is free. When you have found one, ..."
-            done: Steps = d.build(node.parts["then"])
-            return done
-        return waited_for(d, node)
-    if search is not None and d.thing_last and d.thing is not None:
-        d.thing = replace(d.thing, here=True, place=None)
-    from grammar.meanings.branches import if_found_so
-
-    node = with_else(d, node)
-    if search is not None and "otherwise" in node.parts:
-        return if_found_so(d, node, search)
-    start = d.scene()
-    then: Steps = d.build(node.parts["then"])
-    takes = bool(then) and isinstance(then[0], Call) and then[0].method == "grab"
-    if search is None or not isinstance(last, If):
-        return then
-    d.done.pop()
-    from grammar.meanings.control import in_vain
-
-    missing = in_vain(search, then) if takes else tuple(search.missing)
-    whole = If(search.found, tuple(then), missing)
-    if d.thing is not None and d.thing_last:
-        met = Meeting(replace(d.thing, here=False, pronoun=False), sought=True)
-        d.branched = Branched(whole, start, met, d.answer)
-    return [whole]
-
-
-def waited_for(d: Discourse, node: Node) -> Steps:
-    """ "when you find somebody, ...": they are looked for until somebody is found."""
-    looking = wait_until(Holds(Ask("find", {"thing": Text(ANYONE)})))
-    d.person, d.thing_last = Thing(Text(ANYONE), person=True, here=True), False
-    return [*looking, *d.build(node.parts["then"])]
-
-
 def just_found(d: Discourse) -> tuple[Condition, Thing] | None:
     """Whether somebody has said yes in the search that the step before is; what it says if not is
     taken out of the steps, for that is told otherwise."""
-    found = _found_by(d.done[-1]) if d.done else None
+    found = found_by(d.done[-1]) if d.done else None
     if found is None or d.done[-1].otherwise:  # type: ignore[union-attr]
         return None
     d.done.pop()
@@ -185,7 +138,7 @@ def guard_found(done: Steps) -> Steps:
     """Steps with whoever has said yes are done if somebody has: they go where that is known, with
     all that stands between."""
     for at, step in enumerate(done):
-        found = _found_by(step)
+        found = found_by(step)
         if found is None:
             continue
         last = max((n for n in range(at + 1, len(done)) if mentions(done[n], found)), default=at)
@@ -201,7 +154,7 @@ def guard_found(done: Steps) -> Steps:
     return done
 
 
-def _found_by(step: object) -> Recall | None:
+def found_by(step: object) -> Recall | None:
     """Whom a step has found who has said yes."""
     if not isinstance(step, If) or not isinstance(step.condition, Compare):
         return None

@@ -11,10 +11,10 @@ from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Steps, Thing
 from grammar.meanings.arrivals import may_be_another, names_somebody
 from grammar.meanings.asking_until import as_soon_as_answered, stops_asking
-from grammar.meanings.branches import ABOUT_ANSWERS, if_
+from grammar.meanings.branches import if_
 from grammar.meanings.carrying import take_back_delivery
 from grammar.meanings.claims import claim_of, meet_there
-from grammar.meanings.conditions import condition_of, negated
+from grammar.meanings.conditions import ABOUT_ANSWERS, condition_of, negated
 from grammar.meanings.deliveries import hands_it_over, inside
 from grammar.meanings.finding import speak_to
 from grammar.meanings.news import BACK, Told, go_back, in_round

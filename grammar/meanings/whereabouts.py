@@ -8,6 +8,7 @@ from dataclasses import replace
 from grammar.chart import Node
 from grammar.discourse import Discourse, Meeting, Steps, Thing, Where
 from grammar.doubts import NotUnderstood
+from grammar.meanings.carrying import deliver
 from grammar.meanings.deliveries import Delivery, delivered_last, taken_back
 from grammar.meanings.finding import look_for
 from grammar.meanings.place_sets import names_of
@@ -113,8 +114,6 @@ def looked_further(d: Discourse, places: list[Value]) -> Steps | None:
 @meaning("bring_instead")
 def bring_instead(d: Discourse, node: Node) -> Steps:
     """ "if there is none, a banana": brought as what there was none of should have been."""
-    from grammar.meanings.carrying import deliver
-
     thing: Thing = d.get(node, "thing")
     wanted: Delivery | None = d.meant_for if isinstance(d.meant_for, Delivery) else None
     if wanted is None:

@@ -17,8 +17,8 @@ from grammar.discourse import Discourse, Thing
 from grammar.doubts import Ambiguous, NotUnderstood
 from grammar.lexicon import kind_of
 from grammar.plan import Ask, Text
+from grammar.reader import Reader
 from grammar.slips import command_words
-from grammar.understand import Reader
 
 Sort = (
     Literal["place", "kind", "person", "thing", "furniture", "contact", "gesture", "emotion"]

@@ -8,8 +8,8 @@ from functools import cached_property
 from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.planning.mentions import Mention, mentions
+from grammar.reader import Reader
 from grammar.tokens import Token
-from grammar.understand import Reader
 from grammar.understanding import Context
 
 

@@ -17,8 +17,9 @@ from grammar.chart import Node
 from grammar.language import languages, load_language
 from grammar.lexicon import Lexicon, Name
 from grammar.program import write_program
+from grammar.reader import Reader
 from grammar.sampler import random_sentence
-from grammar.understand import Reader, understand
+from grammar.understand import understand
 from grammar.understanding import Context
 from tests.grammar.hospitals import hospital
 from tests.grammar.ward import WARD, program

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import grammar
 from grammar.language import languages, load_language
 from grammar.lexicon import Lexicon
-from grammar.meanings import MEANINGS
+from grammar.meanings.registry import MEANINGS
 from grammar.naming import naming
 from grammar.program import write_program
 from grammar.sampler import random_sentence, sensible

@@ -11,10 +11,11 @@ from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
 from grammar import plan as p
+from grammar.schema import plan_schema
 from robot_api.methods import METHODS
 from tests.grammar import random_plans, sensible_plans
 
-VALIDATOR = Draft202012Validator(p.schema())
+VALIDATOR = Draft202012Validator(plan_schema())
 TEXT = {"is": "text", "value": "Hello"}
 
 
@@ -23,7 +24,7 @@ def valid(*steps: dict[str, Any]) -> bool:
 
 
 def test_it_is_a_schema() -> None:
-    Draft202012Validator.check_schema(p.schema())
+    Draft202012Validator.check_schema(plan_schema())
 
 
 @settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
