@@ -32,6 +32,7 @@ PUBLIC = {
     "Server",
     "Service",
     "StopFlag",
+    "StopNotConfirmed",
     "Stopped",
     "TimedOut",
     "UnknownPerson",
