@@ -47,6 +47,11 @@ class Chosen:
         """Whether there is a server of ours at the address."""
         return self.kind.scheme in SERVERS
 
+    @property
+    def server(self) -> str:
+        """The address of such a server, as a client takes it."""
+        return str(self.address).removeprefix("ws://")
+
 
 def chosen(address: str, robot_file: str | None = None) -> Chosen:
     """What `--robot` and `--robot-file` name. Raises `UserError` and `RobotFileError`."""
