@@ -60,7 +60,7 @@ def chosen(address: str, robot_file: str | None = None) -> Chosen:
         kind = kind_of(where)
     except BadAddress as error:
         raise UserError(str(error)) from error
-    if kind.scheme not in (SIMULATED, "emulator") and not where.host:
+    if "://" in kind.example and not where.host:
         raise UserError(f"Where is the robot? Write its address as {kind.example}.")
     if robot_file is None:
         return Chosen(where, kind, without_file(kind))
