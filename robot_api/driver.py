@@ -38,6 +38,11 @@ class Capabilities(msgspec.Struct, frozen=True, kw_only=True):
     """How many things it can hold at once."""
     units: str = "m"
     """The unit of the map, "m" or "cm": what the paper's message style counts in."""
+    stop_within: float = 0.05
+    """Seconds in which the robot confirms that it stands after a stop."""
+    limits: dict[str, float] = {}
+    """What it may do at most: speed (m/s), acceleration (m/s²), turn_rate (degrees/s), volume
+    (percent)."""
 
 
 msgspec.json.Decoder(Capabilities)  # learned before there are threads, see `schema`
@@ -102,7 +107,11 @@ EVENTS: Mapping[str, str] = {
     "sound": "audio (a WAV file in base64), seconds: the next piece of what the robot says, for"
     " whoever plays it; played one after the other",
     "silence": "because: what was to be played is not to be heard any more",
-    "stopped": "because",
+    "stopping": "because: it was told to stop, and everything that was in flight has ended",
+    "stopped": "because: the robot has confirmed that it stands",
+    "stop_not_confirmed": "because, message: it may still be moving, use its own button",
+    "link": "state (connected, lost), since (seconds since the epoch), because: whether the robot"
+    " can be reached",
 }
 
 
@@ -117,8 +126,10 @@ class Driver(Protocol):
         the action is done; raises a `RobotError`, or `Stopped` once `stop` is set."""
 
     def stop(self, because: str) -> None:
-        """Bring the body to rest at once, from any thread, within 50 ms. The calls in flight have
-        their flags set before this is called."""
+        """Bring the body to rest at once, from any thread: what stops it goes out within 50 ms.
+        Returns when the robot has confirmed that it stands, at most `Capabilities.stop_within`
+        later; raises `StopNotConfirmed` if it has not by then. The calls in flight have their
+        flags set before this is called."""
 
     def subscribe(self, listener: Callable[[str, Event], None]) -> Callable[[], None]:
         """Call `listener(kind, data)`, from any thread, for each event; returns what ends it."""

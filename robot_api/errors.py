@@ -11,6 +11,7 @@
     ├── InvalidCall            no such method, or parameters of the wrong kind
     ├── AccessDenied           not allowed: not approved, a wrong token, another operator drives
     ├── InternalError          a fault of the robot's own software; the log has the details
+    ├── StopNotConfirmed       it was told to stop and has not said that it stands
     └── LostConnection         the robot cannot be reached any more
     Stopped                    a BaseException: no `except Exception` in a program swallows a stop
 
@@ -67,6 +68,18 @@ class LostConnection(RobotError):
     code = -32009
 
 
+class StopNotConfirmed(RobotError):
+    """Raised by a stop that the robot has not confirmed: it may still be moving."""
+
+    code = -32011
+
+    def __init__(
+        self,
+        message: str = "The robot has not confirmed that it stands. Use the robot's own button.",
+    ) -> None:
+        super().__init__(message)
+
+
 class InternalError(RobotError):
     code = -32603  # JSON-RPC "internal error"
 
@@ -94,6 +107,7 @@ _BY_NAME: dict[str, type[RobotError] | type[Stopped]] = {
         NotSupported,
         InvalidCall,
         AccessDenied,
+        StopNotConfirmed,
         LostConnection,
         InternalError,
         Stopped,
