@@ -4,7 +4,7 @@ VENV   := .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
 
-.PHONY: run test format lint types tests browser bench docs clean
+.PHONY: run test format lint types tests browser systemd wheels bench docs clean
 
 run: $(STAMP)
 	@$(BIN)/nl2robot demo
@@ -27,7 +27,7 @@ lint: $(STAMP)
 types: $(STAMP)
 	$(BIN)/mypy
 
-tests: $(STAMP) browser
+tests: $(STAMP) browser systemd
 	$(BIN)/pytest -n auto
 
 # The console is tested in a real browser: Debian's Chromium.
@@ -39,6 +39,20 @@ browser:
 	  else \
 	    echo "The tests of the console need Chromium: sudo apt-get install chromium"; \
 	  fi; }
+
+# The unit file of docs/deployment.md is looked at by systemd's own check.
+systemd:
+	@command -v systemd-analyze >/dev/null || { \
+	  if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+	    echo "Installing systemd, whose check the unit file has to pass ..."; \
+	    (apt-get -qq update && apt-get install -qq -y --no-install-recommends systemd) >/dev/null; \
+	  else \
+	    echo "The unit file is not checked without systemd-analyze."; \
+	  fi; }
+
+# What comes ready made for a robot's own computer: asks the index of packages.
+wheels: $(STAMP)
+	$(BIN)/python docs/deploy/wheels.py
 
 format: $(STAMP)
 	$(BIN)/ruff format .

@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nl2robot.errors import UserError
-from nl2robot.speech.alsa import quieten
 from nl2robot.speech.echo_cancelling import Played
+from nl2robot.speech.sound_cards import sound_cards
 from nl2robot.speech.voices import Sound
 
 RATE: Final = 22_050
@@ -81,9 +81,7 @@ class SoundCard:
     def __init__(self, backends: list[Any] | None = None, played: Played | None = None) -> None:
         """`backends` of miniaudio, for tests its null backend. `played` is told what is heard of
         it. Raises `SoundError`."""
-        import miniaudio
-
-        quieten()
+        miniaudio = sound_cards(SoundError)
         # Never the null backend by itself: it would play, and nobody would hear anything.
         real = [each for each in miniaudio.Backend if each is not miniaudio.Backend.NULL]
         try:

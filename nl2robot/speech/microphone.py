@@ -17,8 +17,8 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
-from nl2robot.speech.alsa import quieten
 from nl2robot.speech.audio import AudioError, Converter, Samples
+from nl2robot.speech.sound_cards import sound_cards
 
 if TYPE_CHECKING:
     from miniaudio import Backend, CaptureDevice
@@ -130,9 +130,7 @@ def devices(backends: Sequence[Backend] = ()) -> list[str]:
 
 
 def _captures(backends: list[Backend]) -> list[dict[str, Any]]:
-    import miniaudio
-
-    quieten()
+    miniaudio = sound_cards(AudioError)
     try:
         found = miniaudio.Devices(backends)
         # Without a sound card, miniaudio falls back on one that is always there and always silent.
@@ -144,8 +142,7 @@ def _captures(backends: list[Backend]) -> list[dict[str, Any]]:
 
 
 def _opened(name: str | None, backends: list[Backend]) -> CaptureDevice:
-    import miniaudio
-
+    miniaudio = sound_cards(AudioError)
     there = _captures(backends)
     if not there:
         raise AudioError(
