@@ -26,6 +26,7 @@ from nl2robot.talks import Talks
 from nl2robot.voice_services import Microphones
 from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.client import Robot
+from robot_api.composed import ComposedDriver
 from robot_api.driver import Driver, Event
 from robot_api.errors import AccessDenied, RobotError
 from robot_api.robots.opening import hold
@@ -252,7 +253,7 @@ def robot_station(
         world,
         log,
         stage,
-        lambda data: None,
+        _at_each_beginning(driver),
         give_way=sound.give_way,
         host=host,
         port=port,
@@ -260,6 +261,19 @@ def robot_station(
         console=console,
     ) as server:
         yield Station(server.address, server.token), server
+
+
+def _at_each_beginning(driver: Driver) -> Callable[[Mapping[str, Any]], None]:
+    """Tells the driver of each program that begins, if that is anything to it."""
+    begun: set[int] = set()
+
+    def on_program(data: Mapping[str, Any]) -> None:
+        if data["what"] == "state" and data["run"] not in begun:
+            begun.add(data["run"])
+            if isinstance(driver, ComposedDriver):
+                driver.begin()
+
+    return on_program
 
 
 def _methods_of(robot: Robot) -> set[str]:

@@ -205,6 +205,9 @@ class ComposedDriver:
         Raises `NotSupported` if the file names a joint that it lacks."""
         self._capabilities = limits.held(self._capabilities, file)
 
+    def begin(self) -> None:
+        """A new program begins: whom another program met by `wait_for`, say, is met anew."""
+
     def close(self) -> None:
         """Stop, and let go of the robot. Later calls raise `LostConnection`. Whoever has to know
         that it stands calls `stop` before."""

@@ -214,7 +214,7 @@ def test_each_visitor_is_met_once(furhat: FurhatStandIn, driver: ComposedDriver)
     assert do(driver, "wait_for", thing="a person", timeout=0)
     assert furhat.attends == "user-2"
     assert not do(driver, "wait_for", thing="person", timeout=0.1)
-    driver.begin()  # type: ignore[attr-defined]  # another program
+    driver.begin()  # another program
     assert do(driver, "wait_for", thing="person", timeout=0)
 
 

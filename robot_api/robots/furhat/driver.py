@@ -79,7 +79,6 @@ class FurhatDriver(ComposedDriver):
         )
 
     def begin(self) -> None:
-        """A new program begins: whom another program met by `wait_for` is met anew."""
         self._vision.begin()
 
     def close(self) -> None:

@@ -1,13 +1,19 @@
-"""A head on a desk cannot go anywhere: the review says so before anything happens."""
+"""Programs on a head on a desk: it cannot go anywhere, which the review says before anything
+happens."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
 
 import pytest
 
 from nl2robot.knowledge import Knowledge
+from nl2robot.operator import Operator
 from nl2robot.review import review
+from nl2robot.runlog import RunLog
+from nl2robot.station import robot_station
 from robot_api.robots.address import Address
 from robot_api.robots.furhat import FURHAT
 from robot_api.robots.registry import Setup
@@ -60,3 +66,21 @@ robot.say("Follow the signs to " + place + ".")
 robot.do("light", color="green")
 """
     assert review(welcome, reception).findings == ()
+
+
+def test_whom_one_program_met_the_next_one_meets_again(tmp_path: Path) -> None:
+    program = 'robot.wait_for("person", timeout=0)\nrobot.say("Welcome!")\n'
+    log = RunLog(tmp_path / "runs.sqlite")
+    with FurhatStandIn(users=["user-1"]) as furhat, closing(log):
+        driver = FURHAT.connect(Setup(address=Address("furhat", "127.0.0.1", furhat.port)))
+        with (
+            robot_station(driver, load_world("city-hospital"), log) as (station, _),
+            station.connect() as robot,
+        ):
+            receptionist = Operator(robot, "Nurse Kim")
+            for _ in range(2):
+                approval = receptionist.approve(receptionist.check(program))
+                receptionist.wait(receptionist.run(approval))
+        met = furhat.asked("request.attend.user")
+        driver.close()
+    assert [message["user_id"] for message in met] == ["user-1", "user-1"]
