@@ -31,6 +31,7 @@ COMMANDS = {
     "routines": "commands with a name: list, explain, learn, change, forget",
     "serve": "the robot server on one port, a simulated hospital by default",
     "log": "show past runs, and replay them in the simulator",
+    "world": "begin a world from a robot's map, check one, put what was drawn into its file",
     "test": "check canned utterances against what they should do",
     "lint": "look for names in a world that cannot be said or told apart",
     "models": "speech models: list, get, verify",

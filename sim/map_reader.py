@@ -94,7 +94,7 @@ class MapReader(NodeReader):
     def _map_in_file(self, named: ScalarNode, path: Path, what: str) -> w.GridMap | None:
         """The map in a file of its own; what is wrong there is told with the line there, too."""
         name = self.text(named, f"The {what}", MAX_TEXT)
-        if name is None:
+        if name is None or self.names_only:
             return None
         path = path.parent / name
         if not is_there(path):

@@ -14,6 +14,7 @@ from robot_api.server import Publish, Service
 if TYPE_CHECKING:
     from nl2robot.runner import Runner
     from nl2robot.talks import Talks
+    from robot_api.robots.registry import Places
     from sim.simulation import Simulation
 
 Listener = Callable[[str, Event], None]
@@ -35,6 +36,8 @@ class Backstage:
     """Whether somebody subscribed to this kind of event."""
     stop: Callable[[str], None]
     """Stop the robot and its program, saying why; returns at once."""
+    places: Places | None = None
+    """What the driver of a real robot is sent by, if it is: told of places as people name them."""
     _listeners: list[Listener] = field(default_factory=list)
 
     def subscribe(self, listener: Listener) -> Callable[[], None]:

@@ -8,7 +8,7 @@ A package adds one by an entry point of the group `nl2robot.robots` that names a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import msgspec
@@ -35,7 +35,9 @@ class NamedPlace:
 class Places:
     """What the world's file says of the house: a driver that knows its way is sent by these."""
 
-    named: Mapping[str, NamedPlace] = field(default_factory=dict)
+    named: dict[str, NamedPlace] = field(default_factory=dict)
+    """By name. Operators name more on the map while the robot is served, so a driver looks here at
+    each call and keeps no copy."""
     keep_out: Sequence[Sequence[Point]] = ()
     """Outlines of where it must not drive, in metres on its map."""
 
