@@ -32,6 +32,7 @@ COMMANDS = {
     "serve": "the robot server on one port, a simulated hospital by default",
     "robots": "the kinds of robots there are drivers for, and a check of one robot",
     "log": "show past runs, and replay them in the simulator",
+    "world": "begin a world from a robot's map, check one, put what was drawn into its file",
     "test": "check canned utterances against what they should do",
     "lint": "look for names in a world that cannot be said or told apart",
     "models": "speech models: list, get, verify",

@@ -30,11 +30,15 @@ class Knowledge:
         capabilities: Capabilities | None = None,
         routines: Routines | None = None,
     ) -> None:
-        self.world = world
         self.capabilities = capabilities
         self.routines = routines
         self.trouble: str | None = None
         """Why the routines are unknown, if they could not be read last time."""
+        self.see(world)
+
+    def see(self, world: World) -> None:
+        """From now on this is the world: its names are known to whatever is translated next."""
+        self.world = world
         self._names = cache(self._lexicon)
         self._with = lru_cache(maxsize=8)(self._lexicon_with)
 

@@ -12,7 +12,7 @@ import math
 import random
 from collections.abc import Callable, Generator
 from datetime import datetime
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
@@ -23,7 +23,10 @@ from sim.physics import BORDER_WIDTH, STEP, Physics
 from sim.placing import Item, free_spot, people_at_start, things_at_start
 from sim.record import Happening, Record, Sample
 from sim.robot import Robot, RobotState
-from sim.world import Person, Place, World, Zone, contains
+from sim.world import GridMap, Person, Place, Segment, World, Zone, contains, map_corners
+
+if TYPE_CHECKING:
+    from shapely.geometry.base import BaseGeometry
 
 Listener = Callable[[str, dict[str, Any]], None]
 
@@ -66,6 +69,11 @@ class Hospital:
         self.steps = 0
         self.chart: Chart = chart_of(world)
         """Another one when the zones are drawn anew."""
+        if not self.chart.is_floor(pose.x, pose.y):
+            raise NotPossible(
+                f"The robot cannot start at {pose.x:g}, {pose.y:g} in {world.name}: there the map "
+                "shows no floor. Let it start on free floor."
+            )
         self.open_doors = [door.open for door in world.doors]
         self.physics = self._new_physics()
         self.robot = Robot(
@@ -436,6 +444,8 @@ def chart_of(world: World) -> Chart:
             tuple(piece.outline for piece in world.furniture if piece.outline),
             tuple(door.ends for door in world.doors),
             max(world.robot.radius, PERSON_RADIUS),
+            world.map,
+            world.drawn_walls,
         ),
         world.keep_out,
     )
@@ -453,6 +463,8 @@ def _build_chart(
     furniture: tuple[tuple[Spot, ...], ...],
     doors: tuple[tuple[float, float, float, float], ...],
     radius: float,
+    grid: GridMap | None,
+    drawn: tuple[Segment, ...],
 ) -> Chart:
     return Chart(
         walls,
@@ -460,4 +472,19 @@ def _build_chart(
         {f"door {i}": ends for i, ends in enumerate(doors)},
         thickness=thickness,
         radius=radius,
+        floor=None if grid is None else _floor(grid, drawn),
     )
+
+
+def _floor(grid: GridMap, drawn: tuple[Segment, ...]) -> BaseGeometry:
+    """What the map shows to be free, and what walls drawn beside it stand around: of the map, what
+    is unknown is no floor."""
+    import shapely
+
+    from sim.maps import free_floor
+
+    shown = free_floor(grid)
+    if not drawn:
+        return shown
+    around = shapely.MultiLineString([((a, b), (c, d)) for a, b, c, d in drawn]).envelope
+    return shown | (around - shapely.Polygon(map_corners(grid)))

@@ -86,7 +86,7 @@ class Chart:
 
     `walls` are segments (x1, y1, x2, y2) of a `thickness`, `solids` the corners of furniture,
     `gates` the lines of doors, `zones` the outlines of areas that a query may close as it does
-    gates."""
+    gates. `floor` is all the floor there is; without it, it ends a little beyond the walls."""
 
     def __init__(
         self,
@@ -98,6 +98,7 @@ class Chart:
         thickness: float = 0.0,
         radius: float = 0.25,
         margin: float = 0.1,
+        floor: BaseGeometry | None = None,
     ) -> None:
         self._lock = threading.RLock()
         self.radius = radius
@@ -114,7 +115,8 @@ class Chart:
         }
 
         grown = shapely.union_all([_grow(piece, self.clearance) for piece in pieces])
-        self._frame = _frame(pieces)
+        self._frame = _frame(pieces) if floor is None else floor
+        shapely.prepare(self._frame)
         self._free = self._frame.difference(grown)
         self._passable = self._free.buffer(_GRAZE, join_style="mitre")
         shapely.prepare(self._free)
@@ -205,6 +207,11 @@ class Chart:
     def fits(self, x: float, y: float) -> bool:
         """Whether the body can be there without touching anything, on the floor."""
         return self.distance(x, y) >= self.radius and bool(self._frame.covers(Point(x, y)))
+
+    @_one_at_a_time
+    def is_floor(self, x: float, y: float) -> bool:
+        """Whether there is floor at all: not what a map does not show, nor beyond the walls."""
+        return bool(self._frame.covers(Point(x, y)))
 
     @_one_at_a_time
     def to_zone(self, name: str, x: float, y: float) -> float:

@@ -26,7 +26,7 @@ from sim.pictures_scene import (
     hatching,
     mixed,
 )
-from sim.world import Door, Furniture, Place, Polygon, Pose, World, polygon_area, rectangle
+from sim.world import Door, Furniture, Place, Pose, World, polygon_area, rectangle
 
 LARGEST = (1480.0, 1080.0)
 """Pixels that the floor's width and height may have."""
@@ -39,6 +39,7 @@ INK = "#27313d"
 WALL = "#3d4855"
 ROOM_NAME = "#54606d"
 FLOOR = "#f1f1ee"
+_ON_A_MAP = {"free": FLOOR, "occupied": "#8e98a3", "unknown": "#d9dde2"}
 NO_ENTRY = "#d9b3b0"
 
 _ROOMS = {
@@ -121,7 +122,7 @@ def draw_floor(
     keep off the `ways` (in metres) that will be drawn on it, as far as they can. Without `symbols`
     the people are not drawn, only kept clear of. `top` pixels are left free for a title.
 
-    Raises `sim.maps.ImageError` if the image of the world's map can be read no more.
+    Raises `sim.map_image.ImageError` if the image of the world's map can be read no more.
     """
     x1, y1, x2, y2 = _extent(world)
     scale = min(MOST_SCALE, largest[0] / (x2 - x1), largest[1] / (y2 - y1))
@@ -216,11 +217,10 @@ def _extent(world: World) -> tuple[float, float, float, float]:
 def _draw_rooms(world: World, frame: Frame, scene: Scene) -> None:
     rooms = scene.layer("rooms")
     if world.map is not None:
-        from sim.maps import outlines
+        from sim.maps import painted
 
-        for outline in sorted(outlines(world.map), key=polygon_area, reverse=True):
-            fill = FLOOR if _anticlockwise(outline) else BACKGROUND
-            rooms.append(Area(frame.spots(outline), fill))
+        for what, outline in painted(world.map):
+            rooms.append(Area(frame.spots(outline), _ON_A_MAP[what], note=what))
     places = sorted(
         (place for place in world.places if place.area), key=lambda p: -polygon_area(p.area)
     )
@@ -235,11 +235,6 @@ def _draw_rooms(world: World, frame: Frame, scene: Scene) -> None:
         outline = frame.spots(zone.polygon)
         rooms += [Line(line, NO_ENTRY, 1.2) for line in hatching(outline, 9)]
         rooms.append(Area(outline, None, NO_ENTRY, 2, zone.name))
-
-
-def _anticlockwise(polygon: Polygon) -> bool:
-    pairs = itertools.pairwise((*polygon, polygon[0]))
-    return sum(x1 * y2 - x2 * y1 for (x1, y1), (x2, y2) in pairs) > 0
 
 
 def _note(place: Place) -> str:

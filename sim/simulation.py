@@ -27,7 +27,7 @@ from sim.robot import RobotState
 from sim.runner import Behaviour, Runner, Stop
 from sim.talking import Reply
 from sim.view import View, view
-from sim.world import World, Zone
+from sim.world import Place, World, Zone
 
 __all__ = ["Behaviour", "Reply", "RobotState", "Seen", "Simulation", "Stop", "View"]
 
@@ -222,6 +222,11 @@ class Simulation:
         chart = chart_of(msgspec.structs.replace(self.world, zones=drawn))
         with self._runner.turn:
             self._hospital.set_zones(drawn, chart)
+
+    def set_places(self, places: Iterable[Place]) -> None:
+        """These are the places from now on. Whoever walks between places must keep theirs."""
+        with self._runner.turn:
+            self._hospital.world = msgspec.structs.replace(self.world, places=tuple(places))
 
     # --- behaviours: driving ---------------------------------------------------------------------
 

@@ -30,6 +30,8 @@ Aliases = dict[str, tuple[str, ...]]
 """Other names by language code: {"de": ("Apotheke",)}."""
 
 BUILTIN = Path(__file__).parent / "worlds"
+OCCUPIED_THRESH, FREE_THRESH = 0.65, 0.196
+"""What map_server takes where a map's file does not say."""
 WITHIN_REACH = 1.0
 """A place without an area is where its pose is and this many metres around."""
 
@@ -171,8 +173,10 @@ class GridMap(msgspec.Struct, frozen=True, kw_only=True):
     size: tuple[int, int]
     """Width and height in pixels."""
     negate: bool = False
-    occupied_thresh: float = 0.65
-    free_thresh: float = 0.196
+    occupied_thresh: float = OCCUPIED_THRESH
+    free_thresh: float = FREE_THRESH
+    mode: str = "trinary"
+    """ "trinary", "scale" or "raw"."""
 
 
 class Robot(msgspec.Struct, frozen=True, kw_only=True):

@@ -22,7 +22,9 @@ from sim.world import (
     Thing,
     World,
     Zone,
+    contains,
     key,
+    map_corners,
 )
 from sim.world_yaml import NodeReader
 from sim.yaml_nodes import did_you_mean
@@ -120,9 +122,12 @@ def check_poses(reader: NodeReader, world: World) -> None:
     if not world.drawn_walls and world.map is None:
         return
     x1, y1, x2, y2 = world.bounds
+    # A turned map does not fill its bounds.
+    corners = tuple(map_corners(world.map)) if world.map and not world.drawn_walls else ()
     per_metre = 1 / reader.factor
     for line, what, pose in reader.poses:
-        if not (x1 <= pose.x <= x2 and y1 <= pose.y <= y2):
+        within = x1 <= pose.x <= x2 and y1 <= pose.y <= y2
+        if not within or (corners and not contains(corners, pose.x, pose.y)):
             reader.problem(
                 line,
                 f"{what} is outside the map, which goes from ({x1 * per_metre:g}, "

@@ -9,24 +9,20 @@ checked in the end, when all names are known.
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar
 
 from sim import world as w
+from sim.map_reader import MapReader, is_ros_map
 from sim.world import Place, Point, Segment, World, WorldError
 from sim.world_checks import Entries, check_zones, cut_doors, kind_of, settle
-from sim.world_yaml import MAX_TEXT, NodeReader, compose
+from sim.world_yaml import MAX_TEXT, compose
 from sim.yaml_nodes import Hopeless, MappingNode, Node, ScalarNode, short
 from sim.zones import trouble_with
 
 MAX_WALLS = 20_000
-MAX_PIXELS = 8192
-"""Of a map's width and height."""
-
 UNITS = {"m": 1.0, "cm": 0.01}
-DEGREES_PER_RADIAN = 180 / math.pi
 
 _T = TypeVar("_T")
 
@@ -46,15 +42,7 @@ def read_world(path: Path, names_only: bool = False) -> World:
     return world
 
 
-def is_ros_map(root: Node) -> bool:
-    """Whether this is what ROS's map_server writes, not a world."""
-    if not isinstance(root, MappingNode):
-        return False
-    fields = {node.value for node, _ in root.value if isinstance(node, ScalarNode)}
-    return {"image", "resolution"} <= fields and not fields & {"name", "places", "map"}
-
-
-class _Reader(NodeReader):
+class _Reader(MapReader):
     """Reads nodes into structs; what it cannot read becomes a problem, and it reads on."""
 
     FIELDS: ClassVar = {
@@ -62,7 +50,7 @@ class _Reader(NodeReader):
             "name units scale map walls wall_thickness robot places people objects furniture doors "
             "contacts questions zones keep_out"
         ),
-        "a map": "image resolution origin negate occupied_thresh free_thresh mode",
+        **MapReader.FIELDS,
         "the robot": "name start radius battery",
         "a place": "name kind pose area in aliases",
         "a person": "name kind at pose is answers gender walks aliases",
@@ -221,6 +209,31 @@ class _Reader(NodeReader):
         self.problem(node.line, f"{what} {trouble}", floor=True)
         return ()
 
+    def keep_out(self, node: Node, path: Path) -> list[tuple[int, w.Zone]]:
+        """The zones without names: a list of outlines, or what is occupied in a mask, a map in the
+        manner of ROS."""
+        if isinstance(node, ScalarNode | MappingNode):
+            outlines = [(node.line, outline) for outline in self._masked(node, path)]
+        else:
+            fields: dict[str, Node] = {"keep_out": node}
+            outlines = self.entries(
+                fields, "keep_out", lambda item: self.zone_polygon(item, '"keep_out"') or None
+            )
+        return [
+            (line, w.Zone(f"area {number}", outline))
+            for number, (line, outline) in enumerate(outlines, 1)
+        ]
+
+    def _masked(self, node: Node, path: Path) -> tuple[w.Polygon, ...]:
+        from sim.masks import MaskError, masked_areas
+
+        mask = self.map(node, path, "keep-out mask")
+        try:
+            return masked_areas(mask) if mask is not None else ()
+        except MaskError as error:
+            self.problem(node.line, str(error))
+            return ()
+
     def walls(self, node: Node) -> list[Segment]:
         """Each wall is a line through two or more points: [x1, y1, x2, y2, x3, y3, ...]."""
         segments: list[Segment] = []
@@ -251,73 +264,6 @@ class _Reader(NodeReader):
             values["battery"] = self.number(fields["battery"], '"battery" of the robot', 0, 100)
         return w.Robot(**{name: value for name, value in values.items() if value is not None})
 
-    # --- maps
-
-    def map(self, node: Node, path: Path) -> w.GridMap | None:
-        """A map in the manner of ROS (metres, radians), or the name of a file that holds one."""
-        if isinstance(node, ScalarNode):
-            name = self.text(node, '"map"', MAX_TEXT)
-            if name is None:
-                return None
-            path = path.parent / name
-            try:
-                node = compose(path)
-            except Hopeless as error:
-                self.problem(node.line, f"The map {name}: {error.problem.message}")
-                return None
-        fields = self.mapping(node, "a map")
-        for field in ("image", "resolution", "origin"):
-            if field not in fields and isinstance(node, MappingNode):
-                self.problem(
-                    node.line,
-                    f'A map has no "{field}". It needs image, resolution and origin, as ROS\'s '
-                    "map_server writes them.",
-                )
-        if not {"image", "resolution", "origin"} <= set(fields):
-            return None
-        image = self.text(fields["image"], "The image of the map", MAX_TEXT)
-        resolution = self.number(fields["resolution"], "The resolution of the map", 0.001, 10)
-        origin = self.numbers(fields["origin"], "The origin of the map", "[x, y, radians]", (2, 3))
-        numbers = [self.number(item, "The origin of the map", -1e3, 1e3) for item in origin]
-        thresholds = {
-            field: self.number(fields[field], f'"{field}" of the map', 0, 1)
-            for field in ("occupied_thresh", "free_thresh")
-            if field in fields
-        }
-        negate = "negate" in fields and self.truth(fields["negate"], '"negate" of the map')
-        mode = self.text(fields["mode"], '"mode" of the map') if "mode" in fields else "trinary"
-        if mode not in ("trinary", "scale", None):
-            self.problem(
-                fields["mode"].line,
-                'The map\'s mode is neither "trinary" nor "scale". Save the map in one of these.',
-            )
-        if image is None or resolution is None or not numbers or None in numbers:
-            return None
-        if self.names_only:
-            return None
-        from sim.maps import ImageError, image_size
-
-        try:
-            size = image_size(path.parent / image)
-        except ImageError as error:
-            self.problem(fields["image"].line, str(error))
-            return None
-        if max(size) > MAX_PIXELS:
-            self.problem(
-                fields["image"].line,
-                f"The map is {size[0]} x {size[1]} pixels, more than {MAX_PIXELS}. Scale it down.",
-            )
-            return None
-        x, y, theta = [number for number in [*numbers, 0.0] if number is not None][:3]
-        return w.GridMap(
-            image=str(path.parent / image),
-            resolution=resolution,
-            origin=(x, y, theta * DEGREES_PER_RADIAN),
-            size=size,
-            negate=bool(negate),
-            **{field: value for field, value in thresholds.items() if value is not None},
-        )
-
     def ros_map(self, root: Node, path: Path) -> World:
         """A world that is nothing but a map."""
         return World(name=path.stem, map=self.map(root, path), file=str(path))
@@ -346,13 +292,7 @@ class _Reader(NodeReader):
         contacts = self.entries(fields, "contacts", self.contact)
         questions = self.entries(fields, "questions", self.question)
         zones = self.entries(fields, "zones", self.zone)
-        keep_out = self.entries(
-            fields, "keep_out", lambda node: self.zone_polygon(node, '"keep_out"') or None
-        )
-        zones += [
-            (line, w.Zone(f"area {number}", polygon))
-            for number, (line, polygon) in enumerate(keep_out, 1)
-        ]
+        zones += self.keep_out(fields["keep_out"], path) if "keep_out" in fields else []
         walls = self.walls(fields["walls"]) if "walls" in fields else []
         thickness = (
             self.length(fields["wall_thickness"], '"wall_thickness"', 0.01, 2)

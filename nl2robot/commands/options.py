@@ -209,15 +209,18 @@ def sound_of(
 
 def names_of(options: argparse.Namespace) -> World:
     """The world as far as translating needs it: what goes by a name."""
+    from nl2robot.named_places import with_named_places
     from sim.world import load_world
 
-    return load_world(options.world, names_only=True)
+    return with_named_places(load_world(options.world, names_only=True))
 
 
 def world_of(options: argparse.Namespace) -> World:
+    """The world, with the places that were named on its map."""
+    from nl2robot.named_places import with_named_places
     from sim.world import load_world
 
-    return load_world(options.world)
+    return with_named_places(load_world(options.world))
 
 
 def open_log(debug: bool = False) -> RunLog:

@@ -16,7 +16,9 @@ from nl2robot.paths import data_folder
 from robot_api.server import Service
 
 STATIC: Final = Path(__file__).parent / "static"
-PARTS: Final = (*("desk", "scene", "zones", "helm_services", "codes", "drive", "face", "runs"),)
+PARTS: Final = (
+    *("desk", "scene", "zones", "places", "helm_services", "codes", "drive", "face", "runs"),
+)
 """The modules of the parts; each has `part(backstage) -> Part`."""
 
 

@@ -21,8 +21,9 @@ def floor_plan(world: World, things: Sequence[ThingSeen] = ()) -> dict[str, Any]
         "wall": world.wall_thickness,
         "walls": world.drawn_walls,
         "ground": ground,
+        "map": _map(world),
         "doors": [_door(world, door) for door in world.doors],
-        "places": [_place(world, place) for place in world.places],
+        "places": [place_plan(world, place) for place in world.places],
         "people": {person.name: names for person in world.people if (names := _names(person))},
         "furniture": [_furniture(piece) for piece in world.furniture if piece.pose],
         "things": [_thing(world.objects[seen.number], seen) for seen in things],
@@ -36,6 +37,15 @@ def _ground(world: World) -> Iterable[Polygon]:
     from sim.maps import outlines
 
     return outlines(world.map)
+
+
+def _map(world: World) -> list[tuple[str, list[Point]]]:
+    """An image map as areas to paint one over the other: what is free, occupied, unknown."""
+    if world.map is None:
+        return []
+    from sim.maps import painted
+
+    return [(what, _polygon(outline)) for what, outline in painted(world.map)]
 
 
 def _bounds(world: World, ground: list[list[Point]]) -> tuple[float, float, float, float]:
@@ -59,7 +69,8 @@ def _names(named: Place | Person | Furniture | Thing) -> Names:
     }
 
 
-def _place(world: World, place: Place) -> dict[str, Any]:
+def place_plan(world: World, place: Place) -> dict[str, Any]:
+    """A place as the map shows it."""
     pose = place.pose
     return {
         "name": place.name,

@@ -15,6 +15,7 @@ from robot_api.server import Publish, Service
 if TYPE_CHECKING:
     from nl2robot.runner import Runner
     from nl2robot.talks import Talks
+    from robot_api.robots.registry import Places
     from sim.simulation import Simulation
 
 Listener = Callable[[str, Event], None]
@@ -41,6 +42,8 @@ class Backstage:
     stop: Callable[[str], None]
     """Stop the robot and its program, saying why; returns when the robot has confirmed that it
     stands. Raises `StopNotConfirmed`."""
+    places: Places | None = None
+    """What the driver of a real robot is sent by, if it is: told of places as people name them."""
     _listeners: list[Listener] = field(default_factory=list)
     _stops: Stops = field(default_factory=Stops)
 

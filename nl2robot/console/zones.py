@@ -1,11 +1,7 @@
 """Keep-out zones drawn on the map: kept for each world, and told to the simulated robot.
 
-They are in `zones.yaml` in the data folder, beside those that a world's own file has, which hold
-for good. The file may be edited by hand while nothing is served; it is read at the start.
-
-    worlds:
-      city-hospital:
-        - {name: wet floor, polygon: [[4, 1.5], [8, 1.5], [8, 6]]}
+They are in `zones.yaml` in the data folder (see `nl2robot.drawn`), beside those that a world's own
+file has, which hold for good. The file is read at the start.
 """
 
 from __future__ import annotations
@@ -16,14 +12,13 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
 
-import msgspec
-
 from nl2robot.console.part import Backstage, Part
+from nl2robot.drawn import Drawn
 from nl2robot.errors import UserError
-from nl2robot.paths import data_file, made
+from nl2robot.paths import data_file
 from nl2robot.wire import service
 from sim.simulation import Simulation
-from sim.world import BUILTIN, World, Zone, key
+from sim.world import Zone, key
 from sim.zones import trouble_with
 
 MOST_ZONES: Final = 50
@@ -42,61 +37,16 @@ _POLYGON = {
 }
 
 
-class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    worlds: dict[str, tuple[Zone, ...]] = {}
-
-
-msgspec.json.Decoder(_File)  # learned before there are threads, see `robot_api.schema`
-
-
-class DrawnZones:
+class DrawnZones(Drawn[Zone]):
     """The zones of a file, by world. Raises `UserError` where the file cannot be used."""
 
     def __init__(self, file: Path) -> None:
-        self.file = file
+        super().__init__(file, Zone, "keep-out zones", _trouble_with)
 
-    def of(self, world: World) -> tuple[Zone, ...]:
-        """Those drawn on the map of this world."""
-        return self._read().worlds.get(_whose(world), ())
 
-    def keep(self, world: World, zones: tuple[Zone, ...]) -> None:
-        """From now on those of this world are these; on disk when this returns."""
-        worlds = {**self._read().worlds, _whose(world): zones}
-        kept = _File({name: drawn for name, drawn in worlds.items() if drawn})
-        import yaml
-
-        text = yaml.safe_dump(msgspec.to_builtins(kept), allow_unicode=True, sort_keys=False)
-        new = made(self.file.parent) / f".{self.file.name}.new"
-        try:
-            new.write_text(text, encoding="utf-8")
-            new.replace(self.file)  # whoever reads sees the old file or the new one
-        except OSError as error:
-            raise UserError(
-                f"The keep-out zones cannot be kept in {self.file} ({error.strerror})."
-                " Check its place, its rights and the disk."
-            ) from error
-
-    def _read(self) -> _File:
-        import yaml
-
-        try:
-            data = yaml.safe_load(self.file.read_text(encoding="utf-8"))
-            file = msgspec.convert(data or {}, _File)
-        except FileNotFoundError:
-            return _File()
-        except (OSError, ValueError, RecursionError, yaml.YAMLError) as error:
-            raise self._damaged(" ".join(str(error).split())) from error
-        for zone in (zone for zones in file.worlds.values() for zone in zones):
-            trouble = trouble_with(zone.polygon)
-            if trouble:
-                raise self._damaged(f'the zone "{zone.name}" {trouble.split(".")[0]}')
-        return file
-
-    def _damaged(self, why: str) -> UserError:
-        return UserError(
-            f"The keep-out zones that were drawn cannot be read from {self.file} ({why})."
-            " Mend the file or move it away, then start again."
-        )
+def _trouble_with(zone: Zone) -> str | None:
+    trouble = trouble_with(zone.polygon)
+    return f'the zone "{zone.name}" {trouble.split(".")[0]}' if trouble else None
 
 
 def part(backstage: Backstage) -> Part:
@@ -210,9 +160,3 @@ def _check_free(name: str, fixed: tuple[Zone, ...]) -> None:
 
 def _others(zones: tuple[Zone, ...], name: str) -> Iterator[Zone]:
     return (zone for zone in zones if key(zone.name) != key(name))
-
-
-def _whose(world: World) -> str:
-    """What tells worlds apart, wherever the program is called and installed."""
-    file = Path(world.file)
-    return file.stem if file.parent == BUILTIN else str(file.absolute())

@@ -58,7 +58,9 @@ class NamedPlace:
 class Places:
     """What the world's file says of the house: a driver that knows its way is sent by these."""
 
-    named: Mapping[str, NamedPlace] = field(default_factory=dict)
+    named: dict[str, NamedPlace] = field(default_factory=dict)
+    """By name. Operators name more on the map while the robot is served, so a driver looks here at
+    each call and keeps no copy."""
     keep_out: Sequence[Sequence[Point]] = ()
     """Outlines of where it must not drive, in metres on its map."""
 

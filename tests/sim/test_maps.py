@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +11,10 @@ import numpy.typing as npt
 import pytest
 from PIL import Image
 
-from sim.errors import NotPossible
+from sim.errors import Blocked, NotPossible
 from sim.hospital import chart_of
-from sim.maps import outlines
+from sim.maps import outlines, painted
+from sim.pictures import svg
 from sim.simulation import Simulation
 from sim.world import WorldError, load_world, polygon_area
 
@@ -82,9 +84,10 @@ def test_what_nobody_measured_is_no_way(tmp_path: Path) -> None:
     cells[40:50, 40:50] = UNKNOWN
     world = load_world(write(tmp_path, cells))
     assert len(world.walls) == 12
-    everything = load_world(write(tmp_path, cells, free_thresh=0.5))
-    edge, both_sides, pillar = 4, 8, 4
-    assert len(everything.walls) == edge + both_sides + pillar, "the unknown counts as free"
+    # ROS 2 writes the unknown as 205 and a threshold beside it that would make it free.
+    for free_thresh in (0.25, 0.5):
+        again = load_world(write(tmp_path, cells, free_thresh=free_thresh))
+        assert again.walls == world.walls
 
 
 def test_slanted_walls_are_a_few_segments(tmp_path: Path) -> None:
@@ -143,6 +146,29 @@ def test_a_pose_off_the_map_is_refused(tmp_path: Path) -> None:
         load_world(file)
 
 
+def test_a_pose_beside_a_turned_map_is_refused(tmp_path: Path) -> None:
+    write(tmp_path, room(), origin=[0, 0, math.pi / 4])
+    file = tmp_path / "world.yaml"
+    file.write_text("map: map.yaml\nplaces: [{name: ward, pose: [0.5, 6]}]\n")
+    assert load_world(file).place("ward")
+    file.write_text("map: map.yaml\nplaces: [{name: ward, pose: [6, 1]}]\n")
+    with pytest.raises(WorldError, match=r"world.yaml:2: .*outside the map"):
+        load_world(file)
+
+
+def test_the_unknown_and_walls_are_drawn_as_what_they_are(tmp_path: Path) -> None:
+    cells = room()
+    cells[40:50, 40:50] = UNKNOWN
+    world = load_world(write(tmp_path, cells, free_thresh=0.25))
+    assert world.map is not None
+    assert [what for what, _ in painted(world.map)] == [
+        *("unknown", "occupied", "unknown", "free"),  # all, the walls, what they stand around
+        *("unknown", "unknown", "occupied"),  # what is unknown in the room; the pillar
+    ]
+    drawing = svg(world, Simulation(world).record)
+    assert "<title>unknown</title>" in drawing and "<title>occupied</title>" in drawing
+
+
 @pytest.mark.parametrize(
     ("content", "part"),
     [
@@ -171,8 +197,69 @@ def test_a_broken_image_is_refused_in_words(
 def test_a_wrong_field_of_a_map_is_told(tmp_path: Path) -> None:
     with pytest.raises(WorldError, match=r"map.yaml:2: .*resolution.*should be a number"):
         load_world(write(tmp_path, room(), resolution="fine"))
-    with pytest.raises(WorldError, match=r"neither .trinary. nor .scale"):
-        load_world(write(tmp_path, room(), mode="raw"))
+    for field, value, told in (
+        ("mode", "binary", r"map.yaml:7: .*should be .trinary., .scale. or .raw."),
+        ("resolution", "nan", r"map.yaml:2: .*resolution.*should be a number"),
+        ("resolution", "inf", r"map.yaml:2: .*resolution.*from 0.001 to 10"),
+        ("resolution", 10, r"map.yaml:2: .*2000 metres wide"),
+        ("origin", "[0, .nan, 0]", r"map.yaml:3: .*origin.*should be a number"),
+        ("origin", "[0, 0, nan]", r"map.yaml:3: .*origin.*should be a number"),
+        ("origin", "[0, 0, 1, 2]", r"map.yaml:3: .*origin.*\[x, y, radians\]"),
+        ("free_thresh", 0.7, r"map.yaml:6: free_thresh is 0.7 and .*swapped"),
+        ("occupied_thresh", 0.1, r"map.yaml:6: .*occupied_thresh 0.1.*swapped"),
+        ("free_thresh", "nan", r"map.yaml:6: .*should be a number"),
+        ("negate", 2, r"map.yaml:4: .*true or false"),
+    ):
+        with pytest.raises(WorldError, match=told):
+            load_world(write(tmp_path, room(), **{field: value}))
+
+
+def test_what_is_wrong_in_the_maps_own_file_is_told_with_its_line(tmp_path: Path) -> None:
+    write(tmp_path, room(), free_thresh=0.9)
+    file = tmp_path / "world.yaml"
+    file.write_text("name: ours\nmap: map.yaml\n")
+    with pytest.raises(WorldError, match=r"world.yaml:2: The map map.yaml, line 6: .*swapped"):
+        load_world(file)
+    file.write_text("name: ours\nmap: gone.yaml\n")
+    with pytest.raises(WorldError, match=r"world.yaml:2: The map gone.yaml is not there"):
+        load_world(file)
+
+
+@pytest.mark.parametrize(
+    "elsewhere", ["/home/turtle/maps/floor.pgm", "../maps/floor.pgm", r"C:\maps\floor.pgm"]
+)
+def test_the_image_of_a_map_from_another_machine_lies_beside_it(
+    tmp_path: Path, elsewhere: str
+) -> None:
+    file = write(tmp_path, room())
+    expected = load_world(file).walls
+    file.write_text(file.read_text().replace("image: floor.pgm", f"image: {elsewhere}"))
+    assert load_world(file).walls == expected
+    (tmp_path / "floor.pgm").unlink()
+    with pytest.raises(WorldError, match=r"cannot be read.*or put it into that folder"):
+        load_world(file)
+
+
+def test_the_robot_does_not_drive_in_what_nobody_measured(tmp_path: Path) -> None:
+    simulation = Simulation(load_world(write(tmp_path, room(), free_thresh=0.25)))
+    outside = (-4.5, 0.0)
+    with pytest.raises(NotPossible, match="no room"):
+        simulation.localize(*outside, 0)
+    with pytest.raises((NotPossible, Blocked)):
+        simulation.run(simulation.drive_to(*outside), threading.Event())
+    file = tmp_path / "world.yaml"
+    file.write_text("name: ours\nmap: map.yaml\nrobot: {start: [-4.5, 0]}\n")
+    with pytest.raises(NotPossible, match="the map shows no floor"):
+        Simulation(load_world(file))
+
+
+def test_walls_drawn_beside_a_map_stand_around_floor_as_well(tmp_path: Path) -> None:
+    write(tmp_path, room())
+    file = tmp_path / "world.yaml"
+    file.write_text("name: ours\nmap: map.yaml\nwalls: [[6, 0, 9, 0, 9, 3, 6, 3, 6, 0]]\n")
+    chart = chart_of(load_world(file))
+    assert chart.is_floor(7, 1) and chart.is_floor(-1, 1)
+    assert not chart.is_floor(-4.5, 0), "what the map does not know"
 
 
 def test_a_map_full_of_specks_is_driven_in(tmp_path: Path) -> None:

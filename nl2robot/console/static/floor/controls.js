@@ -14,6 +14,7 @@ const ICONS = {
     'M12 3v18M3 12h18M12 3l-3 3M12 3l3 3M12 21l-3-3M12 21l3-3' +
     'M3 12l3-3M3 12l3 3M21 12l-3-3M21 12l-3 3',
   zone: 'M4 4h16v16H4zM4 14L14 4M8 20L20 8M4 20L20 4',
+  place: 'M12 21s-7-6-7-11a7 7 0 0 1 14 0c0 5-7 11-7 11zM12 7.5a2.5 2.5 0 1 0 0 5a2.5 2.5 0 1 0 0-5',
 };
 
 /** The element, which from now on listens. */

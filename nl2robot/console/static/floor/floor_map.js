@@ -7,7 +7,7 @@
  *   element.addEventListener("go", ({ detail }) => ... detail.x, detail.y, detail.place);
  *
  * The element hears of "go" {x, y, place}, "localise" {x, y, theta}, "zone" {polygon, name} and
- * "zone-remove" {name}. Zones are kept and removed by the map itself; the rest is the page's.
+ * "zone-remove" {name}. Zones and places are kept and removed by the map itself; the rest is the page's.
  */
 
 import {element, filled} from '/static/page.js';
@@ -20,12 +20,13 @@ import {Motion} from './motion.js';
 import {headSize, paintLive, robotSize} from './paint_live.js';
 import {Pen, PlanPainter} from './paint_plan.js';
 import {Palette} from './palette.js';
+import {Places} from './places.js';
 import {contains, distance} from './shapes.js';
 import {inWords, Teller} from './telling.js';
-import {Localise, Look, Send, Zone} from './tools.js';
+import {Localise, Look, Name, Send, Zone} from './tools.js';
 import {Zones} from './zones.js';
 
-const TOOLS = {look: Look, send: Send, localise: Localise, zone: Zone};
+const TOOLS = {look: Look, send: Send, localise: Localise, zone: Zone, place: Name};
 const NEAR = 0.6; // metres from a place's pose that mean the place
 const NEAR_PIXELS = 14;
 const CLOSE_UP = 48; // pixels a metre, for a place that is shown
@@ -76,7 +77,7 @@ export class FloorMap {
     this.#options = {language: 'en', operator: false, ...options};
     /** What a click can do here. */
     this.modes = this.#options.operator
-      ? (this.#options.modes ?? ['look', 'send', 'localise', 'zone'])
+      ? (this.#options.modes ?? ['look', 'send', 'localise', 'zone', 'place'])
       : ['look'];
     this.camera = new Camera();
     this.following = false;
@@ -107,6 +108,8 @@ export class FloorMap {
     this.listTitle.textContent = this.words[`places_${mode}`];
     this.zones.panel.hidden = mode !== 'zone';
     this.zones.stage('nothing');
+    this.places.panel.hidden = mode !== 'place';
+    this.places.discard();
     this.draw();
   }
 
@@ -230,7 +233,7 @@ export class FloorMap {
     this.mode = this.modes[0];
     this.motion.set(early ?? floor.now);
     this.#tellInWords();
-    await this.zones.fetch();
+    await Promise.all([this.zones.fetch(), this.places.fetch()]);
     let connected = wire.connected;
     this.#undo.push(
       wire.onChange((now) => {
@@ -246,7 +249,7 @@ export class FloorMap {
     if (!floor || !this.floor) return;
     this.motion.trail = floor.trail;
     this.motion.set(floor.now);
-    await this.zones.fetch();
+    await Promise.all([this.zones.fetch(), this.places.fetch()]);
     this.draw();
   }
 
@@ -285,29 +288,47 @@ export class FloorMap {
       tell: (kind, detail) => this.tell(kind, detail),
     });
     this.#undo.push(() => this.zones.end());
+    this.places = new Places(this.#options.wire, words, this.#options.language, {
+      changed: (places) => this.#placesChanged(places),
+      clear: () => this.#tool.clear?.(),
+      failed: (sentence) => this.showError(sentence),
+    });
+    this.#undo.push(() => this.places.end());
     this.listTitle = element('summary', {});
+    this.placeList = element('div', {class: 'floor-place-list'});
+    this.#listPlaces();
     const list = element(
       'details',
       {class: 'floor-places', open: this.#options.places ?? false},
       this.listTitle,
-      element(
-        'div',
-        {class: 'floor-place-list'},
-        ...placeList(
-          this.floor.places,
-          (place) => this.floor.nameOf(place),
-          (place) => this.#tool.choose(place),
-        ),
-      ),
+      this.placeList,
     );
     this.error = element('p', {class: 'floor-error', role: 'alert', hidden: true});
     root.classList.add('floor');
-    this.help = element('div', {class: 'floor-help'}, this.hint, this.zones.panel);
+    this.help = element('div', {class: 'floor-help'}, this.hint, this.zones.panel, this.places.panel);
     root.replaceChildren(bar, this.error, this.help, this.stage, list);
     this.palette = new Palette(root);
     this.teller = new Teller((text) => this.#say(text));
     this.#undo.push(() => this.teller.close());
     this.#watch();
+  }
+
+  #listPlaces() {
+    const {floor} = this;
+    const choose = (place) => this.#tool.choose(place);
+    this.placeList.replaceChildren(
+      ...placeList(floor.places, (place) => floor.nameOf(place), choose),
+    );
+  }
+
+  /** Somebody named a place, moved one or removed one. */
+  #placesChanged(places) {
+    if (!this.floor) return;
+    this.floor.places = places;
+    this.#plan = new PlanPainter(this.floor);
+    this.#listPlaces();
+    this.#tellInWords();
+    this.#repaint();
   }
 
   /** Look after size, look and gestures. */

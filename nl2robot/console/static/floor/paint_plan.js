@@ -6,6 +6,9 @@ import {along, area, boxAbout, boxAt, radians, rectangle, touches} from './shape
 const PAUSE = 120; // milliseconds between two placings of the names while one zooms
 const MUCH = 0.25; // zoomed by e to this, names are placed anew at once
 
+/** The colours of what an image map says. */
+const MAPPED = {free: 'ground', occupied: 'occupied', unknown: 'unknown'};
+
 /**
  * Draws the plan of a floor.
  * @typedef {{camera: import("./camera.js").Camera, palette: import("./palette.js").Palette}} Look
@@ -77,10 +80,10 @@ export class PlanPainter {
   }
 
   #paintRooms(context, pen, palette) {
-    const {ground, bounds, walls} = this.floor;
+    const {ground, bounds, walls, map} = this.floor;
+    for (const [what, outline] of map) pen.area(outline, palette.get(MAPPED[what]));
     context.beginPath();
-    if (ground.length) for (const outline of ground) pen.trace(outline);
-    else if (walls.length) {
+    if (!ground.length && walls.length) {
       const [x1, y1, x2, y2] = bounds;
       pen.trace([
         [x1, y1],
@@ -90,7 +93,7 @@ export class PlanPainter {
       ]);
     }
     context.fillStyle = palette.get('ground');
-    context.fill('evenodd');
+    context.fill();
     for (const place of this.rooms) {
       pen.area(place.area, palette.room(place.kind));
       if (!place.part) continue;

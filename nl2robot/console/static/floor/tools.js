@@ -2,11 +2,12 @@
 
 import {paintFlag, paintRobot, robotSize} from './paint_live.js';
 import {paintZone} from './paint_plan.js';
-import {area, distance, radians} from './shapes.js';
+import {along, area, distance, radians} from './shapes.js';
 
 const KNOB = 26; // pixels from the robot's rim to the knob that turns it
 const GRASP = 14; // pixels that a finger may miss by
 const LEAST_ZONE = 0.05; // square metres
+const ARROW = 34; // pixels that show which way to face
 
 /** Look only: a click asks what is there. */
 export class Look {
@@ -139,6 +140,84 @@ export class Localise extends Look {
 
   #tell([x, y, theta]) {
     this.map.tell('localise', {x: round(x), y: round(y), theta});
+  }
+}
+
+/** A click names a place; a drag from there says which way to face. Those named by hand are dragged
+ * elsewhere. */
+export class Name extends Look {
+  #spot = null; // {x, y, theta} of the one that is being named
+  #start = null; // where a drag began
+  #held = null; // the place that is dragged, and where it is now
+  #at = null;
+
+  press(spot, pixel) {
+    this.#held = this.#nearest(pixel);
+    this.#start = spot;
+    this.#at = this.#held?.pose ?? null;
+    return true;
+  }
+
+  drag([x, y]) {
+    if (this.#held) this.#at = [x, y];
+    else this.#spot = {...this.#whereItBegan(), theta: this.#angle([x, y])};
+    this.map.draw();
+  }
+
+  release([x, y], pixel, clicked) {
+    const held = this.#held;
+    this.#held = null;
+    if (held && clicked) this.map.places.edit(held);
+    else if (held) this.map.places.move(held, [round(x), round(y)]);
+    else if (clicked || this.#farFrom(pixel)) {
+      this.#spot = {...this.#whereItBegan(), theta: clicked ? null : this.#angle([x, y])};
+      this.map.places.pick(this.#spot);
+    } else this.#spot = null;
+    this.map.draw();
+  }
+
+  choose(place) {
+    if (place.removable) this.map.places.edit(place);
+    else this.map.showPlace(place);
+  }
+
+  /** Forget the spot. */
+  clear() {
+    this.#spot = null;
+    this.map.draw();
+  }
+
+  paint(pen, palette) {
+    const colour = palette.get('dry-run');
+    for (const place of this.map.floor.places) {
+      if (!place.removable) continue;
+      const at = place === this.#held ? this.#at : place.pose;
+      pen.disc(at, 6, palette.get('robot-rim'), colour, 2.5);
+    }
+    if (!this.#spot) return;
+    const {x, y, theta} = this.#spot;
+    if (theta !== null) pen.line([[x, y], along([x, y, theta], ARROW / pen.scale)], colour, 3);
+    paintFlag(pen, [x, y], colour);
+  }
+
+  #nearest(pixel) {
+    const far = ({pose}) => distance(...this.map.camera.toScreen(...pose), ...pixel);
+    const near = this.map.floor.places.filter((place) => place.removable && far(place) < GRASP);
+    return near.sort((one, two) => far(one) - far(two))[0] ?? null;
+  }
+
+  /** Whether it was a drag, and not two fingers that came to move the map. */
+  #farFrom(pixel) {
+    return distance(...this.map.camera.toScreen(...this.#start), ...pixel) > GRASP;
+  }
+
+  #whereItBegan() {
+    const [x, y] = this.#start;
+    return {x: round(x), y: round(y)};
+  }
+
+  #angle([x, y]) {
+    return Math.round((Math.atan2(y - this.#start[1], x - this.#start[0]) * 180) / Math.PI);
   }
 }
 
