@@ -69,7 +69,14 @@ from robot_api.capabilities.telepresence import (
 )
 from robot_api.capabilities.vision import EmulatedVision, SimulatedVision, Vision
 from robot_api.driver import Capabilities, StopFlag
-from robot_api.errors import InternalError, LostConnection, NotPossible, NotSupported, RobotError
+from robot_api.errors import (
+    InternalError,
+    LostConnection,
+    NotPossible,
+    NotSupported,
+    RobotError,
+    StopNotConfirmed,
+)
 from robot_api.methods import METHODS, Method
 from robot_api.schema import find_method, read_arguments
 
@@ -152,6 +159,11 @@ class ComposedDriver:
             kind=kind,
             units=units,
             methods=tuple(method for method in METHODS if method in self._offered),
+            stand_ins={
+                part.name: part.stand_in
+                for part in self._parts.values()
+                if part.stand_in is not None
+            },
             **declared,
         )
         self._lock = threading.Lock()  # for what follows
@@ -231,7 +243,13 @@ class ComposedDriver:
             flags = [flag for flag in self._in_flight if flag is not mine]
         for flag in flags:
             flag.set(because)
-        self._core.rest()
+        self._publish("stopping", {"because": because})
+        try:
+            self._core.rest()
+        except StopNotConfirmed as error:
+            self._book.write(f"stop not confirmed: {because}", "error")
+            self._publish("stop_not_confirmed", {"because": because, "message": str(error)})
+            raise
         self._book.write(f"stopped: {because}")
         self._publish("stopped", {"because": because})
 
