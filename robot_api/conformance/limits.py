@@ -8,7 +8,8 @@ from robot_api.errors import InvalidCall
 
 
 def check_limits(subject: Subject) -> None:
-    """Speed, turn rate, volume and each joint: what is beyond is refused, what is not is done."""
+    """Speed, turn rate and each joint: what is beyond is refused, what is not is done. A voice that
+    is too loud may be refused or turned down."""
     subject.findings.tried.add("limits")
     for name, arguments in beyond_limits(subject.has):
         if subject.can(name):

@@ -17,8 +17,7 @@ import random
 import socket
 import struct
 import threading
-from collections.abc import Awaitable, Callable, Coroutine
-from dataclasses import dataclass, field
+from collections.abc import Callable, Coroutine
 from typing import Any, Final
 
 _CHUNK: Final = 65536
@@ -29,14 +28,6 @@ _START: Final = 10.0
 
 _Pipe = asyncio.Queue[tuple[float, bytes]]
 """What has been read and is to be sent: when, and what; nothing is the end."""
-
-
-@dataclass(eq=False)
-class _Connection:
-    """One client, and its connection to the robot."""
-
-    writers: list[asyncio.StreamWriter]
-    tasks: list[asyncio.Task[None]] = field(default_factory=list)
 
 
 class Proxy:
@@ -53,7 +44,7 @@ class Proxy:
         self._thread = threading.Thread(target=self._loop.run_forever, name="proxy", daemon=True)
         # All of the following is touched by that thread alone.
         self._server: asyncio.Server | None = None
-        self._connections: set[_Connection] = set()
+        self._serving: set[asyncio.Task[Any]] = set()
         self._flowing = asyncio.Event()
         self._delay = 0.0
         self._noise: random.Random | None = None
@@ -89,7 +80,7 @@ class Proxy:
         self._do(self._set(lambda: setattr(self, "_noise", random.Random(seed))))
 
     def mend(self) -> None:
-        """Carry everything as it is again, at once; what was held back comes first."""
+        """Carry everything as it is again; what was held back comes first."""
         self._do(self._mend())
 
     # --- in the proxy's own thread ---------------------------------------------------------------
@@ -114,42 +105,35 @@ class Proxy:
         if self._server is not None:
             self._server.close()
             self._server = None
-        for connection in tuple(self._connections):
-            self._break_off(connection)
-
-    def _break_off(self, connection: _Connection) -> None:
-        for writer in connection.writers:
-            raw: socket.socket = writer.get_extra_info("socket")
-            with contextlib.suppress(OSError):
-                raw.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, _AT_ONCE)
-            writer.transport.abort()
-        for task in connection.tasks:
+        for task in self._serving:
             task.cancel()
-        self._connections.discard(connection)
+        await asyncio.gather(*self._serving, return_exceptions=True)
 
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        connection = _Connection([writer])
-        self._connections.add(connection)
+        """Carry what one client and the robot say to each other."""
+        task = asyncio.current_task()
+        assert task is not None
+        self._serving.add(task)
+        sides = [writer]
         try:
             from_robot, to_robot = await asyncio.open_connection(*self._robot)
-        except OSError:
-            self._break_off(connection)
-            return
-        connection.writers.append(to_robot)
-        pipes: tuple[_Pipe, _Pipe] = (asyncio.Queue(), asyncio.Queue())
-        ways: list[Awaitable[None]] = [
-            self._read(reader, pipes[0], False),
-            self._write(to_robot, pipes[0]),
-            self._read(from_robot, pipes[1], True),
-            self._write(writer, pipes[1]),
-        ]
-        connection.tasks = [asyncio.ensure_future(way) for way in ways]
-        if connection not in self._connections:  # cut while it was being made
-            self._break_off(connection)
-        await asyncio.wait(connection.tasks)
-        self._break_off(connection)
+            sides.append(to_robot)
+            there: _Pipe = asyncio.Queue()
+            back: _Pipe = asyncio.Queue()
+            async with asyncio.TaskGroup() as ways:
+                ways.create_task(self._read(reader, there, of_robot=False))
+                ways.create_task(self._write(to_robot, there))
+                ways.create_task(self._read(from_robot, back, of_robot=True))
+                ways.create_task(self._write(writer, back))
+        except (OSError, asyncio.CancelledError):  # there is no robot, or the link is cut
+            for side in sides:
+                _reset(side)
+        finally:
+            for side in sides:
+                side.close()
+            self._serving.discard(task)
 
-    async def _read(self, reader: asyncio.StreamReader, pipe: _Pipe, of_robot: bool) -> None:
+    async def _read(self, reader: asyncio.StreamReader, pipe: _Pipe, *, of_robot: bool) -> None:
         content = b"begin"
         while content:
             try:
@@ -167,9 +151,19 @@ class Proxy:
             due, content = await pipe.get()
             await asyncio.sleep(max(0.0, due - self._loop.time()))
             await self._flowing.wait()
-            with contextlib.suppress(OSError, RuntimeError):  # that side has left
+            if writer.is_closing():
+                return  # that side has left
+            with contextlib.suppress(OSError):
                 if not content:
                     writer.write_eof()
                     return
                 writer.write(content)
                 await writer.drain()
+
+
+def _reset(side: asyncio.StreamWriter) -> None:
+    """End the connection with nothing more said, as if its cable were cut."""
+    raw: socket.socket = side.get_extra_info("socket")
+    with contextlib.suppress(OSError):
+        raw.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, _AT_ONCE)
+    side.transport.abort()

@@ -10,6 +10,7 @@ from robot_api.conformance.subject import Subject
 from robot_api.driver import Capabilities
 from robot_api.errors import InvalidCall, NotSupported, RobotError, UnknownPerson
 from robot_api.methods import METHODS
+from robot_api.values import Location
 
 Sample = tuple[str, dict[str, Any]]
 """A method and the arguments to call it with."""
@@ -19,7 +20,7 @@ STRANGE = "no such thing anywhere"
 _SLOW, _TURNING = 0.3, 30.0
 """Metres and degrees a second to drive with, if the robot may: enough to be seen."""
 _BEYOND = 1.0
-"""Degrees and percent more than a limit."""
+"""Degrees, or degrees a second, more than a limit."""
 _FASTER = 0.05
 """Metres a second more than a limit."""
 
@@ -44,10 +45,10 @@ def samples(subject: Subject) -> Iterator[Sample]:
         "turn": [{"degrees": 30}],
         "drive": [{"linear": linear / 2, "angular": angular / 2, "seconds": 0.5}],
         "wait": [{"seconds": 0.1}],
-        "localize": [{"place": place}],
+        "localize": _where_it_is(subject),
         "places": [{}, {"kind": "office"}],
-        "emotion": [{"name": name} for name in has.emotions[:2]],
-        "gesture": [{"name": name} for name in has.gestures[:1]],
+        "emotion": [{"name": name} for name in has.emotions[:2] or ("happy",)],
+        "gesture": [{"name": name} for name in has.gestures[:1] or ("wave",)],
         "joint": [{"name": joint, "degrees": angles[0]}, {"name": joint, "degrees": angles[1]}],
         "log": [{"lines": 5}],
         "call": [{"contact": contact}],
@@ -65,14 +66,22 @@ def samples(subject: Subject) -> Iterator[Sample]:
         "wait_for": [{"thing": "person", "timeout": 1}],
         "follow": [{"person": "person", "to": place}],
         "guide": [{"person": "person", "place": place}],
-        "do": [{"skill": skill} for skill in list(has.skills)[:1]] or [{"skill": "sit"}],
+        "do": [{"skill": next(iter(has.skills), "sit")}],
     }
     for name, method in METHODS.items():
         if name == "stop":
             continue  # has checks of its own
         one = {parameter.name: "cup" for parameter in method.forms[0] if parameter.required}
-        for sample in arguments.get(name) or [one]:
+        for sample in arguments.get(name, [one]):
             yield name, sample
+
+
+def _where_it_is(subject: Subject) -> list[dict[str, Any]]:
+    """A robot that is made to believe itself elsewhere drives into walls."""
+    here = subject.try_to("location")
+    if isinstance(here, Location):
+        return [{"x": here.x, "y": here.y, "theta": here.theta}]
+    return [] if "localize" in subject.has.methods else [{"x": 0, "y": 0, "theta": 0}]
 
 
 def strange_names() -> Iterator[tuple[type[RobotError], str, dict[str, Any]]]:
@@ -94,9 +103,6 @@ def beyond_limits(has: Capabilities) -> Iterator[Sample]:
             yield "drive", {"linear": sign * (speed + _FASTER), "angular": 0, "seconds": 0.2}
         if turn_rate is not None:
             yield "drive", {"linear": 0, "angular": sign * (turn_rate + _BEYOND), "seconds": 0.2}
-    volume = has.limits.get("volume")
-    if volume is not None and volume < 100:
-        yield "set_volume", {"percent": math.floor(volume) + 1}
     for joint, (least, most) in has.joints.items():
         yield "joint", {"name": joint, "degrees": least - _BEYOND}
         yield "joint", {"name": joint, "degrees": most + _BEYOND}

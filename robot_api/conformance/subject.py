@@ -77,9 +77,9 @@ class Attempt:
         finally:
             self.ended = time.monotonic()
 
-    def returned(self, within: float = GIVE_UP) -> bool:
-        """Wait so many seconds for the end; whether it came."""
-        self._thread.join(within)
+    def returned(self, within: float | None = None) -> bool:
+        """Wait so many seconds for the end, `GIVE_UP` at most; whether it came."""
+        self._thread.join(GIVE_UP if within is None else within)
         return not self._thread.is_alive()
 
     @property
