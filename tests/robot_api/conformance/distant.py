@@ -93,7 +93,7 @@ class DistantDriver:
 
 
 @contextmanager
-def ward(speed: float = 3, ping_seconds: float = 0.3) -> Iterator[Address]:
+def ward(speed: float = 3, ping_seconds: float = 0.8) -> Iterator[Address]:
     """The address of a simulated robot on a ward, as many times faster than a real one."""
     driver = simulated(Simulation(load_world("ward"), seed=1, speed=speed))
     with Server(driver, port=0, ping_seconds=ping_seconds) as server:
