@@ -49,11 +49,12 @@ _ASKED = "battery"
 
 def check_link(connect: Connect, address: Address, move: bool, findings: Findings) -> None:
     """Everything about the link and about two clients; the robot must be there."""
-    findings.tried |= {"link", "two clients"}
     losing = Losing(connect, address, move, findings)
+    findings.tried.add("two clients")
     losing.two_clients()
     if not losing.goes_by_the_link():
         return
+    findings.tried.add("link")
     losing.nobody_there()
     losing.answers_nothing()
     losing.answers_nonsense()
@@ -67,8 +68,6 @@ class Losing:
     """The robot at an address, reached by a link that fails in one way after the other."""
 
     def __init__(self, connect: Connect, address: Address, move: bool, findings: Findings) -> None:
-        if not address.host or address.port is None:
-            raise ValueError(f"{address} has no host and port to be reached through a proxy.")
         self.connect = connect
         self.address = address
         self.move = move
@@ -78,13 +77,20 @@ class Losing:
         self.findings.wrong(part, None, message)
 
     def goes_by_the_link(self) -> bool:
-        """Whether the driver uses the address that it is given, so that its link can fail."""
-        with self.proxy() as link, self.subject(link):
-            if link.passed:
-                return True
-        self.findings.tried.discard("link")
-        self.findings.notes["link"] = "the driver goes past the address, so it was never cut"
-        return False
+        """Whether the driver can be reached by a link that fails; else there is a note of why."""
+        if self.address.port is None:
+            self.findings.notes["link"] = "its address names no port, so it was never cut"
+            return False
+        with self.proxy() as link:
+            try:
+                with self.subject(link):
+                    passed = link.passed
+            except RobotError as error:
+                self.findings.notes["link"] = f"it cannot be reached through a proxy: {error}"
+                return False
+        if not passed:
+            self.findings.notes["link"] = "the driver goes past the address, so it was never cut"
+        return passed > 0
 
     # --- connecting ------------------------------------------------------------------------------
 

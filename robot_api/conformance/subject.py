@@ -7,9 +7,9 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from robot_api.composed import INTERFACES
 from robot_api.conformance.report import PARTS, Problem, Report, Row, State
 from robot_api.driver import Driver, Event, StopFlag
-from robot_api.drivers import INTERFACES
 from robot_api.errors import RobotError, StopNotConfirmed
 from robot_api.methods import CAPABILITIES, METHODS
 

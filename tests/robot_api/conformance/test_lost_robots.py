@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from robot_api.checker import check_robot
+from robot_api.checker import Report, check_robot
 from robot_api.conformance import Proxy, losing
 from robot_api.conformance.losing import Connect, Losing
 from robot_api.conformance.subject import Findings
@@ -82,9 +82,30 @@ def test_a_robot_that_is_not_there_is_no_robot_to_be_looked_at() -> None:
         check_robot(DistantDriver, Address("ws", "127.0.0.1", 1))
 
 
-def test_a_link_needs_a_port() -> None:
-    with pytest.raises(ValueError, match="no host and port"):
-        looking_at(DistantDriver, Address("ws", "127.0.0.1"))
+def link_of(report: Report) -> tuple[str, str]:
+    row = next(row for row in report.rows if row.part == "link")
+    return row.state, row.note
+
+
+def test_an_address_without_a_port_has_no_link_to_be_cut() -> None:
+    report = check_robot(lambda address: emulated(), Address("far", "porter"), move=False)
+    assert report == []
+    assert link_of(report) == ("not tried", "its address names no port, so it was never cut")
+
+
+def test_a_robot_that_speaks_to_nobody_in_between() -> None:
+    with ward(speed=50) as robot:
+
+        def connect(address: Address) -> DistantDriver:
+            if address != robot:
+                raise AccessDenied("Its certificate is for another machine. Ask who made it.")
+            return DistantDriver(address)
+
+        report = check_robot(connect, robot, move=False)
+    assert report == []
+    state, note = link_of(report)
+    assert state == "not tried"
+    assert note.startswith("it cannot be reached through a proxy: Its certificate")
 
 
 def test_a_robot_may_have_one_client_only_if_it_says_so(robot: Address) -> None:
@@ -149,11 +170,8 @@ def test_a_driver_that_goes_past_the_link_cannot_be_judged() -> None:
     with ward(speed=50) as robot:
         report = check_robot(lambda address: DistantDriver(robot), robot, move=False)
     assert report == []
-    link = next(row for row in report.rows if row.part == "link")
-    assert (link.state, link.note) == (
-        "not tried",
-        "the driver goes past the address, so it was never cut",
-    )
+    past = "the driver goes past the address, so it was never cut"
+    assert link_of(report) == ("not tried", past)
 
 
 # --- lost
