@@ -13,10 +13,9 @@ from dataclasses import replace
 
 from robot_api.conformance.behaviour import check_call, check_event
 from robot_api.conformance.link import Proxy
-from robot_api.conformance.samples import long_movement
+from robot_api.conformance.samples import long_movements
 from robot_api.conformance.subject import (
     ON_THE_WAY,
-    UNDER_WAY,
     Attempt,
     Findings,
     Subject,
@@ -24,7 +23,7 @@ from robot_api.conformance.subject import (
     honest,
 )
 from robot_api.driver import Driver
-from robot_api.errors import LostConnection, RobotError, Stopped
+from robot_api.errors import LostConnection, NotSupported, RobotError, Stopped
 from robot_api.robots.address import Address
 
 Connect = Callable[[Address], Driver]
@@ -107,14 +106,15 @@ class Losing:
     def answers_nonsense(self) -> None:
         with self.proxy() as link:
             link.garble()
-            self.refused(link, "to what answers nonsense")
+            # That may as well be a robot of another kind.
+            self.refused(link, "to what answers nonsense", LostConnection, NotSupported)
 
-    def refused(self, link: Proxy, where: str) -> None:
-        """Connecting raises `LostConnection` in time."""
+    def refused(self, link: Proxy, where: str, *errors: type[RobotError]) -> None:
+        """Connecting raises one of the errors in time, `LostConnection` if none are given."""
         attempt = Attempt(lambda flag: self.connect(self.through(link)))
         if not attempt.returned(FOUND_WITHIN):
             self.wrong(f"connecting {where} takes more than {FOUND_WITHIN:g} s")
-        elif isinstance(attempt.error, LostConnection):
+        elif isinstance(attempt.error, errors or LostConnection):
             self.findings.check_sentence("link", None, attempt.error)
         else:
             self.wrong(f"connecting {where} {attempt.outcome}, and raised no LostConnection")
@@ -160,19 +160,16 @@ class Losing:
         """Everybody is told, nobody waits, the robot stands, and nothing is resumed."""
         when = f"when the link {what}"
         with self.proxy() as link, self.subject(link) as subject:
-            movement = long_movement(subject)
-            calls = {"wait": subject.begin("wait", {"seconds": 86400})}
-            if movement is not None:
-                calls[movement[0]] = subject.begin(*movement)
-            under_way = {name: call for name, call in calls.items() if not call.returned(UNDER_WAY)}
+            waiting = subject.begin_one([("wait", {"seconds": 86400})])
+            moving = subject.begin_one(long_movements(subject))
             start = len(subject.heard)
             lose(link)
             began = time.monotonic()
             self.told(subject, start, "lost", LOST_WITHIN, when)
-            for name, call in under_way.items():
+            for name, call in filter(None, (waiting, moving)):
                 left = LOST_WITHIN - (time.monotonic() - began)
                 self.ended(name, call, max(left, _NEWS), when)
-            if movement is not None and movement[0] in under_way:
+            if moving is not None:
                 self.robot_stands(began, what)
             self.asked_in_vain(subject, when)
             self.stop_is_honest(subject, when)
@@ -280,13 +277,10 @@ class Losing:
                 self.stopped_by_another(first, second)
 
     def stopped_by_another(self, first: Subject, second: Subject) -> None:
-        movement = long_movement(first)
-        if movement is None:
+        moving = first.begin_one(long_movements(first))
+        if moving is None:
             return
-        name, arguments = movement
-        call = first.begin(name, arguments)
-        if call.returned(UNDER_WAY):
-            return
+        name, call = moving
         start = len(second.heard)
         stop = second.stop("The second client stops the robot.")
         if not stop.returned() or not confirmed(stop):

@@ -19,6 +19,8 @@ STRANGE = "no such thing anywhere"
 """A name that nobody gave to anything."""
 _SLOW, _TURNING = 0.3, 30.0
 """Metres and degrees a second to drive with, if the robot may: enough to be seen."""
+_PLACES = 4
+"""How many places are tried to be driven to."""
 _BEYOND = 1.0
 """Degrees, or degrees a second, more than a limit."""
 _FASTER = 0.05
@@ -62,6 +64,9 @@ def samples(subject: Subject) -> Iterator[Sample]:
         "type_text": [{"selector": "#field", "text": "Bob"}],
         "read_text": [{"selector": "#name"}],
         "touch": [{"options": ["yes", "no"]}],
+        # A robot that sees anything sees people.
+        "sees": [{"thing": "person"}],
+        "count": [{"thing": "people"}],
         "find": [{"thing": "person", "place": place}],
         "wait_for": [{"thing": "person", "timeout": 1}],
         "follow": [{"person": "person", "to": place}],
@@ -154,31 +159,35 @@ def long_calls(subject: Subject) -> Iterator[Sample]:
         if not subject.can(name):
             continue
         if arguments.get("place"):
-            far = far_place(subject)
+            far = _far_place(subject)
             if far is None:
                 continue
             arguments["place"] = far
         yield name, arguments
 
 
-def long_movement(subject: Subject) -> Sample | None:
-    """One that takes long and moves the body, if it has any."""
+def long_movements(subject: Subject) -> Iterator[Sample]:
+    """Some that may take long, the likeliest first: not every place can be driven to."""
     linear, angular = _pace(subject.has)
-    far = far_place(subject) if subject.can("goto") else None
-    if far is not None:
-        return "goto", {"place": far}
+    if subject.can("goto"):
+        for place in _elsewhere(subject)[-_PLACES:][::-1]:
+            yield "goto", {"place": place}
     if subject.can("turn"):
-        return "turn", {"degrees": 36000}
+        yield "turn", {"degrees": 36000}
     if subject.can("drive"):
-        return "drive", {"linear": linear, "angular": angular, "seconds": 60}
-    return None
+        yield "drive", {"linear": linear, "angular": angular, "seconds": 60}
 
 
-def far_place(subject: Subject) -> str | None:
-    """A place where the robot is not now."""
+def _far_place(subject: Subject) -> str | None:
+    """A place where the robot is not now, one that it has arrived at before if there is any."""
+    others = _elsewhere(subject)
+    been = [place for place in others if place in subject.been]
+    return next(reversed(been or others), None)
+
+
+def _elsewhere(subject: Subject) -> list[str]:
     here = getattr(subject.try_to("location"), "place", None)
-    others = [place for place in subject.places() if place != here]
-    return others[-1] if others else None
+    return [place for place in subject.places() if place != here]
 
 
 def _pace(has: Capabilities) -> tuple[float, float]:

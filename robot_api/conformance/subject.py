@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from robot_api.composed import INTERFACES
@@ -130,6 +130,8 @@ class Subject:
         self.move = move
         self.findings = findings
         self.has = driver.capabilities()
+        self.been: list[str] = []
+        """The places that it has been sent to, and arrived at."""
         self.heard = Heard()
         self._unsubscribe = driver.subscribe(self.heard)
 
@@ -149,6 +151,16 @@ class Subject:
     def begin(self, name: str, arguments: Mapping[str, Any]) -> Attempt:
         """The call, in a thread of its own."""
         return Attempt(lambda flag: self.driver.call(name, dict(arguments), flag))
+
+    def begin_one(
+        self, calls: Iterable[tuple[str, Mapping[str, Any]]]
+    ) -> tuple[str, Attempt] | None:
+        """Begin the first of the calls that does not return at once; its name, and the call."""
+        for name, arguments in calls:
+            call = self.begin(name, arguments)
+            if not call.returned(UNDER_WAY):
+                return name, call
+        return None
 
     def stop(self, because: str, *calls: Attempt) -> Attempt:
         """As the server stops: the flags of the calls in flight first, then the body."""
