@@ -38,7 +38,7 @@ class Proxy:
         self.port = 0
         """Where it is reached; a free port of this machine, the same until it is closed."""
         self.passed = 0
-        """Bytes that have come from the robot."""
+        """Bytes that it has carried, both ways."""
         self._robot = (host, port)
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, name="proxy", daemon=True)
@@ -140,10 +140,9 @@ class Proxy:
                 content = await reader.read(_CHUNK)
             except OSError:
                 content = b""
-            if of_robot:
-                self.passed += len(content)
-                if self._noise is not None:
-                    content = self._noise.randbytes(len(content))
+            self.passed += len(content)
+            if of_robot and self._noise is not None:
+                content = self._noise.randbytes(len(content))
             pipe.put_nowait((self._loop.time() + self._delay, content))
 
     async def _write(self, writer: asyncio.StreamWriter, pipe: _Pipe) -> None:
