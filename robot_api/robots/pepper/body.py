@@ -20,7 +20,7 @@ STOP_MOVING: Final[Ending] = ("ALMotion", "stopMove")
 STOP_LIMBS: Final[Ending] = ("ALMotion", "killAll")
 STOP_SPEAKING: Final[Ending] = ("ALTextToSpeech", "stopAll")
 _NOT_CONFIRMED: Final = "The robot has not confirmed that it stands. Use the robot's own button."
-_STANDS: Final = 0.005
+_STANDS: Final = 0.001
 """Metres and radians a second below which it counts as standing."""
 _ASKS_EVERY: Final = 0.005
 """Seconds between two questions whether it stands."""

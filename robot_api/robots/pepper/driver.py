@@ -6,6 +6,7 @@ from contextlib import suppress
 from datetime import datetime
 
 from robot_api.capabilities.base import Capability, Hub
+from robot_api.capabilities.company import LeadingGuiding
 from robot_api.capabilities.core import LogBook
 from robot_api.capabilities.face import Face, ScreenFace
 from robot_api.capabilities.hearing import EarsHearing, Hearing, TabletHearing
@@ -13,7 +14,7 @@ from robot_api.capabilities.screen import Screen
 from robot_api.capabilities.sound import Ears
 from robot_api.capabilities.speech import LoudspeakerSpeech, Speech
 from robot_api.drivers import ComposedDriver
-from robot_api.errors import NotSupported, RobotError
+from robot_api.errors import NotSupported, RobotError, StopNotConfirmed
 from robot_api.robots.link import Link
 from robot_api.robots.pepper.body import Body
 from robot_api.robots.pepper.core import PepperCore
@@ -48,7 +49,8 @@ class PepperDriver(ComposedDriver):
     def close(self) -> None:
         """Stop, leave the robot as it was found, and let go of it."""
         try:
-            super().close()
+            with suppress(StopNotConfirmed):  # the event and the log say it
+                super().close()
         finally:
             if self._screen is not None:
                 self._screen.close()
@@ -97,7 +99,8 @@ def _parts(
                 " Bring it up to date, or take the map out of the file."
             )
         most = file.limits.speed
-        parts.append(PepperNavigation(wire, body, hub, setup.places, settings.map, most))
+        navigation = PepperNavigation(wire, body, hub, setup.places, settings.map, most)
+        parts += [navigation, LeadingGuiding(navigation, speech)]
     return [part for part in parts if part is not None]
 
 

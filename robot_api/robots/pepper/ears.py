@@ -31,9 +31,7 @@ class _Receiver:
     def __init__(self) -> None:
         self.blocks: queue.SimpleQueue[bytes] = queue.SimpleQueue()
 
-    def processRemote(
-        self, channels: int, samples: int, stamp: Any, sound: bytearray
-    ) -> None:
+    def processRemote(self, channels: int, samples: int, stamp: Any, sound: bytearray) -> None:
         self.blocks.put(bytes(sound))
 
 

@@ -25,6 +25,9 @@ CONNECTS_WITHIN: Final = 5.0
 ANSWERS_WITHIN: Final = 2.0
 """Seconds that a light call may take."""
 
+CUT: Final = "The connection to Pepper was cut."
+HINT: Final = "See that it is switched on and in the network."
+
 Future = Any
 """A `qi.Future`: `qi` has no types."""
 
@@ -145,7 +148,7 @@ class Line:
         known = self._services.get(name)
         if known is None:
             if not self.connected:
-                raise LostConnection("The connection to Pepper was cut.")
+                raise LostConnection(f"{CUT} {HINT}")
             known = answered(self._session.service(name, _async=True), name)
             self._services[name] = known
         return known
@@ -180,7 +183,7 @@ def answered(future: Future, what: str, within: float = ANSWERS_WITHIN) -> Any:
     """What comes of it. Raises `LostConnection` if nothing does in time, and what the robot's
     errors are in our words."""
     if not _done(future, within):
-        raise LostConnection(f"Pepper has not answered for {within:g} seconds.")
+        raise LostConnection(f"Pepper has not answered for {within:g} seconds. {HINT}")
     try:
         return _value(future)
     except RuntimeError as error:
@@ -195,12 +198,19 @@ def finished(future: Future, within: float) -> bool:
 def in_words(text: str, what: str) -> RobotError:
     """Our error for one of `qi`, or of a service of the robot's."""
     if _GONE.search(text):
-        return LostConnection("The connection to Pepper was cut.")
+        return LostConnection(f"{CUT} {HINT}")
     if _NO_SUCH.search(text):
         return NotSupported(f"This Pepper's software has no {what} as it is needed here.")
-    reason = re.sub(r"^\w*Error:\s*", "", text.strip()).splitlines()
-    said = reason[0].strip().rstrip(".") if reason else "it does not say why"
-    return NotPossible(f"Pepper refused {what}: {said}. See to that, then try again.")
+    return NotPossible(f"Pepper refused {what}: {_reason(text)}. See to that, then try again.")
+
+
+def _reason(text: str) -> str:
+    """What a service gives as its reason: the first line that is not the method's name alone."""
+    for line in text.splitlines():
+        said = re.sub(r"^\w*Error:", "", line.strip()).strip().rstrip(".")
+        if said and not re.fullmatch(r"\w+::\w+", said):
+            return said
+    return "it does not say why"
 
 
 def _done(future: Future, seconds: float) -> bool:

@@ -26,7 +26,15 @@ from robot_api.driver import StopFlag
 from robot_api.errors import LostConnection, NotSupported, RobotError
 from robot_api.robots.address import Address
 from robot_api.robots.link import Link
-from robot_api.robots.pepper.line import ANSWERS_WITHIN, Future, Line, answered, finished, login_of
+from robot_api.robots.pepper.line import (
+    ANSWERS_WITHIN,
+    CUT,
+    Future,
+    Line,
+    answered,
+    finished,
+    login_of,
+)
 from robot_api.robots.pepper.presence import Driving
 
 BEAT: Final = 0.5
@@ -221,8 +229,8 @@ class Wire:
                 if not finished(beat, until - time.monotonic()):
                     return f"Pepper has not answered for {SILENT_AFTER:g} seconds."
                 answered(beat, "ALMotion")
-        except LostConnection as error:
-            return str(error)
+        except LostConnection:
+            return CUT
         except RobotError:
             return None  # it answers, if with a complaint
         return None

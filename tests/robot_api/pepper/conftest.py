@@ -78,6 +78,9 @@ class StandIn:
         for name, value in scene.items():
             self._control.set(name, json.dumps(value))
 
+    def remove(self, service: str) -> None:
+        self._control.remove(service)
+
     def touch(self, label: str) -> bool:
         return bool(self._control.touch(label))
 
@@ -202,6 +205,20 @@ def drive() -> Iterator[Callable[..., Any]]:
         settings = setup.pop("settings", PepperSettings(map=MAP))
         setup = {"places": PLACES} | setup
         made.append(connect(Setup(address=where, file=file, settings=settings, **setup)))
+        return made[-1]
+
+    yield make
+    for each in made:
+        each.close()
+
+
+@pytest.fixture
+def network() -> Iterator[Callable[..., Proxy]]:
+    """Makes ways to them that can be cut."""
+    made: list[Proxy] = []
+
+    def make(pepper: StandIn, **how: Any) -> Proxy:
+        made.append(Proxy(pepper.port, **how))
         return made[-1]
 
     yield make
