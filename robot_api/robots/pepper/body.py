@@ -50,7 +50,15 @@ class Body:
     # --- begin and end ---------------------------------------------------------------------------
 
     def take(self) -> None:
-        """Take the robot: its autonomous life off, itself awake. Raises `NotPossible`."""
+        """Take the robot: its autonomous life off, itself awake. Raises a `RobotError` and leaves
+        it as it was."""
+        try:
+            self._take()
+        except RobotError:
+            self.give_back()
+            raise
+
+    def _take(self) -> None:
         if self._life == "off" and self._wire.has("ALAutonomousLife"):
             self._life_before = self._life_state()
             if self._life_before != "disabled":
@@ -85,7 +93,7 @@ class Body:
                     " Switch it off, or start my server again."
                 )
         if not self._awake():
-            self._wire.run(stop, "ALMotion", "wakeUp")
+            self._wire.run(stop, "ALMotion", "wakeUp", ending=(STOP_LIMBS,))
 
     def in_the_way(self, direction: Literal["front", "back"] | None = None) -> str:
         """Why a movement has ended early, in a sentence; looks where it was going to, if that is
@@ -119,7 +127,7 @@ class Body:
                 time.sleep(_ASKS_EVERY)
         except StopNotConfirmed:
             raise
-        except RobotError:
+        except (RobotError, TypeError, ValueError):  # or it answers with nonsense
             raise StopNotConfirmed(_NOT_CONFIRMED) from None
 
     def _stands(self, within: float) -> bool:

@@ -14,7 +14,7 @@ from robot_api.capabilities.screen import Screen
 from robot_api.capabilities.sound import Ears
 from robot_api.capabilities.speech import LoudspeakerSpeech, Speech
 from robot_api.drivers import ComposedDriver
-from robot_api.errors import NotSupported, RobotError, StopNotConfirmed
+from robot_api.errors import NotSupported, StopNotConfirmed
 from robot_api.robots.link import Link
 from robot_api.robots.pepper.body import Body
 from robot_api.robots.pepper.core import PepperCore
@@ -44,6 +44,8 @@ class PepperDriver(ComposedDriver):
         link = Link(hub, name)
         super().__init__(name=name, kind="pepper", parts=parts, hub=hub, book=book, link=link)
         self._body.take()
+        if self._screen is not None:
+            self._screen.begin()
         wire.follow(link, self._body.stand_still)
 
     def close(self) -> None:
@@ -67,9 +69,14 @@ def connect(setup: Setup) -> PepperDriver:
     wire.open()
     try:
         return PepperDriver(setup, wire, settings)
+    except (TypeError, ValueError, LookupError) as error:
+        wire.close()
+        raise NotSupported(
+            f"What answers at {setup.address.host} does not answer as a Pepper does ({error})."
+            " Check the address, and the version of Pepper's software."
+        ) from error
     except BaseException:
-        with suppress(RobotError):
-            wire.close()
+        wire.close()
         raise
 
 

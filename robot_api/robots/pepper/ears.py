@@ -57,7 +57,8 @@ class PepperMicrophone:
             self._wire.call(
                 "ALAudioDevice", "setClientPreferences", name, _RATE, _FRONT, _AS_IT_COMES
             )
-            self._wire.call("ALAudioDevice", "subscribe", name)
+            # It looks for us before it answers.
+            self._wire.call("ALAudioDevice", "subscribe", name, within=_PATIENCE)
             try:
                 yield self._blocks(receiver)
             finally:

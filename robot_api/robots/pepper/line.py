@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 import socket
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -36,6 +37,10 @@ _GONE: Final = re.compile(
     r"future timeout|connection (reset|closed)|broken pipe|promise broken",
     re.IGNORECASE,
 )
+_SERVICE_GONE: Final = "socket is not connected"
+"""Told of a service that has ended, too, though the connection holds."""
+_SETTLES_WITHIN: Final = 0.05
+"""Seconds until a connection that is being cut counts as cut."""
 _NO_SUCH: Final = re.compile(
     r"cannot find service|can't find method|arguments types did not match", re.IGNORECASE
 )
@@ -98,13 +103,13 @@ class Line:
             self._session.setClientAuthenticatorFactory(_Authenticators(login))
         try:
             connecting = self._session.connect(url_of(address), _async=True)
-            if not _done(connecting, CONNECTS_WITHIN):
+            if not finished(connecting, CONNECTS_WITHIN):
                 raise LostConnection(
                     f"Nothing at {address.host} has answered as a Pepper does for"
                     f" {CONNECTS_WITHIN:g} seconds. Check the address, and that Pepper is switched"
                     " on and in the network."
                 )
-            _value(connecting)
+            connecting.value(0)
         except RobotError:
             self.close()
             raise
@@ -122,54 +127,82 @@ class Line:
 
     def names(self) -> frozenset[str]:
         """The services that the robot has."""
-        found = answered(self._session.services(_async=True), "services")
-        return frozenset(service["name"] for service in found)
+        asking = self._begun("services", lambda: self._session.services(_async=True))
+        return frozenset(service["name"] for service in self.answered(asking, "services"))
 
     def begin(self, service: str, method: str, *arguments: Any) -> Future:
         """Ask for it without waiting. Raises `LostConnection`, `NotSupported`."""
         proxy = self.service(service)
         try:
-            return getattr(proxy, method)(*arguments, _async=True)
+            asked = getattr(proxy, method)
         except AttributeError:
             raise NotSupported(
                 f"This Pepper's software has no {service}.{method}. Bring it up to date."
             ) from None
-        except RuntimeError as error:
-            raise in_words(str(error), f"{service}.{method}") from None
+        return self._begun(f"{service}.{method}", lambda: asked(*arguments, _async=True))
 
     def call(
         self, service: str, method: str, *arguments: Any, within: float = ANSWERS_WITHIN
     ) -> Any:
         """A light call."""
         begun = self.begin(service, method, *arguments)
-        return answered(begun, f"{service}.{method}", within)
+        return self.answered(begun, f"{service}.{method}", within)
+
+    def answered(self, future: Future, what: str, within: float = ANSWERS_WITHIN) -> Any:
+        """What comes of it. Raises `LostConnection` if nothing does in time, and what the robot's
+        errors are in our words."""
+        if not finished(future, within):
+            raise LostConnection(f"Pepper has not answered for {within:g} seconds. {HINT}")
+        return self._begun(what, lambda: future.value(0))
 
     def service(self, name: str) -> Any:
         known = self._services.get(name)
         if known is None:
-            if not self.connected:
-                raise LostConnection(f"{CUT} {HINT}")
-            known = answered(self._session.service(name, _async=True), name)
-            self._services[name] = known
+            looking = self._begun(name, lambda: self._session.service(name, _async=True))
+            known = self._services[name] = self.answered(looking, name)
         return known
 
     def register(self, name: str, service: object) -> int:
         """Give the robot a service of ours, for as long as the connection lasts. It calls us back
         where it sees us: on this machine's address towards it."""
-        with suppress(RuntimeError):  # it listens already
+        with suppress(RuntimeError):
             if not self._session.endpoints():
                 self._session.listen(f"tcp://{self._own_address()}:0")
-        registering = self._session.registerService(name, service, _async=True)
-        return int(answered(registering, name))
+        registering = self._begun(
+            name, lambda: self._session.registerService(name, service, _async=True)
+        )
+        return int(self.answered(registering, name))
 
     def unregister(self, number: int) -> None:
-        answered(self._session.unregisterService(number, _async=True), "unregister")
+        ending = self._begun(
+            "unregister", lambda: self._session.unregisterService(number, _async=True)
+        )
+        self.answered(ending, "unregister")
 
     def close(self) -> None:
         """Returns at once; whoever waits for an answer gets `LostConnection`."""
         self._services.clear()
         with suppress(RuntimeError):
             self._session.close(_async=True)
+
+    def _begun(self, what: str, begin: Callable[[], Any]) -> Any:
+        """Do that, with its errors in our words."""
+        try:
+            return begin()
+        except RuntimeError as error:
+            text = str(error)
+        if not self.connected:  # then what is missing is told as if it had never been there
+            raise LostConnection(f"{CUT} {HINT}")
+        if _SERVICE_GONE in text.lower():
+            time.sleep(_SETTLES_WITHIN)
+            if self.connected:
+                service = what.partition(".")[0]
+                self._services.pop(service, None)
+                raise NotPossible(
+                    f"Pepper's {service} has gone away. Try again; if that does not help, start"
+                    " Pepper again."
+                )
+        raise in_words(text, what)
 
     def _own_address(self) -> str:
         family = socket.AF_INET6 if ":" in self._address.host else socket.AF_INET
@@ -179,20 +212,9 @@ class Line:
         return f"[{own}]" if ":" in own else own
 
 
-def answered(future: Future, what: str, within: float = ANSWERS_WITHIN) -> Any:
-    """What comes of it. Raises `LostConnection` if nothing does in time, and what the robot's
-    errors are in our words."""
-    if not _done(future, within):
-        raise LostConnection(f"Pepper has not answered for {within:g} seconds. {HINT}")
-    try:
-        return _value(future)
-    except RuntimeError as error:
-        raise in_words(str(error), what) from None
-
-
 def finished(future: Future, within: float) -> bool:
     """Wait so many seconds; whether it is over by then, well or badly."""
-    return _done(future, within)
+    return bool(future.wait(max(1, int(within * 1000))) != qi.FutureState.Running)
 
 
 def in_words(text: str, what: str) -> RobotError:
@@ -211,14 +233,6 @@ def _reason(text: str) -> str:
         if said and not re.fullmatch(r"\w+::\w+", said):
             return said
     return "it does not say why"
-
-
-def _done(future: Future, seconds: float) -> bool:
-    return bool(future.wait(max(1, int(seconds * 1000))) != qi.FutureState.Running)
-
-
-def _value(future: Future) -> Any:
-    return future.value(0)
 
 
 def _no_connection(text: str, address: Address, login: Login | None) -> RobotError:

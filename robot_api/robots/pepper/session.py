@@ -31,7 +31,6 @@ from robot_api.robots.pepper.line import (
     CUT,
     Future,
     Line,
-    answered,
     finished,
     login_of,
 )
@@ -100,11 +99,6 @@ class Wire:
         self.check()
         return self._work.call(service, method, *arguments, within=within)
 
-    def begin(self, service: str, method: str, *arguments: Any) -> Future:
-        """A call whose end nobody waits for here."""
-        self.check()
-        return self._work.begin(service, method, *arguments)
-
     def run(
         self,
         stop: StopFlag,
@@ -118,7 +112,9 @@ class Wire:
         robot is told to end it by `ending`, since `qi` cannot take a plain call back. `meanwhile`
         is called again and again. Raises `Stopped`, `LostConnection`."""
         stop.check()
-        running = self.begin(service, method, *arguments)
+        self.check()
+        line = self._work
+        running = line.begin(service, method, *arguments)
         try:
             while not finished(running, POLL):
                 stop.check()
@@ -134,7 +130,7 @@ class Wire:
                 with suppress(RobotError):
                     self.begin_stop(*each)
             raise
-        return answered(running, f"{service}.{method}", POLL)
+        return line.answered(running, f"{service}.{method}", POLL)
 
     def listen(self, service: str, signal: str, heard: Callable[..., None]) -> None:
         """Call it whenever the robot sends that signal, in a thread of `qi`."""
@@ -225,10 +221,11 @@ class Wire:
         """Why it counts as lost, as a sentence; None while it answers."""
         until = time.monotonic() + SILENT_AFTER
         try:
-            for beat in [line.begin("ALMotion", "getRobotVelocity") for line in self._both()]:
+            beats = [(line, line.begin("ALMotion", "getRobotVelocity")) for line in self._both()]
+            for line, beat in beats:
                 if not finished(beat, until - time.monotonic()):
                     return f"Pepper has not answered for {SILENT_AFTER:g} seconds."
-                answered(beat, "ALMotion")
+                line.answered(beat, "ALMotion")
         except LostConnection:
             return CUT
         except RobotError:

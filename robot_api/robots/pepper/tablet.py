@@ -41,10 +41,13 @@ class PepperScreen(Screen):
         self._face_page = face_page
         self._touches: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._question = ""  # what its buttons begin with when they tell that they were touched
-        if face_page is not None:
-            self._load(face_page)
+
+    def begin(self) -> None:
+        """Take the tablet. Raises a `RobotError`."""
+        if self._face_page is not None:
+            self._load(self._face_page)
         else:
-            wire.listen("ALTabletService", "onJSEvent", self._touches.put)
+            self._wire.listen("ALTabletService", "onJSEvent", self._touches.put)
 
     def display(self, content: Content) -> None:
         self._hub.publish("screen", **content)

@@ -44,7 +44,9 @@ class PepperSpeech(Speech):
         return self._codes
 
     def speak(self, stop: StopFlag, text: str, language: str) -> None:
-        self._wire.call("ALTextToSpeech", "setLanguage", LANGUAGES[language], within=_SET_WITHIN)
+        name = LANGUAGES[language]
+        if self._wire.call("ALTextToSpeech", "getLanguage") != name:
+            self._wire.call("ALTextToSpeech", "setLanguage", name, within=_SET_WITHIN)
         self._hub.publish("speech", text=text, language=language)
         plain = text.translate(_MARKUP)
         if self._service == "ALAnimatedSpeech":

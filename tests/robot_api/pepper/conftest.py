@@ -27,6 +27,8 @@ from robot_api.robots.robot_file import RobotFile
 
 qi = pytest.importorskip("qi", reason="qi has no wheel for this Python")
 
+qi.logging.setLevel(qi.logging.FATAL)
+
 MAP = "/home/nao/.local/share/Explorer/ward.explo"
 PLACES = Places(
     named={
@@ -77,6 +79,9 @@ class StandIn:
     def set(self, **scene: Any) -> None:
         for name, value in scene.items():
             self._control.set(name, json.dumps(value))
+
+    def restart(self, service: str) -> None:
+        self._control.restart(service)
 
     def remove(self, service: str) -> None:
         self._control.remove(service)

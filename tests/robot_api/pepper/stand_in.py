@@ -64,6 +64,7 @@ class Robot:
         self.code = None  # what navigateToInMap returns whatever happens
         self.voices = list(scene.get("voices", []))  # recordings, one for each time it listens
         self.lost_sound = scene.get("lost_sound", False)
+        self.nonsense = scene.get("nonsense", False)
         self.angles = dict.fromkeys(JOINTS, 0.0)
         self.said: list[list[Any]] = []
         self.done: list[str] = []
@@ -114,8 +115,8 @@ class ALMotion:
     def moveIsActive(self) -> bool:
         return self._robot.body.moving
 
-    def getRobotVelocity(self) -> list[float]:
-        return list(self._robot.body.velocity)
+    def getRobotVelocity(self) -> list[Any]:
+        return ["fast"] if self._robot.nonsense else list(self._robot.body.velocity)
 
     def robotIsWakeUp(self) -> bool:
         return self._robot.awake
@@ -134,7 +135,7 @@ class ALMotion:
         return list(JOINTS)
 
     def getLimits(self, joint: str) -> list[list[float]]:
-        return [[*JOINTS[joint], 7.0, 1.0]]
+        return [] if self._robot.nonsense else [[*JOINTS[joint], 7.0, 1.0]]
 
     def angleInterpolationWithSpeed(self, joint: str, angle: float, fraction: float) -> None:
         if joint not in JOINTS:
@@ -278,8 +279,8 @@ class ALBattery:
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
 
-    def getBatteryCharge(self) -> int:
-        return self._robot.battery
+    def getBatteryCharge(self) -> Any:
+        return math.nan if self._robot.nonsense else self._robot.battery
 
 
 @qi.multiThreaded()
@@ -356,13 +357,23 @@ class StandIn:
         told = ("said", "done", "shown", "eyes", "volume", "language", "awake", "life", "angles")
         return json.dumps(
             {name: getattr(robot, name) for name in told}
-            | {"pose": robot.body.pose, "velocity": robot.body.velocity, "path": robot.body.path}
+            | {
+                "pose": robot.body.pose,
+                "velocity": robot.body.velocity,
+                "stood_at": robot.body.stood_at,
+            }
         )
 
     def set(self, name: str, value: str) -> None:
         target = self._robot.body if hasattr(self._robot.body, name) else self._robot
         setattr(target, name, json.loads(value))
         self._robot.lock_wheels()
+
+    def restart(self, service: str) -> None:
+        """As if it had crashed and been started again."""
+        self.remove(service)
+        again = ALBattery(self._robot)
+        self._services[service] = self._session.registerService(service, again)
 
     def remove(self, service: str) -> None:
         self._session.unregisterService(self._services[service])

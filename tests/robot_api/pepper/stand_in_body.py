@@ -27,7 +27,8 @@ class Body:
         """x, y, radius."""
         self.locked = False
         """The wheels are: every movement fails at once."""
-        self.path: list[tuple[float, float]] = []
+        self.stood_at = 0.0
+        """When it came to a standstill last, on the clock that all processes share."""
         self._speed = 0.0
         self._turning = 0.0
         self._heading = 0.0  # of what speed there is
@@ -104,6 +105,8 @@ class Body:
             self._speed = max(0.0, self._speed - self.braking * self.hurry * seconds)
             self._turning = 0.0 if abs(self._turning) < 0.05 else self._turning * 0.8
             self._advance(x, y, theta, seconds)
+            if self._speed == 0 and self._turning == 0:
+                self.stood_at = time.monotonic()
             return
         gx, gy, gtheta = self._goal
         speed, turn_rate, acceleration = (each * self.hurry for each in self._most)
@@ -138,5 +141,3 @@ class Body:
                 self._finish(False)
                 return
         self.pose = (nx, ny, theta + self._turning * seconds)
-        if self._speed:
-            self.path.append((nx, ny))

@@ -10,7 +10,14 @@ from typing import Any
 
 import pytest
 
-from robot_api.errors import AccessDenied, LostConnection, NotPossible, NotSupported
+from robot_api.errors import (
+    AccessDenied,
+    InternalError,
+    LostConnection,
+    NotPossible,
+    NotSupported,
+    StopNotConfirmed,
+)
 from robot_api.robots.address import parse
 from robot_api.robots.pepper import PEPPER, line
 from robot_api.robots.registry import Setup
@@ -126,9 +133,9 @@ def test_an_error_of_the_robots_own_is_a_sentence(
 ) -> None:
     pepper = standing_in()
     driver = drive(pepper)
-    pepper.set(languages=["French"])  # somebody uninstalls the others
-    with pytest.raises(NotPossible, match=r"Pepper refused .*: English is not installed\. See"):
-        call(driver, "say", text="Hello.")
+    pepper.set(languages=["English"])  # somebody uninstalls the others
+    with pytest.raises(NotPossible, match=r"Pepper refused .*: German is not installed\. See"):
+        call(driver, "say", text="Guten Tag.", language="de")
 
 
 def test_a_service_that_goes_away(
@@ -139,3 +146,30 @@ def test_a_service_that_goes_away(
     pepper.remove("ALBattery")
     with pytest.raises(NotSupported, match="has no ALBattery"):
         call(driver, "battery")
+
+
+def test_a_service_that_is_started_again_is_found_again(
+    standing_in: Callable[..., Any], drive: Callable[..., Any]
+) -> None:
+    pepper = standing_in()
+    driver = drive(pepper)
+    assert call(driver, "battery") == 87
+    pepper.restart("ALBattery")
+    with pytest.raises(NotPossible, match="ALBattery has gone away"):
+        call(driver, "battery")
+    assert call(driver, "battery") == 87
+
+
+def test_a_pepper_that_answers_with_nonsense(
+    standing_in: Callable[..., Any], drive: Callable[..., Any]
+) -> None:
+    pepper = standing_in()
+    driver = drive(pepper)
+    pepper.set(nonsense=True)
+    with pytest.raises(InternalError, match="its log has the details"):
+        call(driver, "battery")
+    with pytest.raises(StopNotConfirmed):
+        driver.stop("The nurse pressed stop.")
+    pepper.set(nonsense=False)
+    with pytest.raises(NotSupported, match="does not answer as a Pepper does"):
+        drive(standing_in(nonsense=True))

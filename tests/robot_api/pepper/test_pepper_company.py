@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 
 from robot_api.capabilities.sound import Asked, Sound
+from robot_api.checker import check_driver
 from robot_api.driver import StopFlag
 from robot_api.errors import InvalidCall, NotPossible, NotSupported, TimedOut
 from robot_api.robots.pepper import PepperSettings
@@ -307,3 +308,30 @@ def test_two_do_not_speak_at_once(
     for thread in threads:
         thread.join()
     assert sorted(pepper.texts) == ["a" * 20, "b" * 20]
+
+
+def test_it_does_what_the_method_table_promises(
+    standing_in: Callable[..., Any], drive: Callable[..., Any]
+) -> None:
+    class Ears:
+        def hear(self, stop: StopFlag, timeout: float, asked: Asked) -> str:
+            if timeout > 60:
+                stop.wait(timeout)
+                stop.check()
+            return asked.options[0] if asked.options else "yes"
+
+    pepper = standing_in(speaks=400.0)
+    driver = drive(pepper, sound=Sound(ears_at=lambda _: Ears()))
+    over = threading.Event()
+
+    def visitor() -> None:
+        while not over.wait(0.05):
+            pepper.touch("yes")
+
+    touching = threading.Thread(target=visitor)
+    touching.start()
+    try:
+        assert check_driver(driver, stop_within=driver.capabilities().stop_within) == []
+    finally:
+        over.set()
+        touching.join()
