@@ -11,6 +11,7 @@ import asyncio
 import contextlib
 import errno
 import logging
+import queue
 import signal
 import socket
 import threading
@@ -35,7 +36,14 @@ from starlette.websockets import WebSocket
 from robot_api import access, protocol
 from robot_api.dispatch import Dispatcher, Job
 from robot_api.driver import EVENTS, Driver, Event, StopFlag
-from robot_api.errors import AccessDenied, InvalidCall, RobotError, Stopped
+from robot_api.errors import (
+    AccessDenied,
+    InternalError,
+    InvalidCall,
+    RobotError,
+    StopNotConfirmed,
+    Stopped,
+)
 from robot_api.guard import OPEN_TO_ALL, Guard
 from robot_api.methods import METHODS
 from robot_api.openrpc import openrpc
@@ -48,6 +56,14 @@ MAX_WAITING: Final = 512
 PING_SECONDS: Final = 5.0
 """How often a client is asked for a sign of life, and how long it has to answer."""
 
+PATIENCE: Final = 2.0
+"""Seconds beyond those that a robot says it needs for it, after which a stop that nobody answers
+counts as not confirmed."""
+_UNCONFIRMED: Final = "stop_not_confirmed"
+_STOPS: Final = ("stopping", "stopped")
+REMEMBERED: Final = ("link", _UNCONFIRMED)
+"""Kinds of events that tell how it is from then on: the last one is sent to who subscribes later.
+A stop is not confirmed until the next one."""
 NOTICE_SIGNALS: Final = 0.1
 """Seconds after which the main thread looks up: a signal does not always wake it, for the system
 may hand it to another thread."""
@@ -158,6 +174,8 @@ class Server:
         self._pages = pages
         self._on_left = on_left or _ignore
         self._pose: Event | None = None
+        # The frames of events that tell how it is, for who subscribes later.
+        self._last: dict[str, str] = {}
         self._clients_met = 0
         self._loop: asyncio.AbstractEventLoop | None = None
         self._unsubscribe: Callable[[], None] = _nothing
@@ -200,17 +218,19 @@ class Server:
         self._started.wait()
 
     def close(self, because: str = "The robot's server was ended.") -> None:
-        """Stop the robot, leave it standing, and let every client go."""
+        """Stop the robot, leave it standing, and let every client go. Raises `StopNotConfirmed`, in
+        the end, if the robot has not said that it stands."""
         if self._thread is None:
             return
-        stopped = threading.Event()
-        self.dispatcher.stop(because, lambda result, error: stopped.set())
-        stopped.wait(2)
-        self._unsubscribe()
-        self._uvicorn.should_exit = True
-        self._thread.join(5)
-        self._thread = None
-        self.dispatcher.close()
+        try:
+            with contextlib.suppress(InternalError):  # which is in the log
+                self.stop(because)
+        finally:
+            self._unsubscribe()
+            self._uvicorn.should_exit = True
+            self._thread.join(5)
+            self._thread = None
+            self.dispatcher.close()
 
     def __enter__(self) -> Server:
         self.start()
@@ -240,11 +260,15 @@ class Server:
         name `to`, if there is one. From any thread; returns at once."""
         if kind == "pose":
             self._pose = data
+        if kind in _STOPS:
+            self._last.pop(_UNCONFIRMED, None)
         try:
             frame = protocol.event_frame(kind, data)
         except (msgspec.MsgspecError, TypeError, ValueError):
             _log.exception("an event of the kind %s cannot be sent", kind)
             return
+        if kind in REMEMBERED:
+            self._last[kind] = frame
         self.in_loop(self._send_event, kind, frame, to)
 
     def wanted(self, kind: str) -> bool:
@@ -252,14 +276,27 @@ class Server:
         return any(client.wire.wants(kind) for client in tuple(self.clients))
 
     def stop(self, because: str) -> None:
-        """Stop the robot and every call in flight. From any thread; returns at once."""
-        self.dispatcher.stop(because, _nothing_more)
+        """Stop the robot and every call in flight. From any thread but the loop's; returns when the
+        robot has confirmed that it stands. Raises `StopNotConfirmed` if it does not in time."""
+        outcome: queue.SimpleQueue[RobotError | Stopped | None] = queue.SimpleQueue()
+        self.dispatcher.stop(because, lambda result, error: outcome.put(error))
+        patience = self.driver.capabilities().stop_within + PATIENCE
+        try:
+            error = outcome.get(timeout=patience)
+        except queue.Empty:
+            error = StopNotConfirmed()
+        if error is not None:
+            raise error
 
     def in_loop(self, task: Callable[..., None], *arguments: Any) -> None:
         """Do it in the loop thread, which alone touches connections; not at all after the end."""
         if self._loop is not None:
             with contextlib.suppress(RuntimeError):  # the loop has ended
                 self._loop.call_soon_threadsafe(task, *arguments)
+
+    def last(self, kind: str) -> str | None:
+        """The frame of the last event of that kind, one of `REMEMBERED`, if it still holds."""
+        return self._last.get(kind)
 
     def _send_event(self, kind: str, frame: str, to: str | None) -> None:
         for client in self.clients:
@@ -411,6 +448,17 @@ class _Client:
             sender.cancel()
 
     def _act(self, frame: str | bytes) -> None:
+        before = self._states_wanted()
+        self._do(frame)
+        for kind in self._states_wanted() - before:  # who has just subscribed learns how it is
+            last = self._server.last(kind)
+            if last is not None:
+                self.send(last, kind)
+
+    def _states_wanted(self) -> set[str]:
+        return {kind for kind in REMEMBERED if self.wire.wants(kind)}
+
+    def _do(self, frame: str | bytes) -> None:
         for action in self.wire.receive(frame):
             match action:
                 case protocol.Send():
@@ -568,10 +616,6 @@ def _for_operators(stop: StopFlag) -> Any:
 
 def _nothing() -> None:
     pass
-
-
-def _nothing_more(result: Any, error: RobotError | Stopped | None) -> None:
-    """The dispatcher has logged what went wrong."""
 
 
 def _ignore(name: str) -> None:
