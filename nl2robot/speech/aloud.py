@@ -110,7 +110,6 @@ def aloud(
                 loudspeaker,
                 ears=ears,
                 voices=people,
-                ears_at=ears_at(world),
                 subscribe=played,
                 give_way=speaker.interrupt,
             )

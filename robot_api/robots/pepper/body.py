@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any, Final, Literal
 
+from robot_api.capabilities.base import Turns
 from robot_api.driver import StopFlag
 from robot_api.errors import NotPossible, RobotError, StopNotConfirmed
 from robot_api.robots.pepper.line import finished
@@ -19,7 +20,6 @@ STOP_WITHIN: Final = 2.0
 STOP_MOVING: Final[Ending] = ("ALMotion", "stopMove")
 STOP_LIMBS: Final[Ending] = ("ALMotion", "killAll")
 STOP_SPEAKING: Final[Ending] = ("ALTextToSpeech", "stopAll")
-_NOT_CONFIRMED: Final = "The robot has not confirmed that it stands. Use the robot's own button."
 _STANDS: Final = 0.001
 """Metres and radians a second below which it counts as standing."""
 _ASKS_EVERY: Final = 0.005
@@ -33,7 +33,8 @@ _SONARS: Final = {
 }
 _NEAR: Final = 0.6
 """Metres; what is nearer than this may be what stopped it."""
-_WAKES_WITHIN: Final = 15.0
+_SETTLES_WITHIN: Final = 15.0
+"""Seconds that lying down to rest may take."""
 
 Life = Literal["off", "keep"]
 
@@ -44,37 +45,42 @@ class Body:
     def __init__(self, wire: Wire, life: Life = "off") -> None:
         self._wire = wire
         self._life = life
+        self._taking = Turns()
+        self._taken = False
         self._life_before = "disabled"
         self._was_asleep = False
 
     # --- begin and end ---------------------------------------------------------------------------
 
-    def take(self) -> None:
-        """Take the robot: its autonomous life off, itself awake. Raises a `RobotError` and leaves
-        it as it was."""
-        try:
-            self._take()
-        except RobotError:
-            self.give_back()
-            raise
+    def take(self, stop: StopFlag) -> None:
+        """Take the robot, the first time that it is called: its autonomous life off, itself awake.
+        Until then it is left as it was found."""
+        with self._taking.mine(stop):
+            if self._taken:
+                return
+            if self._life == "off" and self._wire.has("ALAutonomousLife"):
+                state = self._life_state()
+                if state != "disabled":
+                    self._life_before = state
+                    self._wire.run(stop, "ALAutonomousLife", "setState", "disabled")
+            if not self._awake():
+                self._was_asleep = True
+                self._wake(stop)
+            self._taken = True
 
-    def _take(self) -> None:
-        if self._life == "off" and self._wire.has("ALAutonomousLife"):
-            self._life_before = self._life_state()
-            if self._life_before != "disabled":
-                self._wire.call("ALAutonomousLife", "setState", "disabled", within=_WAKES_WITHIN)
-        self._was_asleep = not self._awake()
-        if self._was_asleep:
-            self._wire.call("ALMotion", "wakeUp", within=_WAKES_WITHIN)
+    def found_again(self) -> None:
+        """It was lost, and may have been started anew meanwhile. Raises `StopNotConfirmed`."""
+        self.stand_still()
+        self._taken = False
 
     def give_back(self) -> None:
         """Leave it as it was before: asleep, or living by itself."""
         with suppress(RobotError):
             if self._life_before != "disabled":
                 # The other states of life are entered from this one, by itself.
-                self._wire.call("ALAutonomousLife", "setState", "solitary", within=_WAKES_WITHIN)
+                self._wire.call("ALAutonomousLife", "setState", "solitary", within=_SETTLES_WITHIN)
             elif self._was_asleep:
-                self._wire.call("ALMotion", "rest", within=_WAKES_WITHIN)
+                self._wire.call("ALMotion", "rest", within=_SETTLES_WITHIN)
 
     # --- before and after a movement -------------------------------------------------------------
 
@@ -93,7 +99,7 @@ class Body:
                     " Switch it off, or start my server again."
                 )
         if not self._awake():
-            self._wire.run(stop, "ALMotion", "wakeUp", ending=(STOP_LIMBS,))
+            self._wake(stop)
 
     def in_the_way(self, direction: Literal["front", "back"] | None = None) -> str:
         """Why a movement has ended early, in a sentence; looks where it was going to, if that is
@@ -120,15 +126,15 @@ class Body:
                 self._wire.begin_stop(*STOP_SPEAKING)
             for each in begun:
                 if not finished(each, until - time.monotonic()):
-                    raise StopNotConfirmed(_NOT_CONFIRMED)
+                    raise StopNotConfirmed()
             while not self._stands(until - time.monotonic()):
                 if time.monotonic() > until:
-                    raise StopNotConfirmed(_NOT_CONFIRMED)
+                    raise StopNotConfirmed()
                 time.sleep(_ASKS_EVERY)
         except StopNotConfirmed:
             raise
         except (RobotError, TypeError, ValueError):  # or it answers with nonsense
-            raise StopNotConfirmed(_NOT_CONFIRMED) from None
+            raise StopNotConfirmed() from None
 
     def _stands(self, within: float) -> bool:
         velocity: Sequence[Any] = self._wire.call_stop("ALMotion", "getRobotVelocity", within)
@@ -137,6 +143,9 @@ class Body:
         return not self._wire.call_stop("ALMotion", "moveIsActive", within)
 
     # --- what it says of itself ------------------------------------------------------------------
+
+    def _wake(self, stop: StopFlag) -> None:
+        self._wire.run(stop, "ALMotion", "wakeUp", ending=(STOP_LIMBS,))
 
     def _awake(self) -> bool:
         return bool(self._wire.call("ALMotion", "robotIsWakeUp"))

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from datetime import datetime
+from typing import Any
 
 from robot_api.capabilities.base import Capability, Hub
 from robot_api.capabilities.company import LeadingGuiding
-from robot_api.capabilities.core import LogBook
+from robot_api.capabilities.core import Core, LogBook
+from robot_api.capabilities.driving import Navigation
 from robot_api.capabilities.face import Face, ScreenFace
 from robot_api.capabilities.hearing import EarsHearing, Hearing, TabletHearing
 from robot_api.capabilities.screen import Screen
 from robot_api.capabilities.sound import Ears
 from robot_api.capabilities.speech import LoudspeakerSpeech, Speech
-from robot_api.drivers import ComposedDriver
-from robot_api.errors import NotSupported, StopNotConfirmed
+from robot_api.composed import ComposedDriver
+from robot_api.driver import StopFlag
+from robot_api.errors import NotSupported
+from robot_api.methods import METHODS
 from robot_api.robots.link import Link
 from robot_api.robots.pepper.body import Body
 from robot_api.robots.pepper.core import PepperCore
@@ -33,7 +36,7 @@ class PepperDriver(ComposedDriver):
     """See `connect`."""
 
     def __init__(self, setup: Setup, wire: Wire, settings: PepperSettings) -> None:
-        """Nothing of the robot moves until all of it has been looked at."""
+        """Reaching for the robot moves nothing of it; what is wrong is known before it moves."""
         hub = Hub()
         book = LogBook(datetime.now, hub)
         name = setup.file.name or "Pepper"
@@ -43,16 +46,20 @@ class PepperDriver(ComposedDriver):
         self._screen = next((part for part in parts if isinstance(part, PepperScreen)), None)
         link = Link(hub, name)
         super().__init__(name=name, kind="pepper", parts=parts, hub=hub, book=book, link=link)
-        self._body.take()
         if self._screen is not None:
             self._screen.begin()
-        wire.follow(link, self._body.stand_still)
+        wire.follow(link, self._body.found_again)
+
+    def _do(self, part: Capability, method: str, arguments: dict[str, Any], stop: StopFlag) -> Any:
+        """Whoever only asks leaves it as it is."""
+        if METHODS[method].moves or not isinstance(part, Core | Navigation):
+            self._body.take(stop)
+        return super()._do(part, method, arguments, stop)
 
     def close(self) -> None:
         """Stop, leave the robot as it was found, and let go of it."""
         try:
-            with suppress(StopNotConfirmed):  # the event and the log say it
-                super().close()
+            super().close()
         finally:
             if self._screen is not None:
                 self._screen.close()

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from nl2robot.cli import main
 from robot_api.errors import (
     AccessDenied,
     InternalError,
@@ -22,7 +23,7 @@ from robot_api.robots.address import parse
 from robot_api.robots.pepper import PEPPER, line
 from robot_api.robots.registry import Setup
 from robot_api.robots.robot_file import RobotFile
-from tests.robot_api.pepper.conftest import call
+from tests.robot_api.pepper.conftest import MAP, call
 
 
 def reach(address: str, password: str | None = None) -> None:
@@ -173,3 +174,57 @@ def test_a_pepper_that_answers_with_nonsense(
     pepper.set(nonsense=False)
     with pytest.raises(NotSupported, match="does not answer as a Pepper does"):
         drive(standing_in(nonsense=True))
+
+
+# --- as an engineer meets it ---------------------------------------------------------------------
+
+
+def check(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str]:
+    """`nl2robot robots check` of an address, and what it says."""
+    status = main(["robots", "check", "--still", *arguments])
+    told = capsys.readouterr()
+    return status, told.out + told.err
+
+
+def test_a_robot_file_with_a_joint_that_pepper_lacks(
+    standing_in: Callable[..., Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pepper = standing_in(life="solitary")
+    file = tmp_path / "robot.yaml"
+    file.write_text("name: Pia\njoints:\n  HeadYaw: [-20, 20]\n  Tail: [-5, 5]\n", "utf-8")
+    address = f"pepper://127.0.0.1:{pepper.port}"
+    status, told = check(capsys, address, "--robot-file", str(file))
+    assert status == 2
+    assert "robot.yaml:4" in told
+    assert "Tail" in told
+    assert (pepper.life, pepper.done) == ("solitary", ["stopMove", "killAll", "stopAll"])
+
+
+def test_a_robot_file_with_a_wrong_word(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "robot.yaml"
+    file.write_text("pepper:\n  mapp: ward.explo\n", "utf-8")
+    status, told = check(capsys, "pepper://127.0.0.1", "--robot-file", str(file))
+    assert status == 2
+    assert "robot.yaml:2" in told
+
+
+def test_nobody_at_the_address(
+    listening: socket.socket, capsys: pytest.CaptureFixture[str]
+) -> None:
+    port = listening.getsockname()[1]
+    listening.close()
+    status, told = check(capsys, f"pepper://127.0.0.1:{port}")
+    assert status == 5
+    assert "No Pepper answers" in told
+
+
+def test_a_pepper_that_is_well_is_told_so(
+    standing_in: Callable[..., Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pepper = standing_in(without=["ALAudioDevice", "ALTabletService"])  # nobody is waited for
+    file = tmp_path / "robot.yaml"
+    file.write_text(f"name: Pia\npepper: {{map: {MAP}}}\n", "utf-8")
+    address = f"pepper://127.0.0.1:{pepper.port}"
+    status, told = check(capsys, address, "--robot-file", str(file))
+    assert status == 0, told
+    assert "| Pia" in told

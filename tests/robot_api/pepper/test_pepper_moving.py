@@ -172,6 +172,7 @@ def test_somebody_switches_autonomous_life_on(
 ) -> None:
     pepper = standing_in()
     driver = drive(pepper)
+    call(driver, "say", text="Hello.")
     pepper.set(life="interactive")
     with pytest.raises(NotPossible, match="autonomous life"):
         call(driver, "move", metres=1)
@@ -183,6 +184,10 @@ def test_autonomous_life_is_off_while_it_is_driven_and_on_again_afterwards(
 ) -> None:
     pepper = standing_in(life="interactive")
     driver = drive(pepper)
+    call(driver, "battery")
+    call(driver, "location")
+    assert pepper.life == "interactive"  # who only asks moves nothing
+    call(driver, "say", text="Hello.")
     assert pepper.life == "disabled"
     assert pepper.awake  # switching life off puts it to sleep
     call(driver, "move", metres=0.2)
@@ -195,6 +200,7 @@ def test_autonomous_life_is_left_alone_where_the_robot_file_says_so(
 ) -> None:
     pepper = standing_in(life="solitary")
     driver = drive(pepper, settings=PepperSettings(autonomous_life="keep"))
+    call(driver, "say", text="Hello.")
     assert pepper.life == "solitary"
     driver.close()
     assert not any(deed.startswith("life") for deed in pepper.done)
@@ -205,6 +211,8 @@ def test_a_sleeping_pepper_is_woken_and_sleeps_again(
 ) -> None:
     pepper = standing_in(awake=False)
     driver = drive(pepper)
+    assert not pepper.awake
+    call(driver, "gesture", name="wave")
     assert pepper.awake
     pepper.set(awake=False)  # somebody has put it to rest meanwhile
     call(driver, "move", metres=0.2)
