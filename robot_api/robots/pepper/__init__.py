@@ -9,6 +9,7 @@
     wheels     driving without a map
     navigation driving on a map that Pepper has made
     tablet     its screen
+    skills     behaviours that are installed on it
     driver     all of it put together
 
 Nothing here imports `qi` until a robot is connected to.

@@ -26,6 +26,7 @@ from robot_api.robots.pepper.limbs import PepperEyes, PepperGesture, PepperJoint
 from robot_api.robots.pepper.navigation import PepperNavigation
 from robot_api.robots.pepper.session import Wire
 from robot_api.robots.pepper.settings import PepperSettings
+from robot_api.robots.pepper.skills import PepperSkills
 from robot_api.robots.pepper.tablet import PepperScreen
 from robot_api.robots.pepper.voice import PepperSpeech
 from robot_api.robots.pepper.wheels import PepperMotion
@@ -106,6 +107,8 @@ def _parts(
     ]
     if wire.has("ALAnimationPlayer"):
         parts.append(PepperGesture(wire, body, hub, file.gestures))
+    if file.skills:
+        parts.append(PepperSkills(wire, body, file.skills))
     if settings.map is not None:
         if not wire.has("ALNavigation"):
             raise NotSupported(

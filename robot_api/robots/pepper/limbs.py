@@ -102,8 +102,6 @@ class PepperJoints(Joints):
 class PepperEyes(Face):
     """Emotions as the colour of the lights in the eyes."""
 
-    stand_in = "the colour of its eyes"
-
     def __init__(self, wire: Wire, hub: Hub, named: Mapping[str, str]) -> None:
         """`named` are the robot file's colours. Raises `NotSupported` for one that is none."""
         super().__init__()

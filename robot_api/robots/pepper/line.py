@@ -37,7 +37,7 @@ _GONE: Final = re.compile(
     r"future timeout|connection (reset|closed)|broken pipe|promise broken",
     re.IGNORECASE,
 )
-_SERVICE_GONE: Final = "socket is not connected"
+_SERVICE_GONE: Final = re.compile(r"socket is not connected|service removed", re.IGNORECASE)
 """Told of a service that has ended, too, though the connection holds."""
 _SETTLES_WITHIN: Final = 0.05
 """Seconds until a connection that is being cut counts as cut."""
@@ -155,6 +155,11 @@ class Line:
             raise LostConnection(f"Pepper has not answered for {within:g} seconds. {HINT}")
         return self._begun(what, lambda: future.value(0))
 
+    def listen(self, service: str, signal: str, heard: Callable[..., None]) -> None:
+        """Call it whenever the robot sends that signal, in a thread of `qi`."""
+        found = getattr(self.service(service), signal)
+        self._begun(service, lambda: found.connect(heard))
+
     def service(self, name: str) -> Any:
         known = self._services.get(name)
         if known is None:
@@ -193,7 +198,7 @@ class Line:
             text = str(error)
         if not self.connected:  # then what is missing is told as if it had never been there
             raise LostConnection(f"{CUT} {HINT}")
-        if _SERVICE_GONE in text.lower():
+        if _SERVICE_GONE.search(text):
             time.sleep(_SETTLES_WITHIN)
             if self.connected:
                 service = what.partition(".")[0]

@@ -6,7 +6,8 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Final
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, Final
 
 from robot_api.capabilities.base import Hub
 from robot_api.capabilities.driving import Goal, Navigation
@@ -14,6 +15,7 @@ from robot_api.capabilities.names import one_of, unknown_place
 from robot_api.driver import StopFlag
 from robot_api.errors import Blocked, NotPossible, NotSupported, UnknownPlace
 from robot_api.robots.pepper.body import STOP_MOVING, Body
+from robot_api.robots.pepper.line import Line
 from robot_api.robots.pepper.session import Wire
 from robot_api.robots.registry import Places
 from robot_api.values import Location
@@ -29,6 +31,9 @@ _TELLS_EVERY: Final = 0.1
 """Seconds between two events of where it is."""
 _FASTER: Final = 0.05
 """Metres per second that a measured speed may lie above the limit."""
+Pose = tuple[float, float, float]
+"""Metres, metres, degrees."""
+
 _ARRIVED: Final = 0
 """What `navigateToInMap` returns then; every other number is a way of not arriving."""
 
@@ -45,13 +50,25 @@ class PepperNavigation(Navigation):
         self._places = places
         self._most = most
         self._keep_out = _area(places)
-        loaded = wire.call("ALNavigation", "loadExploration", file, within=_LOADS_WITHIN)
+        self._file = file
+        self._chosen = False  # the map; until then Pepper may have another
+        wire.each_time(self._find_its_way)
+
+    def _find_its_way(self, line: Line) -> None:
+        """Have the map, and be looked for on it. A robot that is reached again and knows where it
+        is keeps to that."""
+        with suppress(NotPossible):  # it was restarted, and has no map
+            told = line.call("ALNavigation", "getRobotPositionInMap") if self._chosen else None
+            if _pose_of(told) is not None:
+                return
+        loaded = line.call("ALNavigation", "loadExploration", self._file, within=_LOADS_WITHIN)
         if loaded is False:
             raise NotSupported(
-                f"Pepper has no map {file}. Let it explore the floor, save that, and write the name"
-                " that it gives the map into the robot file."
+                f"Pepper has no map {self._file}. Let it explore the floor, save that, and write"
+                " the name that it gives the map into the robot file."
             )
-        wire.call("ALNavigation", "startLocalization", within=_LOADS_WITHIN)
+        line.call("ALNavigation", "startLocalization", within=_LOADS_WITHIN)
+        self._chosen = True
 
     # --- places ----------------------------------------------------------------------------------
 
@@ -149,19 +166,15 @@ class PepperNavigation(Navigation):
 
         return watch
 
-    def _pose(self) -> tuple[float, float, float]:
-        """Metres and degrees. Raises `NotPossible` if the robot does not know."""
-        told = self._wire.call("ALNavigation", "getRobotPositionInMap")
-        try:
-            x, y, theta, *_ = (float(part) for part in told[0])
-        except (IndexError, TypeError, ValueError):
-            x = y = theta = math.nan
-        if not all(map(math.isfinite, (x, y, theta))):
+    def _pose(self) -> Pose:
+        """Raises `NotPossible` if the robot does not know."""
+        pose = _pose_of(self._wire.call("ALNavigation", "getRobotPositionInMap"))
+        if pose is None:
             raise NotPossible(
                 "I do not know where I am on my map. Bring me to a place that I know, and tell me"
                 " which it is."
             )
-        return x, y, math.degrees(theta)
+        return pose
 
     def _place_at(self, x: float, y: float) -> str | None:
         goals: Mapping[str, Goal] = {
@@ -177,6 +190,15 @@ class PepperNavigation(Navigation):
         from shapely import Point
 
         return self._keep_out is not None and bool(self._keep_out.intersects(Point(x, y)))
+
+
+def _pose_of(told: Any) -> Pose | None:
+    """What NAOqi tells of where the robot is; None if that is nowhere."""
+    try:
+        x, y, theta, *_ = (float(part) for part in told[0])
+    except (IndexError, TypeError, ValueError):
+        return None
+    return (x, y, math.degrees(theta)) if all(map(math.isfinite, (x, y, theta))) else None
 
 
 def _area(places: Places) -> BaseGeometry | None:

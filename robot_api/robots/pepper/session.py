@@ -18,12 +18,11 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from typing import Any, Final
 
 from robot_api.capabilities.base import POLL
 from robot_api.driver import StopFlag
-from robot_api.errors import LostConnection, NotSupported, RobotError
+from robot_api.errors import LostConnection, NotPossible, NotSupported, RobotError
 from robot_api.robots.address import Address
 from robot_api.robots.link import Link
 from robot_api.robots.pepper.line import (
@@ -45,17 +44,8 @@ _TRIES_EVERY: Final = 1.0
 _NEEDED: Final = ("ALMotion", "ALMemory")
 """What every Pepper has."""
 
-Ending = tuple[str, str]
-"""Service and method that end a long call; without arguments."""
-
-
-@dataclass(frozen=True)
-class _Signal:
-    """One of the robot's that is listened to, over every connection anew."""
-
-    service: str
-    name: str
-    heard: Callable[..., None]
+Ending = tuple[str, ...]
+"""What ends a long call: service, method, and its arguments."""
 
 
 class Wire:
@@ -66,7 +56,7 @@ class Wire:
         self._address = address
         self._login = login_of(address, password)
         self._driving = Driving()
-        self._signals: list[_Signal] = []
+        self._each_time: list[Callable[[Line], None]] = []
         self._link: Link | None = None
         self._stand_still: Callable[[], None] = _nothing
         self._watcher: threading.Thread | None = None
@@ -132,10 +122,11 @@ class Wire:
             raise
         return line.answered(running, f"{service}.{method}", POLL)
 
-    def listen(self, service: str, signal: str, heard: Callable[..., None]) -> None:
-        """Call it whenever the robot sends that signal, in a thread of `qi`."""
-        self._signals.append(_Signal(service, signal, heard))
-        self._connect(self._work, self._signals[-1])
+    def each_time(self, prepare: Callable[[Line], None]) -> None:
+        """Do it now, and whenever the robot is reached anew, which may have been restarted
+        meanwhile; it has to be content with what it finds then."""
+        prepare(self._work)
+        self._each_time.append(prepare)
 
     def register(self, name: str, service: object) -> int:
         """Give the robot a service of ours to call."""
@@ -147,9 +138,9 @@ class Wire:
 
     # --- stops -----------------------------------------------------------------------------------
 
-    def begin_stop(self, service: str, method: str) -> Future:
+    def begin_stop(self, service: str, method: str, *arguments: str) -> Future:
         """Over the connection of its own; also while the robot counts as lost."""
-        return self._stops.begin(service, method)
+        return self._stops.begin(service, method, *arguments)
 
     def call_stop(self, service: str, method: str, within: float) -> Any:
         return self._stops.call(service, method, within=within)
@@ -190,16 +181,11 @@ class Wire:
         except BaseException:
             work.close()
             raise
-        for signal in self._signals:
-            self._connect(work, signal)
         for line in (work, stops):
             line.when_gone(self._look.set)
         for service in self.services & {"ALMotion", "ALTextToSpeech"}:
             stops.service(service)  # a stop must not have to look for it first
         return work, stops
-
-    def _connect(self, line: Line, signal: _Signal) -> None:
-        getattr(line.service(signal.service), signal.name).connect(signal.heard)
 
     def _watch(self) -> None:
         link = self._link
@@ -236,14 +222,23 @@ class Wire:
         """Whether it can be reached again, and stands."""
         try:
             if self._silence() is not None:
-                lines = self._lines()
-                for line in self._both():
-                    line.close()
-                self._work, self._stops = lines
+                self._renew()
             self._stand_still()
         except RobotError:
             return False
         return True
+
+    def _renew(self) -> None:
+        """Both connections anew."""
+        lines = self._lines()
+        old = lines if self._closed else self._both()
+        if not self._closed:
+            self._work, self._stops = lines
+        for line in old:
+            line.close()
+        for prepare in self._each_time:
+            with suppress(NotPossible, NotSupported):
+                prepare(self._work)
 
     def _both(self) -> tuple[Line, Line]:
         return self._work, self._stops

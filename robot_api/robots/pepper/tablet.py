@@ -21,6 +21,7 @@ from robot_api.capabilities.screen import Content, Screen
 from robot_api.capabilities.speech import Speech
 from robot_api.driver import StopFlag
 from robot_api.errors import NotPossible, RobotError
+from robot_api.robots.pepper.line import Line
 from robot_api.robots.pepper.session import Wire
 
 _SHOWS_WITHIN: Final = 5.0
@@ -44,10 +45,13 @@ class PepperScreen(Screen):
 
     def begin(self) -> None:
         """Take the tablet. Raises a `RobotError`."""
+        self._wire.each_time(self._take)
+
+    def _take(self, line: Line) -> None:
         if self._face_page is not None:
-            self._load(self._face_page)
+            line.call("ALTabletService", "showWebview", self._face_page, within=_SHOWS_WITHIN)
         else:
-            self._wire.listen("ALTabletService", "onJSEvent", self._touches.put)
+            line.listen("ALTabletService", "onJSEvent", self._touches.put)
 
     def display(self, content: Content) -> None:
         self._hub.publish("screen", **content)

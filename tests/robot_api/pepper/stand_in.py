@@ -201,8 +201,21 @@ class ALAnimationPlayer:
 
 @qi.multiThreaded()
 class ALBehaviorManager:
+    def __init__(self, robot: Robot) -> None:
+        self._robot = robot
+        self._over = threading.Event()
+
     def getInstalledBehaviors(self) -> list[str]:
-        return ANIMATIONS
+        return [*ANIMATIONS, "taichi"]
+
+    def runBehavior(self, name: str) -> None:
+        self._robot.done.append(f"run {name}")
+        self._over.clear()
+        self._over.wait(60 / self._robot.body.hurry)
+
+    def stopBehavior(self, name: str) -> None:
+        self._robot.done.append(f"end {name}")
+        self._over.set()
 
 
 @qi.multiThreaded()
@@ -320,6 +333,7 @@ class ALNavigation:
 
     def loadExploration(self, file: str) -> bool:
         self._loaded = file == MAP
+        self._robot.done.append("load map")
         return self._loaded
 
     def startLocalization(self) -> None:
@@ -331,6 +345,8 @@ class ALNavigation:
         self._robot.body.pose = (pose[0], pose[1], pose[2])
 
     def getRobotPositionInMap(self) -> list[list[float]]:
+        if not self._loaded:
+            raise RuntimeError("ALNavigation::getRobotPositionInMap\n\tno map is loaded")
         if not self._robot.localised:
             return [[math.nan] * 3, [math.nan] * 3]
         return [list(self._robot.body.pose), [0.01, 0.01, 0.01]]
@@ -401,7 +417,7 @@ def main() -> None:
         ALTextToSpeech(robot),
         ALAnimatedSpeech(robot),
         ALAnimationPlayer(robot),
-        ALBehaviorManager(),
+        ALBehaviorManager(robot),
         ALAudioDevice(robot, session),
         ALTabletService(robot),
         ALLeds(robot),

@@ -112,6 +112,7 @@ def test_where_it_is_looked_for_unless_told() -> None:
     ("file", "told"),
     [
         (RobotFile(gestures={"bow": "animations/Bow"}), "gesture 'bow' is animations/Bow"),
+        (RobotFile(skills={"fly": "fly away"}), "skill 'fly' is no behaviour"),
         (RobotFile(emotions={"happy": "green"}), "emotion 'happy' is green"),
     ],
 )

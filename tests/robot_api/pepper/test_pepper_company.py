@@ -265,6 +265,21 @@ def test_joints_by_the_robots_own_names(
         call(driver, "joint", name="tail", degrees=5)
 
 
+def test_behaviours_that_are_installed_are_its_skills(
+    standing_in: Callable[..., Any], drive: Callable[..., Any]
+) -> None:
+    pepper = standing_in(hurry=0.1)
+    driver = drive(pepper, file=RobotFile(skills={"taichi": "show some tai chi"}))
+    assert driver.capabilities().skills == {"taichi": "show some tai chi"}
+    with pytest.raises(InvalidCall, match="takes nothing besides"):
+        call(driver, "do", skill="taichi", times=2)
+    doing = Call(driver, "do", skill="taichi")
+    assert until(lambda: "run taichi" in pepper.done)
+    doing.stop.set()
+    assert doing.over(1.0)
+    assert until(lambda: "end taichi" in pepper.done)
+
+
 def test_its_eyes_show_how_it_feels(
     standing_in: Callable[..., Any], drive: Callable[..., Any]
 ) -> None:

@@ -57,7 +57,9 @@ def test_switched_on_again_it_is_found_and_nothing_is_resumed(
     pepper.again()
     assert until(lambda: links.states == ["lost", "connected"])
     assert pepper.texts == []
+    assert pepper.done == ["load map", "stopMove", "killAll", "stopAll"]
     assert call(driver, "battery") == 87
+    assert call(driver, "location").place == "lobby"  # it has its map again
     call(driver, "say", text="Here I am again.")
     assert pepper.texts == ["Here I am again."]
     asking = Call(driver, "touch", options=["yes", "no"])
@@ -102,6 +104,21 @@ def test_it_is_not_found_before_it_stands(
     assert links.states == ["lost"]
     pepper.set(braking=10)
     assert until(lambda: links.states == ["lost", "connected"])
+
+
+def test_a_robot_that_knows_where_it_is_is_not_made_to_look_again(
+    standing_in: Callable[..., Any], drive: Callable[..., Any], network: Callable[..., Any]
+) -> None:
+    """Loading the map anew would lose the place that it has found on it."""
+    pepper = standing_in()
+    way = network(pepper)
+    driver = drive(way)
+    links = Links(driver)
+    way.cut()
+    assert until(lambda: links.states == ["lost"])
+    way.mend()
+    assert until(lambda: links.states == ["lost", "connected"])
+    assert pepper.done.count("load map") == 1
 
 
 def test_two_servers_do_not_drive_one_pepper(
