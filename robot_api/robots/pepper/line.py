@@ -39,6 +39,7 @@ _GONE: Final = re.compile(
 )
 _SERVICE_GONE: Final = re.compile(r"socket is not connected|service removed", re.IGNORECASE)
 """Told of a service that has ended, too, though the connection holds."""
+_CLOSES_WITHIN: Final = 1.0
 _SETTLES_WITHIN: Final = 0.05
 """Seconds until a connection that is being cut counts as cut."""
 _NO_SUCH: Final = re.compile(
@@ -185,10 +186,10 @@ class Line:
         self.answered(ending, "unregister")
 
     def close(self) -> None:
-        """Returns at once; whoever waits for an answer gets `LostConnection`."""
+        """Whoever waits for an answer gets `LostConnection`."""
         self._services.clear()
         with suppress(RuntimeError):
-            self._session.close(_async=True)
+            finished(self._session.close(_async=True), _CLOSES_WITHIN)
 
     def _begun(self, what: str, begin: Callable[[], Any]) -> Any:
         """Do that, with its errors in our words."""

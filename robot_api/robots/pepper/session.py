@@ -14,6 +14,7 @@ still at while nobody could reach it is ended, and not resumed.
 
 from __future__ import annotations
 
+import atexit
 import threading
 import time
 from collections.abc import Callable, Sequence
@@ -27,6 +28,7 @@ from robot_api.robots.address import Address
 from robot_api.robots.link import Link
 from robot_api.robots.pepper.line import (
     ANSWERS_WITHIN,
+    CONNECTS_WITHIN,
     CUT,
     Future,
     Line,
@@ -69,6 +71,8 @@ class Wire:
         """Reach the robot, and be the one who drives it. Raises `LostConnection`, `AccessDenied`,
         `NotSupported`."""
         self._work, self._stops = self._lines()
+        # Whoever forgets to close: a session that outlives Python takes it down with it.
+        atexit.register(self.close)
 
     def follow(self, link: Link, stand_still: Callable[[], None]) -> None:
         """Tell the link from now on whether the robot can be reached. `stand_still` brings it to
@@ -149,10 +153,11 @@ class Wire:
 
     def close(self) -> None:
         """Let go of the robot."""
+        atexit.unregister(self.close)
         self._closed = True
         self._look.set()
         if self._watcher is not None:
-            self._watcher.join(SILENT_AFTER + ANSWERS_WITHIN)
+            self._watcher.join(CONNECTS_WITHIN + SILENT_AFTER)
         self._work.close()
         self._stops.close()
 

@@ -68,6 +68,7 @@ class StandIn:
     def again(self) -> None:
         """Switch it on again after it was killed, where it was."""
         self.scene["url"] = f"tcp://127.0.0.1:{self.port}"
+        self._session.close()
         self.start()
 
     def __getattr__(self, name: str) -> Any:
@@ -111,6 +112,7 @@ class StandIn:
         with contextlib.suppress(ProcessLookupError):
             self.thaw()
         self.kill()
+        self._session.close()
 
 
 class Proxy:

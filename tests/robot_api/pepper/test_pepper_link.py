@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import time
 from collections.abc import Callable
 from typing import Any
@@ -140,3 +142,27 @@ def test_closed_it_says_so(standing_in: Callable[..., Any], drive: Callable[...,
     driver.close()
     with pytest.raises(LostConnection):
         call(driver, "battery")
+
+
+LEAVES = """
+import sys, threading
+from robot_api.driver import StopFlag
+from robot_api.robots.address import parse
+from robot_api.robots.pepper import PEPPER
+from robot_api.robots.registry import Setup
+
+driver = PEPPER.connect(Setup(address=parse(sys.argv[1])))
+begun = threading.Event()
+driver.subscribe(lambda kind, data: begun.set() if kind == "speech" else None)
+said = ("say", {"text": "blah " * 300}, StopFlag())
+threading.Thread(target=driver.call, args=said, daemon=True).start()
+assert begun.wait(10)
+"""
+
+
+def test_who_ends_without_letting_go_of_it_ends_well(standing_in: Callable[..., Any]) -> None:
+    """A session of `qi` that outlives Python takes it down with a segmentation fault."""
+    pepper = standing_in()
+    address = f"pepper://127.0.0.1:{pepper.port}"
+    ended = subprocess.run([sys.executable, "-c", LEAVES, address], timeout=60, check=False)
+    assert ended.returncode == 0
