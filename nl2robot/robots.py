@@ -47,6 +47,11 @@ class Chosen:
         """Whether there is a server of ours at the address."""
         return self.kind.scheme in SERVERS
 
+    @property
+    def server(self) -> str:
+        """The address of such a server, as a client takes it."""
+        return str(self.address).removeprefix("ws://")
+
 
 def chosen(address: str, robot_file: str | None = None) -> Chosen:
     """What `--robot` and `--robot-file` name. Raises `UserError` and `RobotFileError`."""
@@ -55,7 +60,7 @@ def chosen(address: str, robot_file: str | None = None) -> Chosen:
         kind = kind_of(where)
     except BadAddress as error:
         raise UserError(str(error)) from error
-    if kind.scheme not in (SIMULATED, "emulator") and not where.host:
+    if "://" in kind.example and not where.host:
         raise UserError(f"Where is the robot? Write its address as {kind.example}.")
     if robot_file is None:
         return Chosen(where, kind, without_file(kind))

@@ -28,7 +28,14 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.review import Review, digest, review
 from nl2robot.runlog import LogError, RunLog
 from robot_api.client import Robot
-from robot_api.errors import AccessDenied, NotPossible, RobotError, StopNotConfirmed, Stopped
+from robot_api.errors import (
+    AccessDenied,
+    LostConnection,
+    NotPossible,
+    RobotError,
+    StopNotConfirmed,
+    Stopped,
+)
 from sandbox.execution import Execution, Outcome
 from sim.simulation import Simulation
 from sim.world import World, builtin_worlds
@@ -94,6 +101,8 @@ class _Activity:
         self.over = threading.Event()
         self.stop_because: str | None = None
         """Set when it is to be stopped, maybe before it has begun."""
+        self.lost_because: str | None = None
+        """Set when the robot is lost meanwhile."""
 
     def status(self) -> Status:
         return Status(
@@ -135,6 +144,7 @@ class Runner:
         self._approvals: OrderedDict[str, Approval] = OrderedDict()
         self._activity: _Activity | None = None
         self._lost_since: float | None = None
+        self._lost_because = ""
 
     # --- before it runs
 
@@ -189,7 +199,10 @@ class Runner:
 
     def run(self, approval_id: str) -> int:
         """Start an approved program; returns the run's number at once. Raises `AccessDenied`
-        without an approval, `NotPossible` while another program runs."""
+        without an approval, `NotPossible` while another program runs, `LostConnection` while the
+        robot is lost."""
+        if self._lost_since is not None:
+            raise LostConnection(f"{self._lost_because} Nothing can be run before it is found.")
         with self._lock:
             approval = self._approvals.get(approval_id)
             if approval is None:
@@ -265,8 +278,16 @@ class Runner:
             self._activity.over.wait(SECONDS_TO_END + (has.stop_within if has else 0.0))
 
     def note_link(self, event: Mapping[str, Any]) -> None:
-        """The robot was lost, or found again (the data of the event `link`)."""
-        self._lost_since = event["since"] if event["state"] == "lost" else None
+        """The robot was lost, or found again (the data of the event `link`). A program that runs
+        ends with the loss, whatever it catches."""
+        lost = event["state"] == "lost"
+        self._lost_since = event["since"] if lost else None
+        self._lost_because = str(event["because"])
+        activity = self._activity
+        if lost and activity is not None and activity.outcome is None:
+            activity.lost_because = self._lost_because
+            if activity.execution is not None:
+                activity.execution.stop(self._lost_because)
 
     # --- the run itself
 
@@ -292,7 +313,7 @@ class Runner:
         try:
             with self._connect() as robot:
                 activity.robot = robot
-                activity.outcome = self._execute(activity, robot)
+                activity.outcome = _as_lost(self._execute(activity, robot), activity)
                 # A connection that is lost needs no stop: its server has stopped the robot, too.
                 if activity.outcome.status != "done" and robot.connected:
                     robot.stop()
@@ -412,6 +433,20 @@ class Runner:
             "message": activity.message,
         }
         self._publish("program", {**data, **more})
+
+
+def _as_lost(outcome: Outcome, activity: _Activity) -> Outcome:
+    """How a run ended whose robot was lost meanwhile: not by somebody's stop."""
+    if activity.lost_because is None or activity.stop_because is not None:
+        return outcome
+    if outcome.status != "stopped":
+        return outcome
+    return dataclasses.replace(
+        outcome,
+        status="failed",
+        message=activity.lost_because,
+        error=LostConnection.__name__,
+    )
 
 
 def _unconfirmed(outcome: Outcome, error: StopNotConfirmed) -> Outcome:

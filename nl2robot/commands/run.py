@@ -123,7 +123,7 @@ def _station(
                 "A robot file belongs to the server that drives the robot. Give it to"
                 " `nl2robot serve` there, and leave it out here."
             )
-        with remote_station(str(robot.address), world, log, token=options.token) as station:
+        with remote_station(robot.server, world, log, token=options.token) as station:
             yield station
         return
     with ExitStack() as stack:

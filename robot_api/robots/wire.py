@@ -40,16 +40,19 @@ class WireDriver:
         self._hub = Hub()
         self._closed = threading.Event()
         self._searching = threading.Lock()
+        self._begun = threading.Event()
+        self.link = Link(self._hub, f"The robot's server at {address}")
         self._connected = self._connect()
         try:
             has = _capabilities_at(self._connected.calls, address)
-        except LostConnection:
-            self._closed.set()
+            self._connected.listen(self._told)
+        except RobotError:
             self._connected.close()
             raise
         self._capabilities = msgspec.structs.replace(has, stop_within=has.stop_within + ON_THE_WAY)
-        self.link = Link(self._hub, f"The robot's server at {address}")
-        self._connected.listen(self._told)
+        self._begun.set()
+        if self._connected.lost:  # already
+            self._is_lost()
 
     # --- the interface of a driver ---------------------------------------------------------------
 
@@ -105,7 +108,7 @@ class WireDriver:
 
     def _is_lost(self) -> None:
         """A connection has ended, in the thread that noticed."""
-        if not self._closed.is_set():
+        if self._begun.is_set() and not self._closed.is_set():
             self.link.lost(f"The connection to the robot's server at {self._address} was lost.")
             threading.Thread(target=self._search, name="find the server", daemon=True).start()
 
@@ -117,12 +120,12 @@ class WireDriver:
             pause = FIRST_PAUSE
             while not self._closed.wait(pause):
                 try:
-                    found = self._connect()
-                    found.listen(self._told)
+                    self._connected = self._connect()
+                    self._connected.listen(self._told)
                 except RobotError:
+                    self._connected.close()
                     pause = min(2 * pause, LONGEST_PAUSE)
                     continue
-                self._connected = found
                 self.link.found()
                 return
         finally:

@@ -175,6 +175,28 @@ def test_a_robot_that_is_lost_ends_the_run(start, far, last_run) -> None:
     assert "does not answer any more" in row.message
 
 
+STUBBORN = """
+while True:
+    try:
+        robot.move(3)
+    except Exception:
+        pass
+"""
+
+
+def test_a_program_that_catches_everything_ends_with_the_loss_all_the_same(
+    start, far, last_run, tmp_path
+) -> None:
+    (tmp_path / "stubborn.py").write_text(STUBBORN)
+    program = ("--program", str(tmp_path / "stubborn.py"))
+    nurse = start("run", "--world", "ward", "--yes", *program, "--robot", "far://porter")
+    nurse.until("move(metres=3")
+    far.tell("be lost")
+    assert nurse.end() == ExitStatus.NO_ROBOT
+    assert last_run().status == "failed"
+    assert "does not answer any more" in last_run().message
+
+
 def test_a_stop_that_is_not_confirmed_is_not_called_stopped(start, far, last_run) -> None:
     far_robot = start(*ROLL)
     far_robot.until("move(metres=3")
@@ -187,6 +209,22 @@ def test_a_stop_that_is_not_confirmed_is_not_called_stopped(start, far, last_run
     assert status in (ExitStatus.INTERRUPTED, ExitStatus.NO_ROBOT)
     assert last_run().status == "failed"
     assert "not confirmed" in last_run().message
+
+
+@pytest.mark.parametrize(
+    ("language", "words", "said"),
+    [
+        ("en", "stop", "has not confirmed that it stands. Use the button on the robot itself!"),
+        ("de", "stopp", "hat nicht bestätigt, dass er steht. Benutzen Sie den Knopf am Roboter"),
+        ("fr", "stop", "n'a pas confirmé qu'il est à l'arrêt. Utilisez le bouton du robot"),
+    ],
+)
+def test_whoever_says_stop_is_told_the_truth(nl2robot, far, language, words, said) -> None:
+    status, out, err = nl2robot("run", "-y", words, "--lang", language, "--robot", "far://deaf")
+    assert status == ExitStatus.NO_ROBOT
+    assert said in " ".join(out.split())
+    assert "Stopped." not in out
+    assert "has not confirmed that it stands" in err  # nor has it when it was let go of
 
 
 @pytest.fixture
