@@ -132,6 +132,7 @@ class ComposedDriver:
         book: LogBook,
         units: str = "m",
         publish: Callable[[str, dict[str, Any]], None] | None = None,
+        link: Any = None,
     ) -> None:
         self._parts = {part.name: part for part in parts}
         core = self._parts.get(Core.name)

@@ -11,11 +11,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from robot_api.capabilities.base import Capability
+from robot_api.capabilities.base import Capability, Hub
 from robot_api.capabilities.languages import language_data
 from robot_api.capabilities.matching import match_answer, match_question
 from robot_api.capabilities.simulation import InSimulation
-from robot_api.capabilities.sound import SILENT, Asked, Sound, Unsure
+from robot_api.capabilities.sound import SILENT, Asked, Ears, Sound, Unsure
 from robot_api.capabilities.tablet import answered, patience
 from robot_api.driver import StopFlag
 from robot_api.errors import NotFound, TimedOut
@@ -274,3 +274,71 @@ class SimulatedHearing(InSimulation, Hearing):
         if heard:
             self.simulation.emit("heard", {"text": _words(heard), "person": person})
         return heard or None
+
+
+class EarsHearing(Hearing):
+    """Hears by ears that recognise words: the server's, or those that it makes of the robot's own
+    microphone. Speaks and hears one language, the speech's."""
+
+    def __init__(
+        self,
+        hub: Hub,
+        speech: Speech,
+        screen: Screen | None,
+        ears: Ears,
+        stand_in: str | None = None,
+    ) -> None:
+        super().__init__(speech, screen)
+        self._hub = hub
+        self._voice = speech
+        self._ears = ears
+        self.stand_in = stand_in
+
+    @property
+    def language(self) -> str:
+        return self._voice.language
+
+    def hear(
+        self,
+        stop: StopFlag,
+        timeout: float,
+        question: str | None = None,
+        options: Sequence[str] | None = None,
+        person: str | None = None,
+    ) -> str | Unsure | None:
+        heard = self._ears.hear(stop, timeout, Asked(self.language, question, options, person))
+        if heard:
+            self._hub.publish("heard", text=_words(heard), person=person)
+        return heard or None
+
+    def prepared(self, language: str) -> Sequence[Prepared]:
+        return ()
+
+
+class TabletHearing(Hearing):
+    """A robot that nobody can speak to: people answer on its tablet."""
+
+    stand_in = "the tablet"
+
+    def __init__(self, speech: Speech, screen: Screen) -> None:
+        super().__init__(speech, screen)
+        self._voice = speech
+
+    @property
+    def language(self) -> str:
+        return self._voice.language
+
+    def hear(
+        self,
+        stop: StopFlag,
+        timeout: float,
+        question: str | None = None,
+        options: Sequence[str] | None = None,
+        person: str | None = None,
+    ) -> str | Unsure | None:
+        """Gives people time to touch and to type, if they can."""
+        patience(stop, self.tablet, timeout)
+        return None
+
+    def prepared(self, language: str) -> Sequence[Prepared]:
+        return ()

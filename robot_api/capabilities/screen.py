@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import threading
+import time
 from abc import abstractmethod
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from robot_api.capabilities.base import Capability, Turns
+from robot_api.capabilities.base import Capability, Hub, Turns
 from robot_api.capabilities.page import Page
 from robot_api.capabilities.simulation import InSimulation
 from robot_api.capabilities.sound import Asked
@@ -25,6 +26,8 @@ Content = dict[str, Any]
 
 TOUCH_TIMEOUT = 30.0
 """Seconds that somebody has to touch one of the buttons."""
+_LOOKS_EVERY = 0.1
+"""Seconds between two looks whether a tablet has come."""
 
 
 class Screen(Capability):
@@ -33,7 +36,6 @@ class Screen(Capability):
 
     name = "screen"
     lacking = "has no screen"
-    touchable = True
 
     def __init__(self, speech: Speech | None) -> None:
         super().__init__()
@@ -42,6 +44,11 @@ class Screen(Capability):
         self._page: Page | None = None
         self._lock = threading.RLock()  # for the two above
         self._touching = Turns()
+
+    @property
+    def touchable(self) -> bool:
+        """Whether somebody can touch it now."""
+        return True
 
     @abstractmethod
     def display(self, content: Content) -> None:
@@ -181,3 +188,38 @@ class SimulatedScreen(InSimulation, Screen):
 
     def touched(self, stop: StopFlag, options: Sequence[str], timeout: float) -> str | None:
         return self.run(self.simulation.touch(options, timeout), stop)
+
+
+class TabletScreen(Screen):
+    """A robot that has no screen of its own: the tablet that is put beside it, if there is one. The
+    server's page `/face`, on whatever it is opened, is one."""
+
+    def __init__(self, hub: Hub, speech: Speech | None) -> None:
+        super().__init__(speech)
+        self._hub = hub
+
+    @property
+    def touchable(self) -> bool:
+        return self.tablet.connected
+
+    def display(self, content: Content) -> None:
+        self._hub.publish("screen", **content)
+
+    def noticed(self, answer: str) -> None:
+        self._hub.publish("heard", text=answer, person=None)
+
+    def touched(self, stop: StopFlag, options: Sequence[str], timeout: float) -> str | None:
+        """There is no tablet, or it went away: perhaps it comes."""
+        end = time.monotonic() + timeout
+        while not self.tablet.connected and (left := end - time.monotonic()) > 0:
+            stop.wait(min(_LOOKS_EVERY, left))
+            stop.check()
+        touched, _ = answered(
+            stop,
+            self.tablet,
+            Asked(self._language(), None, options),
+            lambda stop: patience(stop, self.tablet, end - time.monotonic()),
+        )
+        if touched is not None:
+            self.noticed(touched)
+        return touched

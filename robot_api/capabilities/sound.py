@@ -7,7 +7,7 @@ people answer. With them it is spoken and heard.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
@@ -58,6 +58,12 @@ class Ears(Protocol):
         ...
 
 
+Microphone = Callable[[], AbstractContextManager[Iterable[bytes]]]
+"""One of the robot's own: opens it and gives blocks of its sound for as long as it is open, 16-bit
+samples, the lower byte first, one channel, 16 kHz; an empty block while there is nothing new.
+Raises a `RobotError` when it gives none."""
+
+
 class Voices(Protocol):
     def heard(self, stop: StopFlag, person: str, words: str, asked: Asked) -> str | None:
         """The robot's ears' account of it when a person who is simulated says these words. Raises
@@ -75,6 +81,8 @@ class Sound:
     loudspeaker: Loudspeaker | None = None
     ears: Ears | None = None
     """Somebody real answers the robot."""
+    ears_at: Callable[[Microphone], Ears] | None = None
+    """Makes ears of a robot's own microphone."""
     voices: Voices | None = None
     """The simulated people answer aloud."""
     subscribe: Callable[[Listener], object] | None = None

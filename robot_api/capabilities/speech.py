@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
-from robot_api.capabilities.base import Capability, Turns
+from robot_api.capabilities.base import Capability, Hub, Turns
 from robot_api.capabilities.names import listed
 from robot_api.capabilities.simulation import InSimulation
 from robot_api.capabilities.sound import SILENT, Sound
@@ -108,3 +108,33 @@ class SimulatedSpeech(InSimulation, Speech):
     def choose_language(self, code: str) -> None:
         self.simulation.set_language(code)
         self.simulation.emit("language", {"code": code})
+
+
+class LoudspeakerSpeech(Speech):
+    """The voice of a robot that has none: the server's, on its loudspeaker, or on whatever plays
+    what is said. Without either it is written only."""
+
+    stand_in = "the server's voice"
+
+    def __init__(self, hub: Hub, sound: Sound) -> None:
+        super().__init__()
+        self._hub = hub
+        self._sound = sound
+        self._language = "en"
+        self._volume = 80
+        sound.publish_to(hub.forward)
+
+    @property
+    def language(self) -> str:
+        return self._language
+
+    def speak(self, stop: StopFlag, text: str, language: str) -> None:
+        with self._sound.speaking(stop, text, language, self._volume):
+            self._hub.publish("speech", text=text, language=language)
+
+    def set_volume(self, stop: StopFlag, percent: int) -> None:
+        self._volume = percent
+
+    def choose_language(self, code: str) -> None:
+        self._language = code
+        self._hub.publish("language", code=code)
