@@ -28,6 +28,7 @@ from robot_api.robots.ros.halting import Halting
 
 _CHARGING = 1
 """sensor_msgs/BatteryState: POWER_SUPPLY_STATUS_CHARGING."""
+_BATTERY_WITHIN = 3.0
 _JOINT_RATE = math.radians(45)
 _JOINT_WITHIN = 3.0
 """Seconds beyond its time in which a joint has to have arrived."""
@@ -41,6 +42,8 @@ class Battery:
     def __init__(self, hub: Hub) -> None:
         self._hub = hub
         self._told: tuple[int, bool] | None = None
+        self.expected = False
+        """Whether there is a topic that tells."""
 
     def hear(self, message: Mapping[str, Any]) -> None:
         """A sensor_msgs/BatteryState. Some robots give percent, some a fraction, as they should."""
@@ -82,6 +85,14 @@ class RosCore(Core):
 
     def now(self) -> datetime:
         return datetime.now()
+
+    def battery(self, stop: StopFlag) -> int:
+        """Waits for the first word of it, which comes rarely."""
+        end = time.monotonic() + _BATTERY_WITHIN
+        while self._battery.expected and self._battery.percent is None and time.monotonic() < end:
+            stop.wait(POLL)
+            stop.check()
+        return super().battery(stop)
 
     def charge(self) -> float:
         percent = self._battery.percent

@@ -129,6 +129,7 @@ class _Assembly:
             *self._body(found, speech),
         ]
         if found.battery is not None:
+            self._battery.expected = True
             self._connection.work.subscribe(*found.battery, self._battery.hear, 1.0)
         halting = Halting(
             self._actions,

@@ -50,9 +50,9 @@ class KeepOut:
 
         left, bottom, right, top = self._area.bounds
         cell = max(resolution, math.sqrt((right - left + 1) * (top - bottom + 1) / _MOST_CELLS))
-        left, bottom = left - cell, bottom - cell
-        width = math.ceil((right - left) / cell) + 1
-        height = math.ceil((top - bottom) / cell) + 1
+        left, bottom = left - 2 * cell, bottom - 2 * cell
+        width = math.ceil((right - left) / cell) + 2
+        height = math.ceil((top - bottom) / cell) + 2
         xs = left + (np.arange(width) + 0.5) * cell
         ys = bottom + (np.arange(height) + 0.5) * cell
         grid_x, grid_y = np.meshgrid(xs, ys)

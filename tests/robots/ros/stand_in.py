@@ -285,6 +285,7 @@ class StandIn:
         gone = [client for client in self._clients if spared not in client.subscribed]
         for client in gone:
             client.socket.transport.abort()
+            client.free.set()
         while any(client in self._clients for client in gone):
             await asyncio.sleep(0.01)
 
