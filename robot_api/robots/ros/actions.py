@@ -67,6 +67,7 @@ class Action(ABC):
     def __init__(self, connection: Connection, name: str, kind: str) -> None:
         self.name = name
         self._connection = connection
+        self._line = connection.line(name)
         self._kind = kind
         self._lock = threading.Lock()
         self._pursuits: dict[str, Pursuit] = {}
@@ -130,8 +131,7 @@ class Ros2Action(Action):
             text = values if isinstance(values, str) else str(field(values, "error_msg") or "")
             pursuit.end(_ROS2.get(status, REJECTED), values, text)
 
-        wire = self._connection.line(self.name).now
-        pursuit_id = wire.send_goal(
+        pursuit_id = self._line.now.send_goal(
             self.name,
             f"{package}/action/{kind}",
             goal,
@@ -143,7 +143,7 @@ class Ros2Action(Action):
     def _cancel(self, pursuit: Pursuit) -> None:
         for name, known in self._pursuits.items():
             if known is pursuit:
-                self._connection.line(self.name).now.cancel_goal(self.name, name)
+                self._line.now.cancel_goal(self.name, name)
 
 
 class _Ros1Cancelling(Cancelling):
@@ -163,7 +163,7 @@ class Ros1Action(Action):
     def __init__(self, connection: Connection, name: str, kind: str, dialect: Dialect) -> None:
         super().__init__(connection, name, kind)
         self._status: tuple[float, bool] = (0.0, True)
-        connection.line(name).advertise(f"{name}/goal", f"{kind}ActionGoal")
+        self._line.advertise(f"{name}/goal", f"{kind}ActionGoal")
         connection.halt.advertise(f"{name}/cancel", dialect.type("actionlib_msgs/GoalID"))
         halt = connection.halt
         halt.subscribe(f"{name}/status", "actionlib_msgs/GoalStatusArray", self._hear_status)
@@ -186,7 +186,7 @@ class Ros1Action(Action):
         name = f"nl2robot-{uuid.uuid4()}"
         self._pursuits = {name: pursuit}
         message = {"goal_id": {"stamp": {"secs": 0, "nsecs": 0}, "id": name}, "goal": dict(goal)}
-        self._connection.line(self.name).publish(f"{self.name}/goal", message)
+        self._line.publish(f"{self.name}/goal", message)
 
     def _cancel(self, pursuit: Pursuit) -> None:
         """`cancel_all` does it: it has not to wait for the goal in ROS 1."""

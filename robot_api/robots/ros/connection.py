@@ -108,12 +108,15 @@ class Connection:
             raise
 
     def line(self, name: str) -> Line:
-        """A further connection, of that name, for what may block one."""
-        if name not in self._more:
+        """A further connection, of that name, for what may block one. Raises as `Wire.open`."""
+        line = self._more.get(name)
+        if line is None:
             line = Line(self._where)
             line.open()
             self._more[name] = line
-        return self._more[name]
+            if self._link is not None:
+                line.now.on_end(self._broken)
+        return line
 
     def watch(self, link: Link, found: Callable[[], None], heartbeat: str | None) -> None:
         """Begin to tell `link` whether the robot is there. `found` is called when it has been found

@@ -7,6 +7,7 @@ the robot file says, nothing was sent that could move.
 from __future__ import annotations
 
 import math
+import threading
 import time
 from datetime import datetime
 from functools import partial
@@ -19,7 +20,7 @@ from robot_api.capabilities.hearing import EarsHearing, Hearing, TabletHearing
 from robot_api.capabilities.screen import Screen, TabletScreen
 from robot_api.capabilities.speech import LoudspeakerSpeech, Speech
 from robot_api.drivers import ComposedDriver
-from robot_api.errors import LostConnection, NotSupported, StopNotConfirmed
+from robot_api.errors import AccessDenied, LostConnection, NotSupported, StopNotConfirmed
 from robot_api.robots.link import Link
 from robot_api.robots.registry import Setup
 from robot_api.robots.ros.actions import Action, Ros1Action, Ros2Action
@@ -55,6 +56,8 @@ from robot_api.robots.ros.wire import Where
 _ODOMETRY_EVERY = 0.02
 _FIRST_WORD = 2.0
 """Seconds to wait for the first word of odometry and of where it is."""
+_OTHERS_WITHIN = 0.7
+"""Seconds to listen for another server's heart, which beats five times a second."""
 _MAP_WITHIN = 5.0
 _CHARGERS = ("charger", "charging station", "dock")
 """Kinds of places to charge at."""
@@ -116,6 +119,7 @@ class _Assembly:
         self._keep_out = KeepOut(setup.places.keep_out)
 
     def driver(self) -> RosDriver:
+        self._check_alone()
         found = survey(self._graph, self._dialect, self._settings)
         speech = self._speech(found)
         screen = TabletScreen(self._hub, speech)
@@ -155,6 +159,28 @@ class _Assembly:
         )
         self._watch(found, halting)
         return driver
+
+    def _check_alone(self) -> None:
+        """Raise `AccessDenied` if another server's heart is heard on the robot."""
+        topic, heard = self._heartbeat, threading.Event()
+        kind = self._graph.type_of(topic)
+        if not kind:
+            return
+        line = self._connection.work
+        line.subscribe(
+            topic, kind, lambda message: heard.set() if message.get("data") == "here" else None
+        )
+        try:
+            if heard.wait(_OTHERS_WITHIN):
+                raise AccessDenied(
+                    f"Another server drives {self._name} already. End that one first."
+                )
+        finally:
+            line.unsubscribe(topic)
+
+    @property
+    def _heartbeat(self) -> str:
+        return self._settings.topics.heartbeat or str(USUAL_TOPICS.heartbeat)
 
     # --- putting together ------------------------------------------------------------------------
 
@@ -330,7 +356,6 @@ class _Assembly:
             action = Ros1Action(self._connection, name, kind, self._dialect)
         else:
             action = Ros2Action(self._connection, name, kind)
-        self._connection.line(name)
         self._actions.append(action)
         return action
 
@@ -385,9 +410,8 @@ class _Assembly:
         return velocity.still
 
     def _watch(self, found: Found, halting: Halting) -> None:
-        topic = self._settings.topics.heartbeat or USUAL_TOPICS.heartbeat
-        assert topic is not None
-        self._connection.halt.advertise(topic, self._dialect.type("std_msgs/String"))
+        heart = self._heartbeat
+        self._connection.halt.advertise(heart, self._dialect.type("std_msgs/String"))
         mask = self._mask(found)
 
         def found_again() -> None:
@@ -398,7 +422,7 @@ class _Assembly:
             mask()
 
         mask()
-        self._connection.watch(self._link, found_again, topic)
+        self._connection.watch(self._link, found_again, heart)
 
     def _mask(self, found: Found) -> Any:
         """What gives the robot its keep-out zones, if it has a filter for them and nobody else

@@ -15,7 +15,7 @@ from robot_api.robots.robot_file import RobotFile
 from robot_api.robots.ros import ROS2
 from robot_api.robots.ros.settings import Actions, RosSettings, SpeechService, Topics
 from tests.robots.ros.stand_in import StandIn, free_port, silent_port
-from tests.robots.ros.ward import call, connected
+from tests.robots.ros.ward import Under, call, connected
 
 
 def test_where_nobody_listens_it_is_said_at_once() -> None:
@@ -117,16 +117,17 @@ def test_without_an_action_server_it_drives_but_does_not_navigate() -> None:
             call(driver, "goto", place="pharmacy")
 
 
-def test_a_second_server_does_not_take_the_goal_of_the_first() -> None:
+def test_a_second_server_is_refused_and_the_first_goes_on() -> None:
     with StandIn(speed=1.0) as robot, connected(robot) as first:
-        from tests.robots.ros.ward import Under
-
         under_way = Under(first, "goto", place="pharmacy")
         robot.until(lambda: robot.body.speed > 0.5)
+        with pytest.raises(AccessDenied, match="Another server drives"), connected(robot):
+            pass
+        assert under_way.ended() is None
+        assert len(robot.goals) == 1
+        first.close()
         with connected(robot) as second:
-            assert second.capabilities().methods == first.capabilities().methods
-            assert under_way.error is None and robot.goal is not None
-            assert under_way.ended() is None
+            assert call(second, "location").place == "pharmacy"
 
 
 def test_nothing_of_it_is_printed_to_the_terminal() -> None:
