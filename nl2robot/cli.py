@@ -30,6 +30,7 @@ COMMANDS = {
     "listen": "turn what is said, or a recording, into a program or an answer",
     "routines": "commands with a name: list, explain, learn, change, forget",
     "serve": "the robot server on one port, a simulated hospital by default",
+    "robots": "the kinds of robots there are drivers for, and a check of one robot",
     "log": "show past runs, and replay them in the simulator",
     "test": "check canned utterances against what they should do",
     "lint": "look for names in a world that cannot be said or told apart",
@@ -112,18 +113,18 @@ def _parser(given: Sequence[str]) -> argparse.ArgumentParser:
 
 def _explained(error: BaseException) -> tuple[str, ExitStatus]:
     """What an error of the layers below means to a user, and to a script."""
-    from robot_api.errors import InvalidCall, LostConnection, RobotError
+    from robot_api.errors import InvalidCall, LostConnection, RobotError, StopNotConfirmed
     from sim.errors import SimError
-    from sim.world import WorldError
+    from sim.yaml_nodes import FileProblems
 
     match error:
         case KeyboardInterrupt():
             return "\nInterrupted.", ExitStatus.INTERRUPTED
         case UserError():
             return str(error), error.status
-        case WorldError() | SimError() | InvalidCall():
+        case FileProblems() | SimError() | InvalidCall():
             return str(error), ExitStatus.BAD_INPUT
-        case LostConnection():
+        case LostConnection() | StopNotConfirmed():
             return str(error), ExitStatus.NO_ROBOT
         case RobotError():
             return str(error), ExitStatus.FAILED

@@ -103,7 +103,8 @@ def languages_of(world: World) -> list[str]:
 
 def lines_of(file: Path) -> dict[tuple[str, str], int]:
     """The line of each name and alias, by section of the file."""
-    from sim.world_yaml import MappingNode, Node, ScalarNode, SequenceNode, compose
+    from sim.world_yaml import compose
+    from sim.yaml_nodes import MappingNode, Node, ScalarNode, SequenceNode
 
     lines: dict[tuple[str, str], int] = {}
 

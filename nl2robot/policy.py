@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from nl2robot.knowledge import Knowledge
-from robot_api.driver import Capabilities
+from robot_api.limits import complaint
 from robot_api.methods import METHODS, Method
 from robot_api.schema import compiled, wrong_value
 from sandbox.check import Finding
@@ -96,8 +96,9 @@ def _complaints(
         name = arguments.get(parameter)
         if isinstance(name, str) and knowledge.world.place(name) is None:
             yield "unknown-place", _unknown("place", name, [p.name for p in knowledge.world.places])
-    if method.name == "joint" and robot is not None:
-        yield from _joint_out_of_range(arguments, robot)
+    beyond = complaint(method.name, arguments, robot) if robot is not None else None
+    if beyond is not None:
+        yield "out-of-range", beyond
 
 
 _NAMED = {
@@ -118,19 +119,6 @@ def _values_out_of_range(method: Method, arguments: dict[str, Any]) -> Iterator[
             value = arguments[parameter.name]
             if not compiled(parameter.kind.schema).is_valid(value):
                 yield "bad-value", wrong_value(method, parameter, value)
-
-
-def _joint_out_of_range(
-    arguments: dict[str, Any], robot: Capabilities
-) -> Iterator[tuple[str, str]]:
-    name, degrees = arguments.get("name"), arguments.get("degrees")
-    if name in robot.joints and isinstance(degrees, int | float):
-        low, high = robot.joints[name]
-        if not low <= degrees <= high:
-            yield (
-                "out-of-range",
-                f"The joint {name} goes from {low:g} to {high:g} degrees, not to {degrees:g}.",
-            )
 
 
 def _lower(doc: str) -> str:

@@ -24,6 +24,7 @@ from grammar.language import load_language
 from grammar.naming import naming
 from nl2robot.knowledge import Knowledge
 from nl2robot.policy import robot_calls
+from robot_api.limits import loudest
 from robot_api.methods import METHODS
 from sim.world import World, key
 from sim.zones import distance_to
@@ -143,6 +144,7 @@ class _Looking:
         yield from self.fast()
         yield from self.unknown_people()
         yield from self.endless()
+        yield from self.too_loud()
         if self.tried is not None:
             yield from self.leaves(self.tried)
             yield from self.zones_on_the_way(self.tried)
@@ -255,6 +257,15 @@ class _Looking:
                 words = key(person).split()
                 if self.world.person(person) is None and not known.intersection(words):
                     yield line, "person", "person", {"person": person}
+
+    def too_loud(self) -> _Found:
+        """What this robot will say less loudly than it is asked to."""
+        robot = self.knowledge.capabilities
+        for line, method, arguments in self.written:
+            most = loudest(method, arguments, robot) if robot is not None else None
+            if most is not None:
+                values = {"percent": str(arguments["percent"]), "most": str(most)}
+                yield line, "volume", "too_loud", values
 
     def loud(self, tried: Tried) -> _Found:
         """Setting the volume high at night; else the first words that are spoken loudly then."""

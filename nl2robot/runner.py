@@ -11,6 +11,7 @@ An approval is bound to the hash of exactly one program and is used up by one ru
 
 from __future__ import annotations
 
+import dataclasses
 import logging
 import secrets
 import threading
@@ -27,7 +28,14 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.review import Review, digest, review
 from nl2robot.runlog import LogError, RunLog
 from robot_api.client import Robot
-from robot_api.errors import AccessDenied, NotPossible, RobotError, Stopped
+from robot_api.errors import (
+    AccessDenied,
+    LostConnection,
+    NotPossible,
+    RobotError,
+    StopNotConfirmed,
+    Stopped,
+)
 from sandbox.execution import Execution, Outcome
 from sim.simulation import Simulation
 from sim.world import World, builtin_worlds
@@ -37,7 +45,7 @@ _log = logging.getLogger("nl2robot.runner")
 State = Literal["running", "paused", "done", "failed", "stopped", "limit"]
 
 SECONDS_TO_END = 3.0
-"""How long a stopped run may take to be over."""
+"""How long a stopped run may take to be over, beside what the robot takes to stand."""
 BREAK_OFF_EVERY = 0.02
 """Seconds between two attempts to break off a robot call of a program that was stopped."""
 APPROVALS_KEPT = 100
@@ -72,6 +80,8 @@ class Status(msgspec.Struct, frozen=True, kw_only=True):
     program: str
     sha256: str
     calls: int
+    robot_lost_since: float | None = None
+    """Seconds since the epoch; None while the robot can be reached."""
 
 
 class _Activity:
@@ -91,6 +101,8 @@ class _Activity:
         self.over = threading.Event()
         self.stop_because: str | None = None
         """Set when it is to be stopped, maybe before it has begun."""
+        self.lost_because: str | None = None
+        """Set when the robot is lost meanwhile."""
 
     def status(self) -> Status:
         return Status(
@@ -131,6 +143,8 @@ class Runner:
         self._lock = threading.Lock()
         self._approvals: OrderedDict[str, Approval] = OrderedDict()
         self._activity: _Activity | None = None
+        self._lost_since: float | None = None
+        self._lost_because = ""
 
     # --- before it runs
 
@@ -185,7 +199,10 @@ class Runner:
 
     def run(self, approval_id: str) -> int:
         """Start an approved program; returns the run's number at once. Raises `AccessDenied`
-        without an approval, `NotPossible` while another program runs."""
+        without an approval, `NotPossible` while another program runs, `LostConnection` while the
+        robot is lost."""
+        if self._lost_since is not None:
+            raise LostConnection(f"{self._lost_because} Nothing can be run before it is found.")
         with self._lock:
             approval = self._approvals.get(approval_id)
             if approval is None:
@@ -212,7 +229,10 @@ class Runner:
 
     def state(self) -> Status | None:
         """How the present or last run stands; None if there was none since the server started."""
-        return self._activity.status() if self._activity else None
+        if self._activity is None:
+            return None
+        status = self._activity.status()
+        return msgspec.structs.replace(status, robot_lost_since=self._lost_since)
 
     def last(self) -> Record | None:
         """The present run or the last one of the log, with what became of its calls."""
@@ -254,7 +274,20 @@ class Runner:
         """Stop the program that runs, if any, and wait until that is logged."""
         self.stop("nl2robot was closed.")
         if self._activity is not None:
-            self._activity.over.wait(SECONDS_TO_END)
+            has = self.knowledge.capabilities
+            self._activity.over.wait(SECONDS_TO_END + (has.stop_within if has else 0.0))
+
+    def note_link(self, event: Mapping[str, Any]) -> None:
+        """The robot was lost, or found again (the data of the event `link`). A program that runs
+        ends with the loss, whatever it catches."""
+        lost = event["state"] == "lost"
+        self._lost_since = event["since"] if lost else None
+        self._lost_because = str(event["because"])
+        activity = self._activity
+        if lost and activity is not None and activity.outcome is None:
+            activity.lost_because = self._lost_because
+            if activity.execution is not None:
+                activity.execution.stop(self._lost_because)
 
     # --- the run itself
 
@@ -280,11 +313,13 @@ class Runner:
         try:
             with self._connect() as robot:
                 activity.robot = robot
-                activity.outcome = self._execute(activity, robot)
+                activity.outcome = _as_lost(self._execute(activity, robot), activity)
                 # A connection that is lost needs no stop: its server has stopped the robot, too.
                 if activity.outcome.status != "done" and robot.connected:
                     robot.stop()
         except RobotError as error:  # the robot cannot be reached
+            if activity.outcome is not None and isinstance(error, StopNotConfirmed):
+                activity.outcome = _unconfirmed(activity.outcome, error)
             if activity.outcome is None:
                 activity.outcome = Outcome("failed", str(error), error=type(error).__name__)
         except Exception:  # noqa: BLE001 - told as a fault of this software
@@ -398,6 +433,29 @@ class Runner:
             "message": activity.message,
         }
         self._publish("program", {**data, **more})
+
+
+def _as_lost(outcome: Outcome, activity: _Activity) -> Outcome:
+    """How a run ended whose robot was lost meanwhile: not by somebody's stop."""
+    if activity.lost_because is None or activity.stop_because is not None:
+        return outcome
+    if outcome.status != "stopped":
+        return outcome
+    return dataclasses.replace(
+        outcome,
+        status="failed",
+        message=activity.lost_because,
+        error=LostConnection.__name__,
+    )
+
+
+def _unconfirmed(outcome: Outcome, error: StopNotConfirmed) -> Outcome:
+    """How a run ended whose robot has not said that it stands: not "stopped"."""
+    if outcome.status == "stopped":
+        return dataclasses.replace(
+            outcome, status="failed", message=str(error), error=type(error).__name__
+        )
+    return dataclasses.replace(outcome, message=f"{outcome.message} {error}")
 
 
 def _break_off(activity: _Activity) -> None:

@@ -26,7 +26,7 @@ from robot_api.server import Context, Service
 
 LONGEST_PROGRAM = 65_536
 SECONDS_TO_END = 2.0
-"""How long a stopped run may take to be over."""
+"""How long a stopped run may take to be over, beside what the robot takes to stand."""
 
 _STRING = {"type": "string", "maxLength": MAX_TEXT}
 _MAYBE = {"type": ["string", "null"], "maxLength": 4 * LONGEST_PROGRAM}
@@ -83,9 +83,11 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
         status = runner.wait(p["run"], 0)
         began = time.monotonic()
         enough = began + p.get("timeout", math.inf)
+        has = runner.knowledge.capabilities
+        to_end = SECONDS_TO_END + (has.stop_within if has else 0.0)
         while status.state in ("running", "paused") and time.monotonic() < enough:
             if stop.is_set():
-                enough = min(enough, time.monotonic() + SECONDS_TO_END)
+                enough = min(enough, time.monotonic() + to_end)
             status = runner.wait(p["run"], 0.05)
         return status
 

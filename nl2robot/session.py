@@ -7,6 +7,7 @@ This is the main path as the operator meets it; its stations are, in order, `Ope
 
 from __future__ import annotations
 
+import contextlib
 import secrets
 import threading
 from collections.abc import Callable, Mapping
@@ -19,7 +20,7 @@ from nl2robot.runner import Approval, Status
 from nl2robot.terminal import Decision, Terminal
 from nl2robot.translation import Translation
 from nl2robot.waiting import GivenUp
-from robot_api.errors import LostConnection, Stopped
+from robot_api.errors import InvalidCall, LostConnection, StopNotConfirmed, Stopped
 from sandbox.limits import MAX_PROGRAM
 
 T = TypeVar("T")
@@ -61,7 +62,10 @@ class Session:
         self._watching = threading.Event()
         """While a run of this session goes on; others may use the same robot in between."""
         self._told_end = threading.Event()
+        self._lost = False
         operator.watch(self._show, "program")
+        with contextlib.suppress(InvalidCall):  # a server that tells nothing of it
+            operator.watch(self._show_link, "link")
         terminal.accompany(operator)
 
     def perform(self, utterance: str, heard: str | None = None) -> ExitStatus:
@@ -76,7 +80,8 @@ class Session:
             self._show_answer(translation)
             return ExitStatus.OK if translation.status == "ok" else ExitStatus.NOT_UNDERSTOOD
         if translation.program == STOP:  # nobody need approve that the robot stands still
-            self.operator.stop()
+            if not self._stop():
+                return ExitStatus.NO_ROBOT
             self.terminal.show_end("stopped", None)
             return ExitStatus.OK
         return self.perform_program(translation.program, translation, heard)
@@ -178,7 +183,7 @@ class Session:
         self.terminal.show_end(status.state, status.message)
         if interrupted:
             return ExitStatus.INTERRUPTED
-        if status.error == LostConnection.__name__:
+        if status.error in (LostConnection.__name__, StopNotConfirmed.__name__):
             return ExitStatus.NO_ROBOT
         return ExitStatus.OK if status.state == "done" else ExitStatus.FAILED
 
@@ -189,10 +194,25 @@ class Session:
             run = self.last_run = self.operator.run(approval)
             return self._wait(run), False
         except KeyboardInterrupt:
-            self.operator.stop()
+            self._stop()
             if run is None:
                 raise
             return self.operator.wait(run), True
+
+    def _stop(self) -> bool:
+        """Stop the robot; says so, and returns False, if it does not confirm that it stands."""
+        try:
+            self.operator.stop()
+        except StopNotConfirmed:
+            self.terminal.show_unconfirmed()
+            return False
+        return True
+
+    def _show_link(self, kind: str, data: Mapping[str, Any]) -> None:
+        lost = data["state"] == "lost"
+        if lost != self._lost:  # who comes later is told how it is
+            self._lost = lost
+            self.terminal.show_link(data)
 
     def _wait(self, run: int) -> Status:
         """Wait for the end of a run, with an open ear where somebody may type meanwhile."""
@@ -233,7 +253,7 @@ class Session:
 
         heard = self.operator.translate(line, self.language, RULES)
         if heard.program == STOP:
-            self.operator.stop()
+            self._stop()
         elif heard.request is not None and heard.request.kind in ABOUT_RUNS:
             self.terminal.show_message(heard)
         else:

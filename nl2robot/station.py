@@ -10,12 +10,12 @@ import errno
 import math
 import os
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from nl2robot.console.part import Backstage
+from nl2robot.console.part import STOP, Backstage
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.routines import open_routines
@@ -24,14 +24,16 @@ from nl2robot.runner import Runner
 from nl2robot.services import EVENTS, services
 from nl2robot.talks import Talks
 from nl2robot.voice_services import Microphones
-from robot_api.capabilities.sound import SILENT
+from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.client import Robot
 from robot_api.driver import Driver, Event
 from robot_api.errors import AccessDenied, RobotError
+from robot_api.robots.opening import hold
+from robot_api.robots.reading import Read
 from robot_api.server import CannotListen, Server
 from sim.record import Record
 from sim.simulation import Simulation
-from sim.world import World
+from sim.world import World, Zone
 
 if TYPE_CHECKING:
     from nl2robot.console.app import Console
@@ -135,19 +137,23 @@ def simulated_station(
     pictures: Path | None = None,
     sound: SoundFor | None = None,
     console: Callable[[Backstage], Console] | None = None,
+    read: Read | None = None,
 ) -> Iterator[SimulatedStation]:
     """Open a station with a simulated robot.
 
     `speed`: simulated seconds per second; None: as fast as the machine allows, whenever somebody
     waits for the robot. `pictures`: a folder in which a picture of every run is kept. `sound`: how
     it is heard (see `nl2robot.speech.aloud`); without it, it is only written what is said.
-    `console`: makes the web console, `nl2robot.console.app.Console`; once in a process.
+    `console`: makes the web console, `nl2robot.console.app.Console`; once in a process. `read`: the
+    robot file that it keeps to.
     """
     from robot_api.drivers import simulated
 
     simulation = Simulation(world, seed=seed, speed=speed)
     heard = sound(lambda: simulation.time) if sound else SILENT
     driver = simulated(simulation, heard)
+    if read is not None:
+        hold(driver, read)
 
     def on_program(data: Mapping[str, Any]) -> None:
         if data["what"] != "state":
@@ -196,13 +202,10 @@ def _keep_picture(station: SimulatedStation, log: RunLog, run: int, file: Path) 
 def remote_station(
     address: str, world: World, log: RunLog, *, token: str | None = None
 ) -> Iterator[Station]:
-    """The station at an address. A robot server that runs no programs gets a runner here; dry runs
-    then are simulated in `world`."""
-    from robot_api.remote import RemoteDriver
+    """The station at the address of a server. A robot server that runs no programs gets a runner
+    here; dry runs then are simulated in `world`."""
+    from robot_api.robots.wire import WireDriver
 
-    address = address.removeprefix("ws://").rstrip("/")
-    if not address:
-        raise UserError("The robot's address is missing. Write it as ws://HOST:9090.")
     try:
         robot = Robot(address, token=token)
     except AccessDenied as error:
@@ -217,9 +220,46 @@ def remote_station(
                 f"There is a server at {address}, but it is no robot's. Check the address.",
                 ExitStatus.NO_ROBOT,
             )
-        driver = RemoteDriver(robot)
-        with _open(driver, world, log, lambda: Simulation(world), lambda data: None) as server:
-            yield Station(server.address, server.token)
+    with robot_station(WireDriver(address, token), world, log) as (station, _):
+        yield station
+
+
+@contextmanager
+def robot_station(
+    driver: Driver,
+    world: World,
+    log: RunLog,
+    *,
+    zones: Sequence[Zone] = (),
+    sound: Sound = SILENT,
+    host: str = "127.0.0.1",
+    port: int = 0,
+    token: str | None = None,
+    console: Callable[[Backstage], Console] | None = None,
+) -> Iterator[tuple[Station, Server]]:
+    """A station with a robot that is not simulated. Its places are those of `world`, in which dry
+    runs are simulated, with these keep-out zones. `sound` is what the driver speaks and hears
+    with, if it does so on this machine."""
+
+    def stage() -> Simulation:
+        simulation = Simulation(world)
+        if zones:
+            simulation.set_zones(tuple(zones))
+        return simulation
+
+    with _open(
+        driver,
+        world,
+        log,
+        stage,
+        lambda data: None,
+        give_way=sound.give_way,
+        host=host,
+        port=port,
+        token=token,
+        console=console,
+    ) as server:
+        yield Station(server.address, server.token), server
 
 
 def _methods_of(robot: Robot) -> set[str]:
@@ -280,13 +320,16 @@ def _open(
         wanted=lambda kind: server.wanted(kind),
         stop=lambda because: server.stop(because),
     )
-    added = console(backstage) if console else None
 
     def on_event(kind: str, data: Event) -> None:
-        if kind == "stopped":
-            microphones.give_up()
+        if kind == STOP:
             runner.stop(str(data.get("because", "The robot was stopped.")))
-        backstage.tell(kind, data)
+            microphones.give_up()
+        elif kind == "link":
+            runner.note_link(data)
+
+    backstage.subscribe(on_event)
+    added = console(backstage) if console else None
 
     def on_left(connection: str) -> None:
         microphones.give_up(connection)
@@ -303,7 +346,7 @@ def _open(
         pages=added.pages() if added else None,
         on_left=on_left,
     )
-    unsubscribe = driver.subscribe(on_event)
+    unsubscribe = driver.subscribe(backstage.tell)
     try:
         with server:
             try:

@@ -12,6 +12,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator, Mapping, Sequence
+from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -247,6 +248,19 @@ class Terminal:
                 self.console.print(f"     [green]→ {_plain(_short(data['result']))}[/]")
         elif kind == "program" and data["what"] == "print":
             self.console.print(f"     {_plain(data['text'].rstrip())}")
+
+    def show_unconfirmed(self) -> None:
+        """The robot was told to stop and has not said that it stands."""
+        self.console.print(f"[bold red]{_plain(self.words['unconfirmed'])}[/]")
+
+    def show_link(self, data: Mapping[str, Any]) -> None:
+        """The robot was lost, or found again."""
+        if data["state"] == "lost":
+            time = datetime.fromtimestamp(data["since"])
+            told = self.words["robot_lost"].format(time=f"{time:%H:%M}", because=data["because"])
+            self.console.print(f"[bold red]{_plain(told.rstrip())}[/]")
+        else:
+            self.console.print(_plain(self.words["robot_found"]))
 
     def show_end(self, state: str, message: str | None) -> None:
         style = {"done": "green", "stopped": "yellow"}.get(state, "red")

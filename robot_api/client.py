@@ -20,7 +20,7 @@ import queue
 import socket
 import threading
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Final
 
 import msgspec
@@ -28,7 +28,7 @@ import websocket
 
 from robot_api import protocol
 from robot_api.calls import Calls
-from robot_api.driver import Capabilities
+from robot_api.driver import Capabilities, StopFlag
 from robot_api.errors import AccessDenied, InternalError, InvalidCall, LostConnection, RobotError
 from robot_api.methods import METHODS
 from robot_api.schema import bind, read_result
@@ -67,6 +67,7 @@ class Robot(Calls):
 
     A connection that is lost between calls is made again by the next call. A call that is in flight
     when it is lost raises LostConnection and is never repeated: the robot may have done it.
+    `on_lost` is told, in a thread of its own, when a connection has ended.
     """
 
     def __init__(
@@ -75,8 +76,10 @@ class Robot(Calls):
         *,
         token: str | None = None,
         timeout: float = 10.0,
+        on_lost: Callable[[], None] | None = None,
     ) -> None:
         self.address = address
+        self._on_lost = on_lost
         self._url = websocket_url(address)
         self._token = token
         self._timeout = timeout
@@ -93,10 +96,34 @@ class Robot(Calls):
 
     # --- calls
 
-    def request(self, method: str, params: protocol.Params = None) -> Any:
+    def request(
+        self, method: str, params: protocol.Params = None, stop: StopFlag | None = None
+    ) -> Any:
         """Call any method of the server, such as `program.run`, and return its result as JSON
-        data."""
-        return self._connected().call(next(self._ids), method, params)
+        data. `stop` breaks off this call alone, which then raises `Stopped`."""
+        return self._connected().call(next(self._ids), method, params, stop)
+
+    def perform(
+        self, method: str, arguments: Mapping[str, Any], stop: StopFlag | None = None
+    ) -> Any:
+        """Do a method of the table by its name; as `request`, with a result of the method's kind:
+        plain data, a `Location` or a `Clock`."""
+        defaults = _DEFAULTS[method]
+        # What is left out stays left out: an older server may not know it.
+        params = {
+            name: value
+            for name, value in arguments.items()
+            if name not in defaults or value != defaults[name]
+        }
+        for name, value in params.items():
+            # JSON has no word for these, and would say nothing instead.
+            if isinstance(value, float) and not math.isfinite(value):
+                raise InvalidCall(f"{name} of {method} must be a number; got {value}.")
+        result = self.request(f"robot.{method}", params, stop)
+        try:
+            return read_result(METHODS[method], result)
+        except msgspec.ValidationError:
+            raise InternalError(f"The robot's answer to {method} makes no sense.") from None
 
     def capabilities(self) -> Capabilities:
         """What this robot can do."""
@@ -108,23 +135,7 @@ class Robot(Calls):
         self._link.cancel_all()
 
     def _call(self, method: str, /, *arguments: Any, **named: Any) -> Any:
-        given = bind(method, arguments, named) if arguments else named
-        defaults = _DEFAULTS[method]
-        # What is left out stays left out: an older server may not know it.
-        params = {
-            name: value
-            for name, value in given.items()
-            if name not in defaults or value != defaults[name]
-        }
-        for name, value in params.items():
-            # JSON has no word for these, and would say nothing instead.
-            if isinstance(value, float) and not math.isfinite(value):
-                raise InvalidCall(f"{name} of {method} must be a number; got {value}.")
-        result = self.request(f"robot.{method}", params)
-        try:
-            return read_result(METHODS[method], result)
-        except msgspec.ValidationError:
-            raise InternalError(f"The robot's answer to {method} makes no sense.") from None
+        return self.perform(method, bind(method, arguments, named) if arguments else named)
 
     # --- events
 
@@ -133,26 +144,34 @@ class Robot(Calls):
         it. Listeners are called one after the other in a thread of their own, and may call the
         robot. They are subscribed again when a lost connection has been made again."""
         wanted = frozenset([kinds] if isinstance(kinds, str) else kinds)
-        self.request(protocol.SUBSCRIBE, {"events": sorted(wanted)})
         entry = (wanted, listener)
         with self._lock:
             if not self._listeners:
                 self._start_thread("robot events", self._hand_out_events)
-            self._listeners.append(entry)
+            self._listeners.append(entry)  # what comes right behind the answer is for them, too
+        try:
+            self.request(protocol.SUBSCRIBE, {"events": sorted(wanted)})
+        except BaseException:
+            self._forget(entry)
+            raise
 
         def unsubscribe() -> None:
-            with self._lock:
-                if entry not in self._listeners:
-                    return
-                self._listeners.remove(entry)
-                unwanted = wanted.difference(*(kinds for kinds, _ in self._listeners))
-                if not self._listeners:
-                    self._events.put(None)
+            unwanted = self._forget(entry)
             if unwanted and not self._link.lost.is_set():
                 with contextlib.suppress(LostConnection):  # nothing comes from there any more
                     self.request(protocol.UNSUBSCRIBE, {"events": sorted(unwanted)})
 
         return unsubscribe
+
+    def _forget(self, entry: tuple[frozenset[str], Listener]) -> frozenset[str]:
+        """Let a listener go; returns the kinds of events that nobody listens to any more."""
+        with self._lock:
+            if entry not in self._listeners:
+                return frozenset()
+            self._listeners.remove(entry)
+            if not self._listeners:
+                self._events.put(None)
+            return entry[0].difference(*(kinds for kinds, _ in self._listeners))
 
     def _hand_out_events(self) -> None:
         while (event := self._events.get()) is not None:
@@ -226,7 +245,9 @@ class Robot(Calls):
 
     def _link_lost(self) -> None:
         """Those who listen make no calls that would connect again."""
-        if self._listeners and not self._closed.is_set():
+        if self._on_lost is not None:
+            self._on_lost()  # who then sees to it
+        elif self._listeners and not self._closed.is_set():
             self._start_thread("robot reconnect", self._connect_for_listeners)
 
     def _connect_for_listeners(self) -> None:
@@ -276,7 +297,9 @@ class _Link:
         self._lock = threading.Lock()
         self._pending: dict[protocol.Id, _Pending] = {}
 
-    def call(self, id: int, method: str, params: protocol.Params) -> Any:
+    def call(
+        self, id: int, method: str, params: protocol.Params, stop: StopFlag | None = None
+    ) -> Any:
         """Send the request and wait for its reply."""
         frame = protocol.request(id, method, params)
         pending = _Pending()
@@ -286,6 +309,8 @@ class _Link:
                     raise _connection_was_lost()
                 self._pending[id] = pending
             self._send(frame)
+        if stop is not None:
+            stop.on_set(lambda: self._send(_cancel(id)))
         try:
             return pending.wait()
         except KeyboardInterrupt:

@@ -13,13 +13,16 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 from robot_api.driver import Driver, StopFlag
-from robot_api.errors import InternalError, RobotError, Stopped
+from robot_api.errors import InternalError, RobotError, StopNotConfirmed, Stopped
 
 MAX_ROBOT_CALLS: Final = 64
 """Most robot calls that run at the same time; more of them wait."""
 MAX_SERVICE_CALLS: Final = 32
 """The same for services, which have threads of their own: a service that calls the robot would
 otherwise wait for itself."""
+
+MAX_STOPS: Final = 64
+"""Most stops that wait for the robot's confirmation at the same time."""
 
 _log = logging.getLogger("robot_api.server")
 
@@ -63,8 +66,9 @@ class Dispatcher:
         self._jobs: set[Job] = set()
         self._robot_workers = Workers("robot call", MAX_ROBOT_CALLS)
         self._service_workers = Workers("service", MAX_SERVICE_CALLS)
-        # Stops have a thread of their own, so that they wait for nothing.
-        self._stopper = Workers("stop", 1)
+        # Stops have threads of their own, so that they wait for nothing, and not for each other:
+        # one whose robot does not confirm it must not hold up the next.
+        self._stopper = Workers("stop", MAX_STOPS)
 
     @property
     def in_flight(self) -> int:
@@ -83,7 +87,8 @@ class Dispatcher:
         self._stopper.do(lambda: _set_all([job], because))
 
     def stop(self, because: str, done: Done) -> None:
-        """Stop every job in flight, then the body; `done` when the driver has stopped it."""
+        """Stop every job in flight, then the body; `done` when the robot has confirmed that it
+        stands, or has not in time."""
         with self._lock:
             jobs = list(self._jobs)
         self._stopper.do(lambda: self._stop(jobs, because, done))
@@ -137,6 +142,8 @@ class Dispatcher:
         try:
             _set_all(jobs, because)
             self._driver.stop(because)
+        except StopNotConfirmed as unconfirmed:
+            error = unconfirmed
         except BaseException:  # noqa: BLE001 - whatever a driver raises must be answered
             _log.exception("the driver failed to stop")
             error = InternalError("The robot's software has a fault: it may not have stopped.")

@@ -73,6 +73,12 @@ class StopNotConfirmed(RobotError):
 
     code = -32011
 
+    def __init__(
+        self,
+        message: str = "The robot has not confirmed that it stands. Use the robot's own button.",
+    ) -> None:
+        super().__init__(message)
+
 
 class InternalError(RobotError):
     code = -32603  # JSON-RPC "internal error"

@@ -274,7 +274,7 @@ METHODS: Final[dict[str, Method]] = {
             paper=3,
             moves=True,
         ),
-        _method("stop", "Stop everything at once.", needs=CORE),
+        _method("stop", "Stop everything at once.", needs=CORE, errors=("StopNotConfirmed",)),
         _method(
             "wait",
             "Wait for a while.",

@@ -110,7 +110,11 @@ def _methods_of_every_server() -> Iterable[dict[str, Any]]:
         {"type": "boolean"},
     )
     yield _method(
-        protocol.SUBSCRIBE, 'Receive these events from now on ("*" is every event).', which, names
+        protocol.SUBSCRIBE,
+        'Receive these events from now on ("*" is every event). Of "link" and "stop_not_confirmed"'
+        " the last one is sent at once, if it still holds.",
+        which,
+        names,
     )
     yield _method(protocol.UNSUBSCRIBE, "Receive these events no more.", which, names)
 

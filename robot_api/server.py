@@ -1,6 +1,6 @@
 """A robot's server: the wire and the web pages on one port.
 
-The path of a call: a frame comes in (`_Client.serve`), the protocol reads it (`protocol`), a worker
+The path of a call: a frame comes in (`Client.serve`), the protocol reads it (`protocol`), a worker
 thread does it (`dispatch`), and the reply goes out through the client's own queue. The loop thread
 never waits for a robot, so that a stop is heard at once, whatever else goes on.
 """
@@ -9,13 +9,10 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import errno
 import logging
-import signal
-import socket
+import queue
 import threading
-from collections import deque
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final, Protocol
 
@@ -33,24 +30,36 @@ from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
 from robot_api import access, protocol
+from robot_api.connections import REMEMBERED, UNCONFIRMED, Client
 from robot_api.dispatch import Dispatcher, Job
 from robot_api.driver import EVENTS, Driver, Event, StopFlag
-from robot_api.errors import AccessDenied, InvalidCall, RobotError, Stopped
+from robot_api.errors import (
+    AccessDenied,
+    InternalError,
+    InvalidCall,
+    RobotError,
+    StopNotConfirmed,
+    Stopped,
+)
 from robot_api.guard import OPEN_TO_ALL, Guard
 from robot_api.methods import METHODS
 from robot_api.openrpc import openrpc
+from robot_api.port import CannotListen as CannotListen
+from robot_api.port import listen, on_signals
 from robot_api.schema import read_arguments
 from robot_api.status import HEADERS, Status, status_page
 
 DEFAULT_PORT: Final = 9090
-MAX_WAITING: Final = 512
-"""Most frames that wait for a slow client; older events are dropped first, poses before others."""
 PING_SECONDS: Final = 5.0
 """How often a client is asked for a sign of life, and how long it has to answer."""
 
+PATIENCE: Final = 2.0
+"""Seconds beyond those that a robot says it needs for it, after which a stop that nobody answers
+counts as not confirmed."""
 NOTICE_SIGNALS: Final = 0.1
 """Seconds after which the main thread looks up: a signal does not always wake it, for the system
 may hand it to another thread."""
+_STOPS: Final = ("stopping", "stopped")
 
 _log = logging.getLogger("robot_api.server")
 # It says so, partly with a traceback, of every stranger who is refused or talks nonsense, and of
@@ -65,11 +74,6 @@ def _is_news(record: logging.LogRecord) -> bool:
 
 
 logging.getLogger("uvicorn.error").addFilter(_is_news)
-
-
-class CannotListen(Exception):
-    """The server cannot be reached at the address it was to have: the port is in use, or it is no
-    address of this machine."""
 
 
 class Publish(Protocol):
@@ -150,7 +154,7 @@ class Server:
         self.services = dict(services or {})
         self.events = {**EVENTS, **(events or {})}
         self.dispatcher = Dispatcher(driver)
-        self.clients: set[_Client] = set()
+        self.clients: set[Client] = set()
         self.methods = self._readers()
         self._host = host
         self._port = port
@@ -158,6 +162,8 @@ class Server:
         self._pages = pages
         self._on_left = on_left or _ignore
         self._pose: Event | None = None
+        # The frames of events that tell how it is, for who subscribes later.
+        self._last: dict[str, str] = {}
         self._clients_met = 0
         self._loop: asyncio.AbstractEventLoop | None = None
         self._unsubscribe: Callable[[], None] = _nothing
@@ -190,7 +196,7 @@ class Server:
         """Begin to serve, in a thread of its own, if it does not yet. Raises CannotListen."""
         if self._thread is not None:
             return
-        listening = _listen(self._host, self._port)
+        listening = listen(self._host, self._port)
         self._port = listening.getsockname()[1]
         self._unsubscribe = self.driver.subscribe(self.publish)
         self._thread = threading.Thread(
@@ -200,17 +206,19 @@ class Server:
         self._started.wait()
 
     def close(self, because: str = "The robot's server was ended.") -> None:
-        """Stop the robot, leave it standing, and let every client go."""
+        """Stop the robot, leave it standing, and let every client go. Raises `StopNotConfirmed`, in
+        the end, if the robot has not said that it stands."""
         if self._thread is None:
             return
-        stopped = threading.Event()
-        self.dispatcher.stop(because, lambda result, error: stopped.set())
-        stopped.wait(2)
-        self._unsubscribe()
-        self._uvicorn.should_exit = True
-        self._thread.join(5)
-        self._thread = None
-        self.dispatcher.close()
+        try:
+            with contextlib.suppress(InternalError):  # which is in the log
+                self.stop(because)
+        finally:
+            self._unsubscribe()
+            self._uvicorn.should_exit = True
+            self._thread.join(5)
+            self._thread = None
+            self.dispatcher.close()
 
     def __enter__(self) -> Server:
         self.start()
@@ -225,7 +233,7 @@ class Server:
         `started` is called once the server can be reached; for the line that says where.
         """
         ended = threading.Event()
-        with _on_signals(ended.set):
+        with on_signals(ended.set):
             self.start()
             try:
                 if started:
@@ -240,11 +248,15 @@ class Server:
         name `to`, if there is one. From any thread; returns at once."""
         if kind == "pose":
             self._pose = data
+        if kind in _STOPS:
+            self._last.pop(UNCONFIRMED, None)
         try:
             frame = protocol.event_frame(kind, data)
         except (msgspec.MsgspecError, TypeError, ValueError):
             _log.exception("an event of the kind %s cannot be sent", kind)
             return
+        if kind in REMEMBERED:
+            self._last[kind] = frame
         self.in_loop(self._send_event, kind, frame, to)
 
     def wanted(self, kind: str) -> bool:
@@ -252,14 +264,27 @@ class Server:
         return any(client.wire.wants(kind) for client in tuple(self.clients))
 
     def stop(self, because: str) -> None:
-        """Stop the robot and every call in flight. From any thread; returns at once."""
-        self.dispatcher.stop(because, _nothing_more)
+        """Stop the robot and every call in flight. From any thread but the loop's; returns when the
+        robot has confirmed that it stands. Raises `StopNotConfirmed` if it does not in time."""
+        outcome: queue.SimpleQueue[RobotError | Stopped | None] = queue.SimpleQueue()
+        self.dispatcher.stop(because, lambda result, error: outcome.put(error))
+        patience = self.driver.capabilities().stop_within + PATIENCE
+        try:
+            error = outcome.get(timeout=patience)
+        except queue.Empty:
+            error = StopNotConfirmed()
+        if error is not None:
+            raise error
 
     def in_loop(self, task: Callable[..., None], *arguments: Any) -> None:
         """Do it in the loop thread, which alone touches connections; not at all after the end."""
         if self._loop is not None:
             with contextlib.suppress(RuntimeError):  # the loop has ended
                 self._loop.call_soon_threadsafe(task, *arguments)
+
+    def last(self, kind: str) -> str | None:
+        """The frame of the last event of that kind, one of `REMEMBERED`, if it still holds."""
+        return self._last.get(kind)
 
     def _send_event(self, kind: str, frame: str, to: str | None) -> None:
         for client in self.clients:
@@ -283,7 +308,7 @@ class Server:
             readers[name] = _service_reader(name, service.params)
         return readers
 
-    def job(self, client: _Client, call: protocol.Call) -> Job:
+    def job(self, client: Client, call: protocol.Call) -> Job:
         """The job that does a call."""
 
         def done(result: Any, error: RobotError | Stopped | None) -> None:
@@ -309,7 +334,7 @@ class Server:
 
         return Job(call.method, run, done, client, robot=True, moves=method.moves)
 
-    def _service(self, client: _Client, call: protocol.Call) -> Callable[[StopFlag], Any]:
+    def _service(self, client: Client, call: protocol.Call) -> Callable[[StopFlag], Any]:
         if call.method == "robot.capabilities":
             return lambda stop: self.driver.capabilities()
         if call.method == "rpc.discover":
@@ -370,7 +395,7 @@ class Server:
 
     async def _serve_client(self, socket: WebSocket) -> None:
         self._clients_met += 1
-        client = _Client(self, f"{self._clients_met}", socket.scope["state"]["role"])
+        client = Client(self, f"{self._clients_met}", socket.scope["state"]["role"])
         self.clients.add(client)
         try:
             await client.serve(socket)
@@ -378,101 +403,6 @@ class Server:
             self.clients.discard(client)
             self.dispatcher.drop(client)
             self._on_left(client.name)
-
-
-class _Client:
-    """One connection. Only the loop thread touches it."""
-
-    def __init__(self, server: Server, name: str, role: access.Role) -> None:
-        self.name = name
-        self.role = role
-        self.wire = protocol.Connection(server.methods, server.events)
-        self._server = server
-        # The job of each call in flight, for a cancel.
-        self._jobs: dict[protocol.Call, Job] = {}
-        # Frames to send, each with the kind of event it is, None for a reply.
-        self._waiting: deque[tuple[str | None, str]] = deque()
-        self._something_waits = asyncio.Event()
-        # The client does not read its replies; it is not served any more.
-        self._overrun = False
-
-    async def serve(self, socket: WebSocket) -> None:
-        await socket.accept()
-        sender = asyncio.create_task(self._send_waiting(socket))
-        try:
-            while not self._overrun:
-                message = await socket.receive()
-                if message["type"] != "websocket.receive":
-                    return
-                frame = message.get("text")
-                self._act(message["bytes"] if frame is None else frame)
-            # Not closed with a goodbye, which would wait to be read like all the rest.
-        finally:
-            sender.cancel()
-
-    def _act(self, frame: str | bytes) -> None:
-        for action in self.wire.receive(frame):
-            match action:
-                case protocol.Send():
-                    self.send(action.frame)
-                case protocol.Cancel():
-                    job = self._jobs.get(action.call)  # a stop is none: it cannot be cancelled
-                    if job is not None:
-                        self._server.dispatcher.cancel(job)
-                case protocol.Call(method=protocol.STOP):
-                    self._stop(action)
-                case protocol.Call():
-                    job = self._jobs[action] = self._server.job(self, action)
-                    self._server.dispatcher.start(job)
-
-    def _stop(self, call: protocol.Call) -> None:
-        because = "The robot was stopped."
-
-        def done(result: Any, error: RobotError | Stopped | None) -> None:
-            reply = (
-                protocol.error_reply(call, error) if error else protocol.result_reply(call, None)
-            )
-            self._server.in_loop(self.finish, call, reply)
-
-        self._server.dispatcher.stop(because, done)
-
-    def finish(self, call: protocol.Call, reply: str) -> None:
-        self._jobs.pop(call, None)
-        frame = self.wire.finish(call, reply)
-        if frame is not None:
-            self.send(frame)
-
-    def send(self, frame: str, event: str | None = None) -> None:
-        """Put a frame into the queue; the client gets it when it can take it."""
-        if len(self._waiting) >= MAX_WAITING:
-            self._make_room()
-        self._waiting.append((event, frame))
-        self._something_waits.set()
-
-    def _make_room(self) -> None:
-        kinds = [kind for kind, _ in self._waiting]
-        dropped = next(
-            (
-                index
-                for wanted in (lambda kind: kind == "pose", lambda kind: kind is not None)
-                for index, kind in enumerate(kinds)
-                if wanted(kind)
-            ),
-            None,
-        )
-        if dropped is None:
-            self._overrun = True
-            dropped = 0
-        del self._waiting[dropped]
-
-    async def _send_waiting(self, socket: WebSocket) -> None:
-        """Send what waits, at the client's pace."""
-        while True:
-            await self._something_waits.wait()
-            self._something_waits.clear()
-            while self._waiting:
-                _, frame = self._waiting.popleft()
-                await socket.send_text(frame)
 
 
 def _robot_reader(name: str) -> protocol.Reader:
@@ -510,56 +440,6 @@ def _in_words(pose: Event | None) -> str:
     return f"{pose.get('place') or 'on its way'} ({pose.get('x', 0):.1f}, {pose.get('y', 0):.1f})"
 
 
-def _listen(host: str, port: int) -> socket.socket:
-    """A listening socket. Raises CannotListen with what to do about it."""
-    try:
-        family, kind, number, _, where = socket.getaddrinfo(
-            host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
-        )[0]
-        listening = socket.socket(family, kind, number)
-    except OSError:
-        what = f"{host} is" if host else "An empty text is"
-        raise CannotListen(f"{what} no address of this machine. Try 127.0.0.1.") from None
-    try:
-        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        listening.bind(where)
-        listening.listen(128)
-    except OSError as error:
-        listening.close()
-        match error.errno:
-            case errno.EADDRINUSE:
-                sentence = f"Port {port} is in use by another program. "
-                sentence += "End that program, or choose another port with --port."
-            case errno.EACCES:
-                sentence = f"Port {port} may not be used. Choose one above 1023 with --port."
-            case _:
-                sentence = f"{host} is no address of this machine. Try 127.0.0.1."
-        raise CannotListen(sentence) from None
-    return listening
-
-
-@contextlib.contextmanager
-def _on_signals(react: Callable[[], None]) -> Iterator[None]:
-    """React to the first Ctrl-C or SIGTERM; a second one ends the process as usual."""
-    numbers = (signal.SIGINT, signal.SIGTERM)
-    before = {number: signal.getsignal(number) for number in numbers}
-
-    def restore() -> None:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-
-    def first(number: int, frame: object) -> None:
-        restore()
-        react()
-
-    for number in numbers:
-        signal.signal(number, first)
-    try:
-        yield
-    finally:
-        restore()
-
-
 def _for_operators(stop: StopFlag) -> Any:
     raise AccessDenied(
         "Observers look on: they cannot do this. Ask for the operator's link, if you should."
@@ -568,10 +448,6 @@ def _for_operators(stop: StopFlag) -> Any:
 
 def _nothing() -> None:
     pass
-
-
-def _nothing_more(result: Any, error: RobotError | Stopped | None) -> None:
-    """The dispatcher has logged what went wrong."""
 
 
 def _ignore(name: str) -> None:

@@ -11,10 +11,14 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 import msgspec
+
+from sim.yaml_nodes import FileProblems
+from sim.yaml_nodes import Problem as Problem
+from sim.yaml_nodes import key as key
 
 Point = tuple[float, float]
 """x, y in metres."""
@@ -30,30 +34,8 @@ WITHIN_REACH = 1.0
 """A place without an area is where its pose is and this many metres around."""
 
 
-class Problem(msgspec.Struct, frozen=True):
-    """One thing that is wrong with a world's file."""
-
-    line: int | None
-    """Counted from 1; None if it is about the file as a whole."""
-    message: str
-
-
-class WorldError(Exception):
-    """A world cannot be loaded; `problems` holds all that is wrong with it, in order of lines."""
-
-    def __init__(self, file: str, problems: Iterable[Problem]) -> None:
-        self.file = file
-        self.problems = tuple(sorted(problems, key=lambda problem: problem.line or 0))
-        super().__init__(file, self.problems)
-
-    def __str__(self) -> str:
-        """One line for each problem: "ward.yaml:12: what is wrong; what to do"."""
-        return "\n".join(
-            f"{self.file}:{problem.line}: {problem.message}"
-            if problem.line
-            else f"{self.file}: {problem.message}"
-            for problem in self.problems
-        )
+class WorldError(FileProblems):
+    """A world cannot be loaded."""
 
 
 class Pose(msgspec.Struct, frozen=True):
@@ -340,12 +322,6 @@ class World(msgspec.Struct, frozen=True, kw_only=True, dict=True):
 
 
 # --- names and shapes ----------------------------------------------------------------------------
-
-
-def key(name: str) -> str:
-    """What two spellings of a name have in common: case, spaces and kind of apostrophe do not
-    count."""
-    return " ".join(name.replace("’", "'").casefold().split())
 
 
 def contains(polygon: Polygon, x: float, y: float) -> bool:

@@ -24,7 +24,8 @@ from sim.world import (
     Zone,
     key,
 )
-from sim.world_yaml import NodeReader, did_you_mean
+from sim.world_yaml import NodeReader
+from sim.yaml_nodes import did_you_mean
 
 ON_THE_LINE = 0.02
 """How far in metres a door's ends may be off the wall it opens."""

@@ -17,16 +17,8 @@ from typing import Any, ClassVar, TypeVar
 from sim import world as w
 from sim.world import Place, Point, Segment, World, WorldError
 from sim.world_checks import Entries, check_zones, cut_doors, kind_of, settle
-from sim.world_yaml import (
-    MAX_TEXT,
-    Hopeless,
-    MappingNode,
-    Node,
-    NodeReader,
-    ScalarNode,
-    compose,
-    short,
-)
+from sim.world_yaml import MAX_TEXT, NodeReader, compose
+from sim.yaml_nodes import Hopeless, MappingNode, Node, ScalarNode, short
 from sim.zones import trouble_with
 
 MAX_WALLS = 20_000

@@ -49,8 +49,12 @@ def test_a_package_imports_only_what_it_may_know(package) -> None:
 
 
 def test_only_the_simulated_side_of_robot_api_knows_the_simulator() -> None:
+    """How a file is read, everybody may know."""
     for file in sorted((ROOT / "robot_api").rglob("*.py")):
-        if any(module.split(".")[0] == "sim" for module in imports_of(file)):
+        if any(
+            module.split(".")[0] == "sim" and not module.startswith("sim.yaml_nodes")
+            for module in imports_of(file)
+        ):
             place = file.relative_to(ROOT / "robot_api")
             assert place.parts[0] == "capabilities" or place.name == "drivers.py", place
 
@@ -66,3 +70,24 @@ def test_translate_starts_without_the_heavy_libraries() -> None:
         [sys.executable, "-c", program], capture_output=True, text=True, check=True
     )
     assert "HEAVY []" in done.stdout, done.stdout
+
+
+def test_kinds_of_robots_are_known_without_what_they_need() -> None:
+    """Whoever lists them, or names one that is another, waits for no robot's library."""
+    drivers = {"roslibpy", "twisted", "qi", "furhat_realtime_api"}
+    program = (
+        "import sys\n"
+        "from robot_api.robots.registry import known\n"
+        "known()\n"
+        f"print('HEAVY', sorted(set(sys.modules) & {(HEAVY | drivers) - {'jsonschema'}!r}))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    assert "HEAVY []" in done.stdout, done.stdout
+
+
+def test_yaml_nodes_know_nobody() -> None:
+    assert not any(
+        module.split(".")[0] in OURS for module in imports_of(ROOT / "sim" / "yaml_nodes.py")
+    )

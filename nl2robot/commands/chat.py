@@ -13,9 +13,16 @@ from typing import TYPE_CHECKING
 import yaml
 
 from nl2robot import planners
-from nl2robot.commands.options import add_language, add_planner, add_robot, add_sound
+from nl2robot.commands.options import (
+    add_language,
+    add_planner,
+    add_robot,
+    add_sound,
+    robot_of,
+)
 from nl2robot.commands.run import open_session
 from nl2robot.errors import ExitStatus
+from nl2robot.robots import Chosen
 from nl2robot.session import Session
 from nl2robot.terminal import Terminal
 from robot_api.errors import LostConnection, RobotError
@@ -45,13 +52,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     with contextlib.suppress(ImportError):
         import readline  # noqa: F401  (arrow keys and history in input())
-    duplex = _duplex(options)
+    robot = robot_of(options)
+    duplex = _duplex(options, robot)
     with (
         _terminal(options, duplex) as terminal,
-        open_session(options, terminal=terminal, duplex=duplex) as (session, _),
+        open_session(options, robot, terminal=terminal, duplex=duplex) as (session, _),
     ):
         session.listens = session.terminal.somebody_is_there
-        if options.robot == "sim" and options.planner != "grammar":
+        if not robot.is_server and options.planner != "grammar":
             planners.get_ready()
         session.terminal.console.print(session.terminal.words["greeting"], markup=False)
         while (line := session.next_line() or _next_line(session)) is not None:
@@ -64,9 +72,9 @@ def run(options: argparse.Namespace) -> int:
     return ExitStatus.OK
 
 
-def _duplex(options: argparse.Namespace) -> FullDuplex | None:
+def _duplex(options: argparse.Namespace, robot: Chosen) -> FullDuplex | None:
     """Where the robot's loudspeaker and the microphone are both here."""
-    if not (options.voice is True and options.speak is True and options.robot == "sim"):
+    if not (options.voice is True and options.speak is True and not robot.is_server):
         return None
     from nl2robot.speech.full_duplex import full_duplex
 

@@ -16,6 +16,7 @@ from nl2robot.knowledge import DEFAULT_WORLD
 from nl2robot.paths import data_folder
 
 if TYPE_CHECKING:
+    from nl2robot.robots import Chosen
     from nl2robot.runlog import RunLog
     from nl2robot.speech.aloud import SoundFor
     from nl2robot.speech.full_duplex import FullDuplex
@@ -89,13 +90,43 @@ def add_seed(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_robot(parser: argparse.ArgumentParser) -> None:
+def add_address(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--robot",
         default="sim",
-        metavar="sim|ws://HOST:PORT",
-        help="a simulated robot of its own, or a robot server (default: sim)",
+        metavar="ADDRESS",
+        help="sim, ws://HOST:PORT (a robot server), ros2://HOST ...; `nl2robot robots` lists them"
+        " (default: sim)",
     )
+    add_robot_file(parser)
+
+
+def robot_of(options: argparse.Namespace) -> Chosen:
+    """The robot that `add_address` lets people name. What its file says of who speaks and hears is
+    asked of this machine as if it were an option. Raises `UserError`, `RobotFileError`."""
+    from nl2robot.robots import chosen
+
+    robot = chosen(options.robot, options.robot_file)
+    if not robot.is_server:
+        if not options.speak:
+            options.speak = {"server": True, "tablet": "browser"}.get(robot.read.file.speech or "")
+        if not options.mic and robot.read.file.hearing == "server":
+            options.mic = True
+    if options.voices and not robot.simulated:
+        raise UserError("Only a simulated robot has people to hear. Leave --voices out.")
+    return robot
+
+
+def add_robot_file(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--robot-file",
+        metavar="FILE",
+        help="what an engineer wrote down of the robot: limits, joints, names (docs/robots.md)",
+    )
+
+
+def add_robot(parser: argparse.ArgumentParser) -> None:
+    add_address(parser)
     parser.add_argument("--token", help="the token that the robot server printed at its start")
     parser.add_argument(
         "--speed",
@@ -117,7 +148,7 @@ def add_sound(parser: argparse.ArgumentParser, *, browsers: bool = False) -> Non
         default=False,
         type=_page_or_file if browsers else _sound_file,
         metavar="browser|FILE.wav" if browsers else "FILE.wav",
-        help=f"the simulated robot speaks: on the loudspeaker, {where}",
+        help=f"the robot speaks from here: on the loudspeaker, {where}",
     )
     parser.add_argument(
         "--voices",

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,7 @@ from nl2robot.commands.options import (
     add_robot,
     add_sound,
     open_log,
+    robot_of,
     sound_of,
     user_name,
     words,
@@ -22,9 +24,17 @@ from nl2robot.commands.options import (
 from nl2robot.errors import UserError
 from nl2robot.operator import Operator
 from nl2robot.paths import pictures_folder
+from nl2robot.robots import Chosen, reached, zones_of
 from nl2robot.session import Session
-from nl2robot.station import Station, check_picture, remote_station, simulated_station
+from nl2robot.station import (
+    Station,
+    check_picture,
+    remote_station,
+    robot_station,
+    simulated_station,
+)
 from nl2robot.terminal import Terminal
+from robot_api.capabilities.sound import SILENT
 
 if TYPE_CHECKING:
     from nl2robot.runlog import RunLog
@@ -50,13 +60,14 @@ def run(options: argparse.Namespace) -> int:
         raise UserError('Say what to do: nl2robot run "go to the pharmacy", or --program FILE.')
     program = _read(options.program) if options.program is not None else None
     picture = Path(options.picture) if options.picture is not None else None
+    robot = robot_of(options)
     if picture is not None:
-        if options.robot != "sim":
+        if not robot.simulated:
             raise UserError(
                 "Only a robot simulated here can be drawn. Leave --picture or --robot out."
             )
         check_picture(picture)
-    with open_session(options, approve_all=options.yes) as (session, station):
+    with open_session(options, robot, approve_all=options.yes) as (session, station):
         if program is None:
             status = session.perform(options.words)
         else:
@@ -70,19 +81,20 @@ def run(options: argparse.Namespace) -> int:
 @contextmanager
 def open_session(
     options: argparse.Namespace,
+    robot: Chosen,
     *,
     approve_all: bool = False,
     terminal: Terminal | None = None,
     duplex: FullDuplex | None = None,
 ) -> Iterator[tuple[Session, Station]]:
-    """Open the robot that the options name and sit down at the terminal. `duplex` is what its
+    """Open the robot that was chosen and sit down at the terminal. `duplex` is what its
     loudspeaker has in common with the terminal's microphone."""
     log = open_log(options.debug)
     world = world_of(options)
-    with _station(options, world, log, duplex) as station, station.connect() as robot:
+    with _station(options, robot, world, log, duplex) as station, station.connect() as client:
         yield (
             Session(
-                Operator(robot, user_name()),
+                Operator(client, user_name()),
                 terminal or Terminal(language=options.lang),
                 language=options.lang,
                 planner=options.planner,
@@ -94,31 +106,50 @@ def open_session(
 
 @contextmanager
 def _station(
-    options: argparse.Namespace, world: World, log: RunLog, duplex: FullDuplex | None
+    options: argparse.Namespace,
+    robot: Chosen,
+    world: World,
+    log: RunLog,
+    duplex: FullDuplex | None,
 ) -> Iterator[Station]:
-    heard = options.speak or options.voices or options.mic
-    if options.robot != "sim":
-        if heard:
+    if robot.is_server:
+        if options.speak or options.voices or options.mic:
             raise UserError(
-                "Only a robot simulated here can be heard."
+                "A robot at a server is heard there."
                 " Leave --robot out, or --speak, --voices and --mic."
             )
-        with remote_station(options.robot, world, log, token=options.token) as station:
+        if robot.has_file:
+            raise UserError(
+                "A robot file belongs to the server that drives the robot. Give it to"
+                " `nl2robot serve` there, and leave it out here."
+            )
+        with remote_station(robot.server, world, log, token=options.token) as station:
             yield station
         return
-    with (
-        sound_of(options, world, options.lang, duplex) as sound,
-        simulated_station(
-            world,
-            log,
-            seed=options.seed,
-            speed=options.speed,
-            pictures=pictures_folder(),
-            sound=sound,
-        ) as simulated,
-    ):
-        simulated.simulation.set_language(options.lang)  # who is spoken to in German answers so
-        yield simulated
+    with ExitStack() as stack:
+        sound = stack.enter_context(sound_of(options, world, options.lang, duplex))
+        if robot.simulated:
+            simulated = stack.enter_context(
+                simulated_station(
+                    world,
+                    log,
+                    seed=options.seed,
+                    speed=options.speed,
+                    pictures=pictures_folder(),
+                    sound=sound,
+                    read=robot.read,
+                )
+            )
+            # Who is spoken to in German answers so.
+            simulated.simulation.set_language(options.lang)
+            yield simulated
+            return
+        here = sound(time.monotonic) if sound else SILENT
+        driver = stack.enter_context(reached(robot, world, here))
+        zones = zones_of(world)
+        real = robot_station(driver, world, log, zones=zones, sound=here)
+        station, _ = stack.enter_context(real)
+        yield station
 
 
 def _read(file: str) -> str:

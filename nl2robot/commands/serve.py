@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import argparse
 import socket
+import time
 import webbrowser
+from contextlib import ExitStack
 
 from nl2robot import planners
 from nl2robot.commands.options import (
+    add_address,
     add_seed,
     add_sound,
     add_world,
     open_log,
+    robot_of,
     sound_of,
     speed,
     whole,
@@ -19,7 +23,9 @@ from nl2robot.commands.options import (
 )
 from nl2robot.errors import ExitStatus
 from nl2robot.paths import pictures_folder
-from nl2robot.station import simulated_station
+from nl2robot.robots import reached, zones_of
+from nl2robot.station import robot_station, simulated_station
+from robot_api.capabilities.sound import SILENT
 from robot_api.server import Server
 
 
@@ -36,6 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--speed", type=speed, default=1.0, metavar="X", help="simulated seconds a second"
     )
+    add_address(parser)
     add_world(parser)
     add_seed(parser)
     add_sound(parser, browsers=True)
@@ -44,24 +51,42 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     from nl2robot.console.app import Console
 
+    robot = robot_of(options)
     world, log = world_of(options), open_log(options.debug)
-    with (
-        sound_of(options, world, "en") as sound,
-        simulated_station(
-            world,
-            log,
-            seed=options.seed,
-            speed=options.speed,
-            host=options.host,
-            port=options.port,
-            token=options.token,
-            pictures=pictures_folder(),
-            sound=sound,
-            console=Console,
-        ) as station,
-    ):
+    with ExitStack() as stack:
+        sound = stack.enter_context(sound_of(options, world, "en"))
+        if robot.simulated:
+            simulated = simulated_station(
+                world,
+                log,
+                seed=options.seed,
+                speed=options.speed,
+                host=options.host,
+                port=options.port,
+                token=options.token,
+                pictures=pictures_folder(),
+                sound=sound,
+                console=Console,
+                read=robot.read,
+            )
+            server = stack.enter_context(simulated).server
+        else:
+            here = sound(time.monotonic) if sound else SILENT
+            driver = stack.enter_context(reached(robot, world, here))
+            station = robot_station(
+                driver,
+                world,
+                log,
+                zones=zones_of(world),
+                sound=here,
+                host=options.host,
+                port=options.port,
+                token=options.token,
+                console=Console,
+            )
+            _, server = stack.enter_context(station)
         planners.get_ready()
-        station.server.serve_forever(_open_page if options.open else _say_where)
+        server.serve_forever(_open_page if options.open else _say_where)
     return ExitStatus.OK
 
 

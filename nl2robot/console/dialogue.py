@@ -132,8 +132,11 @@ class Dialogue:
             if translation is None:
                 self._drop(thought, language)
                 return
-            with self._turn:
-                self._take(translation, None, language, who, harmless)
+            if translation.program != STOP:
+                with self._turn:
+                    self._take(translation, None, language, who, harmless)
+                return
+        self._stop(language)
 
     def _understood(self, thought: Thought, language: str) -> Translation | None:
         """What was made of a sentence; None if it was dropped, and then it is as if nobody had
@@ -168,6 +171,9 @@ class Dialogue:
         else:
             self.cancel(language)
             self._tell(Line("you", words))
+        if translation.program == STOP:
+            self._stop(language)
+            return
         with self._turn:
             self._take(translation, words, language, who, harmless)
 
@@ -231,11 +237,7 @@ class Dialogue:
         self, translation: Translation, heard: str | None, language: str, who: str, harmless: bool
     ) -> None:
         request = translation.request
-        if translation.program == STOP:  # nobody need approve that the robot stands still
-            self._backstage.stop(_said("stopped", language))
-            self.draft = None
-            self._tell(Line("robot", _said("stopped", language), "done"))
-        elif translation.program is not None:
+        if translation.program is not None:
             self._tell(Line("robot", translation.explanation))
             self._review(Draft(translation.program, translation, heard), language)
             self._let_through(language, who, harmless)
@@ -250,6 +252,19 @@ class Dialogue:
             if tone == "trouble" and not near:
                 near = (_said("what_can_i_say", language),)
             self._tell(Line("robot", text, tone, near))
+
+    def _stop(self, language: str) -> None:
+        """Nobody need approve that the robot stands still. Whoever says it again is not kept
+        waiting until the robot has confirmed the first."""
+        self.draft = None
+        self._changed()
+        try:
+            self._backstage.stop(_said("told_to_stop", language))
+        except RobotError as error:
+            why = told(type(error).__name__, str(error), language)
+            self._tell(Line("robot", why, "trouble"))
+        else:
+            self._tell(Line("robot", _said("stopped", language), "done"))
 
     def topics(self, language: str) -> dict[str, list[str]]:
         """What can be said here, by topic."""

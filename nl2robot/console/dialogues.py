@@ -17,7 +17,7 @@ import msgspec
 
 from nl2robot.archive import state_of
 from nl2robot.console.dialogue import Dialogue, Draft, Line
-from nl2robot.console.part import Backstage
+from nl2robot.console.part import STOP, Backstage
 from nl2robot.translation import Translation
 
 IN_MEMORY: Final = 50
@@ -79,7 +79,7 @@ class Dialogues:
     def on_event(self, kind: str, data: Mapping[str, Any]) -> None:
         """Tell whoever started a run that it is over. When the robot is stopped, nothing more is
         thought about, lest it moves on."""
-        if kind == "stopped":
+        if kind == STOP:
             self._cancel_all()
         if kind != "program" or data["what"] != "state" or data["state"] in ("running", "paused"):
             return

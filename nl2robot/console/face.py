@@ -39,7 +39,8 @@ SEARCHING: Final = ("find", "wait_for", "sees", "count", "objects", "people", "d
 
 EVENTS: Final = {
     "face": "version and what has changed of: language, emotion, mood (thinking | null), screen,"
-    " asking, speech, stopped; as `face.state` tells all of it",
+    " asking, speech, stopped, unconfirmed (whether the last stop was not confirmed), lost (since"
+    " when the robot is, or null); as `face.state` tells all of it",
     "face.act": "number, act (click | type), selector, text: what this face is to do to its page",
 }
 
@@ -88,9 +89,16 @@ class Face:
                 self.change("language", data["code"])
             case "speech":
                 self.change("speech", {**data, "number": self.state["version"]})
+            case "stop":
+                if self.state["unconfirmed"]:
+                    self.change("unconfirmed", False)
+                self._thinks(False)
             case "stopped":
                 self.change("stopped", self.state["version"])
-                self._thinks(False)
+            case "stop_not_confirmed":
+                self.change("unconfirmed", True)
+            case "link":
+                self.change("lost", data["since"] if data["state"] == "lost" else None)
             case "program" if data["what"] == "call":
                 self._thinks(data["method"] in SEARCHING)
             case "program" if data["what"] in ("result", "state"):
@@ -213,6 +221,8 @@ def _at_the_start(backstage: Backstage) -> dict[str, Any]:
         "asking": None,
         "speech": None,
         "stopped": None,
+        "unconfirmed": False,
+        "lost": None,
     }
 
 

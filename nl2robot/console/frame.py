@@ -153,6 +153,7 @@ def _header(page: str, name: str, visitor: Visitor, words: Mapping[str, str]) ->
     aria-keyshortcuts="Escape Space">{said("stop")}</button>
 </header>
 <div id="calls"></div>
+<p id="robot-state" class="robot-state" role="alert" hidden></p>
 <p id="notice" class="notice" role="alert" hidden></p>
 <dialog id="settings" aria-label="{said("settings")}">
   <form method="dialog">

@@ -119,7 +119,7 @@ class Controls:
                 self._keep(data)
             case "pose" | "battery" | "emotion" | "screen" | "call":
                 self._seen[kind] = data
-            case "stopped":
+            case "stop":
                 self.helm.stopped()
             case "program" if data["what"] == "state" and data["state"] == "running":
                 self.helm.yield_to_program()

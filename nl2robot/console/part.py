@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from starlette.routing import BaseRoute
 
+from nl2robot.stops import Stops
 from robot_api.driver import Driver, Event
 from robot_api.server import Publish, Service
 
@@ -17,6 +18,10 @@ if TYPE_CHECKING:
     from sim.simulation import Simulation
 
 Listener = Callable[[str, Event], None]
+
+STOP: Final = "stop"
+"""What a part is told once for each stop, as soon as it begins, beside the robot's own events
+`stopping`, `stopped` and `stop_not_confirmed`."""
 
 
 @dataclass(frozen=True)
@@ -34,16 +39,21 @@ class Backstage:
     wanted: Callable[[str], bool]
     """Whether somebody subscribed to this kind of event."""
     stop: Callable[[str], None]
-    """Stop the robot and its program, saying why; returns at once."""
+    """Stop the robot and its program, saying why; returns when the robot has confirmed that it
+    stands. Raises `StopNotConfirmed`."""
     _listeners: list[Listener] = field(default_factory=list)
+    _stops: Stops = field(default_factory=Stops)
 
     def subscribe(self, listener: Listener) -> Callable[[], None]:
-        """Be told of the robot's events and the runner's, from any thread; returns what ends it."""
+        """Be told of the robot's events, the runner's, and `STOP`, from any thread; returns what
+        ends it."""
         self._listeners.append(listener)
         return lambda: self._listeners.remove(listener)
 
     def tell(self, kind: str, data: Event) -> None:
         """Tell those who subscribed here."""
+        if self._stops.begins(kind):
+            self.tell(STOP, data)
         for listener in tuple(self._listeners):
             listener(kind, data)
 

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from typing import Literal
 
 from robot_api.capabilities.base import Hub
+from robot_api.driver import Event
 from robot_api.errors import LostConnection
 
 State = Literal["connected", "lost"]
@@ -31,7 +32,8 @@ class Link:
         self._state: State = "connected"
         self._since = now()
         self._because = ""
-        self._listeners: list[Callable[[], None]] = []
+        self._when_lost: list[Callable[[], None]] = []
+        self._when_found: list[Callable[[], None]] = []
 
     @property
     def state(self) -> State:
@@ -44,17 +46,24 @@ class Link:
 
     def on_lost(self, listener: Callable[[], None]) -> None:
         """Call it each time the robot is lost, in the thread that found out; must not block."""
-        self._listeners.append(listener)
+        self._when_lost.append(listener)
+
+    def on_found(self, listener: Callable[[], None]) -> None:
+        """Call it each time the robot is found again; must not block."""
+        self._when_found.append(listener)
 
     def lost(self, because: str) -> None:
         """The robot cannot be reached any more. `because`: a sentence for people."""
-        if self._change("lost", because):
-            for listener in self._listeners:
-                listener()
+        self._change("lost", because, self._when_lost)
 
     def found(self) -> None:
         """It can be reached, again."""
-        self._change("connected", "")
+        self._change("connected", "", self._when_found)
+
+    def event(self) -> Event:
+        """The data of the event `link`, as it is now."""
+        with self._lock:
+            return {"state": self._state, "since": self._since, "because": self._because}
 
     def check(self) -> None:
         """Raise `LostConnection` while it is lost."""
@@ -65,11 +74,13 @@ class Link:
         because = self._because or f"{self._robot} cannot be reached."
         return LostConnection(f"{because} See that it is switched on and in the network.")
 
-    def _change(self, state: State, because: str) -> bool:
+    def _change(self, state: State, because: str, listeners: list[Callable[[], None]]) -> None:
         with self._lock:
             if state == self._state:
-                return False
+                return
             self._state, self._because, self._since = state, because, self._now()
-            since = self._since
-        self._hub.publish("link", state=state, since=since, because=because)
-        return True
+        try:
+            for listener in listeners:
+                listener()
+        finally:
+            self._hub.forward("link", self.event())

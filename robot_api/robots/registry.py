@@ -8,16 +8,39 @@ A package adds one by an entry point of the group `nl2robot.robots` that names a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from importlib import import_module
+from importlib.metadata import EntryPoint, entry_points
+from importlib.util import find_spec
+from typing import Final
 
 import msgspec
 
 from robot_api.capabilities.driving import Goal
+from robot_api.capabilities.names import nearest
 from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.driver import Driver
-from robot_api.robots.address import Address
+from robot_api.robots.address import Address, BadAddress
 from robot_api.robots.robot_file import RobotFile
+
+GROUP: Final = "nl2robot.robots"
+"""The group of entry points by which packages add kinds of robots."""
+OURS: Final = (
+    "robot_api.robots.pretended:SIM",
+    "robot_api.robots.pretended:EMULATOR",
+    "robot_api.robots.wire:SERVER",
+    "robot_api.robots.wire:SECURE_SERVER",
+    "robot_api.robots.ros:ROS2",
+    "robot_api.robots.ros:ROS1",
+    "robot_api.robots.pepper:PEPPER",
+    "robot_api.robots.furhat:FURHAT",
+)
+"""The kinds that come with the project. Their modules are imported when kinds are looked for; what
+they need is imported when a robot is connected."""
+
+_SCHEME: Final = re.compile(r"[a-z][a-z0-9+.-]*")
 
 Point = tuple[float, float]
 
@@ -78,3 +101,98 @@ class RobotKind:
     """The section of a robot file that is about its wire: "ros"."""
     settings: type[msgspec.Struct] | None = None
     """What that section is read as."""
+    shared: bool = False
+    """Whether several may drive it at the same time: it sees to that itself."""
+
+    def missing(self) -> tuple[str, ...]:
+        """The libraries that it needs and that are not installed."""
+        return tuple(module for module in self.modules if not _is_installed(module))
+
+    def how_to_install(self) -> str:
+        """A sentence on what is missing; empty if nothing is."""
+        missing = self.missing()
+        if not missing:
+            return ""
+        several = len(missing) > 1
+        need = f"{' and '.join(missing)}, which {'are' if several else 'is'} not installed"
+        how = (
+            f"Install it: pip install 'nl2robot[{self.extra}]'"
+            if self.extra
+            else "Its package's documentation says how to install it"
+        )
+        return f"{self.title} needs {need}. {how}."
+
+
+@dataclass(frozen=True)
+class Known:
+    """What there is: kinds by scheme, and what was wrong with others."""
+
+    kinds: Mapping[str, RobotKind]
+    troubles: Mapping[str, str]
+    """By name of an entry point, a sentence each: packages whose driver cannot be used."""
+
+
+def known() -> Known:
+    """All kinds of robots that there are drivers for, ours first. A driver that cannot be loaded
+    is a sentence in `troubles`, and stands in nobody's way."""
+    kinds: dict[str, RobotKind] = {kind.scheme: kind for kind in _ours()}
+    troubles: dict[str, str] = {}
+    for point in sorted(entry_points(group=GROUP), key=lambda point: point.name):
+        loaded = _loaded(point, kinds)
+        if isinstance(loaded, RobotKind):
+            kinds[loaded.scheme] = loaded
+        else:
+            troubles[point.name] = loaded
+    return Known(kinds, troubles)
+
+
+def kind_of(address: Address) -> RobotKind:
+    """The kind of the robot at an address. Raises `BadAddress` if there is no such kind."""
+    there = known()
+    kind = there.kinds.get(address.scheme)
+    if kind is not None:
+        return kind
+    if address.scheme in there.troubles:
+        raise BadAddress(there.troubles[address.scheme])
+    near = nearest(address.scheme, there.kinds)
+    hint = f"Did you mean {near}?" if near else f"There is {', '.join(there.kinds)}."
+    raise BadAddress(
+        f"There is no kind of robot called {address.scheme!r}. {hint}"
+        " `nl2robot robots` lists what each needs."
+    )
+
+
+def _ours() -> Iterator[RobotKind]:
+    for name in OURS:
+        module, _, attribute = name.partition(":")
+        try:
+            yield getattr(import_module(module), attribute)
+        except ModuleNotFoundError as error:
+            if error.name != module:  # left out of this installation
+                raise
+
+
+def _loaded(point: EntryPoint, kinds: Mapping[str, RobotKind]) -> RobotKind | str:
+    """What the entry point names, or what is wrong with it."""
+    package = point.dist.name if point.dist is not None else point.value
+    whose = f"The driver {point.name!r} of the package {package}"
+    remedy = f"Tell whoever made it, or remove it: pip uninstall {package}."
+    try:
+        kind = point.load()
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - others' code may do anything
+        why = " ".join(f"{type(error).__name__}: {error}".split())
+        return f"{whose} cannot be loaded ({why}). {remedy}"
+    if not isinstance(kind, RobotKind):
+        return f"{whose} is no RobotKind: {point.value} is something else. {remedy}"
+    if not _SCHEME.fullmatch(kind.scheme):
+        return f"{whose} has the scheme {kind.scheme!r}, which no address can begin with. {remedy}"
+    if kind.scheme in kinds:
+        return f"{whose} is left out: {kind.scheme}:// belongs to another driver. {remedy}"
+    return kind
+
+
+def _is_installed(module: str) -> bool:
+    try:
+        return find_spec(module) is not None
+    except (ImportError, ValueError):  # of "a.b" the "a" is missing
+        return False

@@ -45,7 +45,10 @@ TYPED_WRONG = [
     (["run", *WARD, "--picture", "", "wave"], ".svg, .png, .webp or .gif"),
     (["run", *WARD, "--picture", "/dev/null/run.png", "wave"], "cannot be saved"),
     (["run", *WARD, "--picture", "run.png", "--robot", "ws://there", "wave"], "Only a robot sim"),
-    (["run", *WARD, "--robot", "ws://", "wave"], "address is missing"),
+    (
+        ["run", *WARD, "--robot", "ws://", "wave"],
+        "is no address of a robot. Write it as KIND://HOST",
+    ),
     (["run", *WARD, "--program", "nothing.py"], "cannot be read (No such file"),
     (["run", *WARD, "--program", "/"], "cannot be read (Is a directory)"),
     (["serve", *WARD, "--port", "99999"], "'99999' is not a whole number from 0 to 65535"),

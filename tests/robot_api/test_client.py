@@ -156,7 +156,9 @@ def test_what_is_left_out_is_not_sent() -> None:
     sent = []
     with ward(driver) as robot:
         request = robot.request
-        robot.request = lambda method, params=None: sent.append(params) or request(method, params)  # type: ignore[method-assign, func-returns-value]
+        robot.request = lambda method, params=None, stop=None: (
+            sent.append(params) or request(method, params)
+        )  # type: ignore[method-assign, func-returns-value]
         robot.say("Hello")
         robot.listen()
         robot.listen(timeout=3)

@@ -32,6 +32,7 @@ PUBLIC = {
     "Server",
     "Service",
     "StopFlag",
+    "StopNotConfirmed",
     "Stopped",
     "TimedOut",
     "UnknownPerson",
@@ -56,7 +57,7 @@ def test_a_name_that_is_not_there_is_an_attribute_error() -> None:
 
 def test_the_client_has_every_method_of_the_table_and_these_of_its_own() -> None:
     public = {name for name in dir(client.Robot) if not name.startswith("_")}
-    own = {"cancel", "capabilities", "close", "connected", "request", "subscribe"}
+    own = {"cancel", "capabilities", "close", "connected", "perform", "request", "subscribe"}
     assert public == set(METHODS) | own
     assert not own & set(METHODS)
 

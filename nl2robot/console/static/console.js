@@ -1,10 +1,11 @@
 /** What every page of the console does: STOP, the sign of the connection, the settings. */
 
-import {element, filled, keep} from '/static/page.js';
+import {element, filled, keep, timeOfDay} from '/static/page.js';
 import {wire} from '/static/wire.js';
 
 const {words, role, who, language, call, microphone} = JSON.parse(document.getElementById('frame-data').textContent);
 const NOTICE_FOR = 6000;
+const SLOW_STOP = 300;
 
 let fading = 0;
 
@@ -28,12 +29,17 @@ export async function stop() {
   const button = document.getElementById('stop');
   button?.classList.add('pressed');
   setTimeout(() => button?.classList.remove('pressed'), 400);
+  const waiting = setTimeout(() => notice(words.stopping), SLOW_STOP);
   try {
     await wire.request('robot.stop');
     document.dispatchEvent(new CustomEvent('robot-stopped'));
     notice(words.stopped);
-  } catch {
-    notice(words.not_stopped, {alarm: true});
+  } catch (error) {
+    // What is not confirmed is said to everybody, by `showStop`.
+    if (error.kind === 'StopNotConfirmed') document.getElementById('notice').hidden = true;
+    else notice(words.not_stopped, {alarm: true});
+  } finally {
+    clearTimeout(waiting);
   }
 }
 
@@ -54,13 +60,50 @@ function onKey(event) {
   stop();
 }
 
+/** What stays at the top of the page as long as it is so: the robot may move, or is lost. */
+const alarms = {lost: '', unconfirmed: ''};
+
+function showAlarms() {
+  const told = document.getElementById('robot-state');
+  told.replaceChildren(
+    ...Object.values(alarms)
+      .filter(Boolean)
+      .map((sentence) => element('span', {}, sentence)),
+  );
+  told.hidden = !told.hasChildNodes();
+  showSign();
+}
+
+function showStop(sentence) {
+  alarms.unconfirmed = sentence;
+  showAlarms();
+}
+
+function showLink({state, since}) {
+  const was = alarms.lost;
+  alarms.lost = state === 'lost' ? filled(words.robot_lost, {time: timeOfDay(since, language)}) : '';
+  showAlarms();
+  if (was && !alarms.lost) notice(words.robot_found);
+}
+
+/** The dot in the header: green while page, server and robot are connected. */
+function showSign() {
+  const sign = document.getElementById('connection');
+  if (sign.dataset.state === 'waiting') return;
+  const lost = !wire.connected ? words.lost : alarms.lost;
+  sign.dataset.state = lost ? 'lost' : 'connected';
+  sign.title = sign.firstElementChild.textContent = lost || words.connected;
+}
+
 function showConnection(connected) {
   const sign = document.getElementById('connection');
   if (!connected && sign.dataset.state === 'waiting') return;
   if (!connected) notice(words.lost, {alarm: true});
   else if (sign.dataset.state === 'lost') document.getElementById('notice').hidden = true;
   sign.dataset.state = connected ? 'connected' : 'lost';
-  sign.title = sign.firstElementChild.textContent = connected ? words.connected : words.lost;
+  // The server tells anew how the robot is; it may have been started anew itself.
+  if (connected) Object.assign(alarms, {lost: '', unconfirmed: ''});
+  showAlarms();
 }
 
 function openSettings() {
@@ -119,6 +162,10 @@ document.getElementById('settings').addEventListener('click', (event) => {
 });
 document.addEventListener('keydown', onKey, {capture: true});
 wire.onChange(showConnection);
+wire.subscribe('link', showLink);
+wire.subscribe('stopping', () => showStop(''));
+wire.subscribe('stopped', () => showStop(''));
+wire.subscribe('stop_not_confirmed', () => showStop(words.unconfirmed));
 if (role === 'operator') {
   openCalls();
   const button = document.getElementById('frame-microphone');

@@ -284,8 +284,8 @@ class Microphone {
     try {
       await this.options.wire.request('robot.stop');
       this._trouble('stopped');
-    } catch {
-      this._trouble('not_stopped');
+    } catch (error) {
+      this._trouble(error.kind === 'StopNotConfirmed' ? 'unconfirmed' : 'not_stopped');
     }
   }
 

@@ -29,6 +29,12 @@ export function filled(text, values) {
   return text.replace(/\{(\w+)\}/g, (gap, name) => values[name] ?? gap);
 }
 
+/** A time of day, of seconds since the epoch. */
+export function timeOfDay(seconds, language) {
+  const format = {hour: '2-digit', minute: '2-digit'};
+  return new Date(seconds * 1000).toLocaleTimeString(language, format);
+}
+
 /** A new element: element('button', {type: 'button', class: 'button'}, 'Go'). */
 export function element(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);

@@ -22,7 +22,7 @@ const map = element('div', {id: 'drive-map', class: 'floor-hugging'});
 const columns = [
   [panel('map', map), go?.section, logPanel()],
   [
-    has('drive') && operates && joystickPanel(() => go?.cancel()),
+    has('drive') && operates && joystickPanel(body, () => go?.cancel()),
     has('say') && sayPanel(body, pageData.language),
     has('show') && screenPanel(body),
   ],

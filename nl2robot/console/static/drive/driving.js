@@ -83,7 +83,12 @@ function vitals(body) {
 // --- the joystick
 
 /** `grasped` is called when somebody takes hold of it. */
-export function joystickPanel(grasped) {
+export function joystickPanel(body, grasped) {
+  const {speed = Infinity, turn_rate: turnRate = Infinity} = body.limits;
+  const speeds = SPEEDS.map(({linear, angular}) => ({
+    linear: Math.min(linear, speed),
+    angular: Math.min(angular, turnRate),
+  }));
   const knob = element('div', {class: 'knob'});
   const stick = element(
     'div',
@@ -92,15 +97,15 @@ export function joystickPanel(grasped) {
     knob,
   );
   const hint = element('p', {class: 'stick-hint', role: 'status'});
-  const range = element('input', {type: 'range', min: 0, max: SPEEDS.length - 1, step: 1});
+  const range = element('input', {type: 'range', min: 0, max: speeds.length - 1, step: 1});
   range.value = localStorage.getItem(SPEED_KEPT) ?? 1;
   const shown = element('output', {class: 'value'});
   const showSpeed = () => {
-    const {linear} = SPEEDS[range.value];
+    const {linear} = speeds[range.value];
     const name = say(`speed_${range.value}`);
     shown.textContent = `${name} · ${linear} m/s`;
     range.setAttribute('aria-valuetext', name);
-    range.style.setProperty('--part', `${(range.value / (SPEEDS.length - 1)) * 100}%`);
+    range.style.setProperty('--part', `${(range.value / (speeds.length - 1)) * 100}%`);
     localStorage.setItem(SPEED_KEPT, range.value);
   };
   range.addEventListener('input', showSpeed);
@@ -113,7 +118,7 @@ export function joystickPanel(grasped) {
     hint.textContent = helm.moves ? trouble || say('stick_hint') : waiting;
     hint.classList.toggle('trouble', Boolean(helm.moves && trouble));
   };
-  new Joystick(stick, knob, () => SPEEDS[range.value], (told) => {
+  new Joystick(stick, knob, () => speeds[range.value], (told) => {
     if (told.moving) grasped();
     if (told.moving || told.obeyed) trouble = '';
     if (told.slow) trouble = say('slow_connection');

@@ -74,7 +74,9 @@ export class Joystick {
     window.addEventListener('pagehide', end);
     document.addEventListener('visibilitychange', end);
     document.addEventListener('robot-stopped', end);
+    wire.subscribe('stopping', end);
     wire.subscribe('stopped', end);
+    wire.subscribe('link', ({state}) => state === 'lost' && end());
     wire.onChange((connected) => connected || this.end());
     helm.onChange(() => helm.moves || this.end());
   }

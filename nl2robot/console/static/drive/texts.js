@@ -1,6 +1,6 @@
 /** The texts of this page, and names as its visitor says them. */
 
-import {filled, pageData} from '/static/page.js';
+import {filled, pageData, timeOfDay} from '/static/page.js';
 
 const words = pageData.words ?? {};
 
@@ -22,6 +22,5 @@ export function spoken(thing) {
 
 /** A time of day, of seconds since the epoch. */
 export function clock(seconds) {
-  const format = {hour: '2-digit', minute: '2-digit'};
-  return new Date(seconds * 1000).toLocaleTimeString(pageData.language, format);
+  return timeOfDay(seconds, pageData.language);
 }

@@ -3,7 +3,7 @@
 import {mountCall} from '/static/face/call.js';
 import {Content} from '/static/face/content.js';
 import {drawFace} from '/static/face/drawing.js';
-import {element, pageData} from '/static/page.js';
+import {element, filled, pageData, timeOfDay} from '/static/page.js';
 import {playSpeech} from '/static/voice.js';
 import {wire} from '/static/wire.js';
 
@@ -15,7 +15,7 @@ const NOTICE_FOR = 6000;
 
 const {languages, role} = pageData;
 const at = Object.fromEntries(
-  ['stop', 'notice', 'languages', 'fullscreen', 'figure', 'content', 'caption', 'call'].map((id) => [
+  ['stop', 'alarm', 'notice', 'languages', 'fullscreen', 'figure', 'content', 'caption', 'call'].map((id) => [
     id,
     document.getElementById(id),
   ]),
@@ -68,6 +68,15 @@ function show() {
   });
   document.body.dataset.view = beside ? 'content' : 'face';
   showLanguage();
+  showAlarm();
+}
+
+/** What stays there as long as it is so: the robot may move, or cannot be reached. */
+function showAlarm() {
+  const {lost, unconfirmed} = state;
+  const since = lost ? filled(words.robot_lost, {time: timeOfDay(lost, state.language)}) : '';
+  at.alarm.textContent = since || (unconfirmed ? words.unconfirmed : '');
+  at.alarm.hidden = !at.alarm.textContent;
 }
 
 function showLanguage() {
@@ -95,14 +104,16 @@ function speak({text}) {
 
 function apply(change) {
   if (change.version <= state.version) return;
+  const wasLost = state.lost;
   state = {...state, ...change};
   if (change.speech) speak(change.speech);
   if (change.asking) face.speak(0);
-  if (change.stopped) {
+  if (change.stopped || change.unconfirmed || change.lost) {
     face.speak(0);
     at.caption.classList.add('quiet');
-    notice(words.stopped);
   }
+  if (change.stopped) notice(words.stopped);
+  if (wasLost && !state.lost) notice(words.robot_found);
   show();
 }
 
@@ -118,8 +129,8 @@ async function stop() {
   setTimeout(() => at.stop.classList.remove('pressed'), 400);
   try {
     await wire.request('robot.stop');
-  } catch {
-    notice(words.not_stopped, true);
+  } catch (error) {
+    if (error.kind !== 'StopNotConfirmed') notice(words.not_stopped, true);
   }
 }
 

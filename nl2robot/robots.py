@@ -1,0 +1,148 @@
+"""The robot that somebody names by its address, from the options of a command to its driver."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, TYPE_CHECKING
+
+from nl2robot.errors import ExitStatus, UserError
+from nl2robot.paths import data_folder, made
+from robot_api.capabilities.driving import Goal
+from robot_api.capabilities.sound import SILENT, Sound
+from robot_api.driver import Driver
+from robot_api.errors import LostConnection, RobotError
+from robot_api.robots.address import Address, BadAddress, parse
+from robot_api.robots.opening import open_robot
+from robot_api.robots.reading import Read, read_robot_file, without_file
+from robot_api.robots.registry import NamedPlace, Places, RobotKind, kind_of
+
+if TYPE_CHECKING:
+    from sim.world import World, Zone
+
+SIMULATED = "sim"
+SERVERS = ("ws", "wss")
+PASSWORD = "NL2ROBOT_ROBOT_PASSWORD"
+"""The environment variable with what a robot's login asks for."""
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """The robot that was chosen, and what its file says."""
+
+    address: Address
+    kind: RobotKind
+    read: Read
+    has_file: bool = False
+
+    @property
+    def simulated(self) -> bool:
+        return self.kind.scheme == SIMULATED
+
+    @property
+    def is_server(self) -> bool:
+        """Whether there is a server of ours at the address."""
+        return self.kind.scheme in SERVERS
+
+    @property
+    def server(self) -> str:
+        """The address of such a server, as a client takes it."""
+        return str(self.address).removeprefix("ws://")
+
+
+def chosen(address: str, robot_file: str | None = None) -> Chosen:
+    """What `--robot` and `--robot-file` name. Raises `UserError` and `RobotFileError`."""
+    try:
+        where = parse(address)
+        kind = kind_of(where)
+    except BadAddress as error:
+        raise UserError(str(error)) from error
+    if "://" in kind.example and not where.host:
+        raise UserError(f"Where is the robot? Write its address as {kind.example}.")
+    if robot_file is None:
+        return Chosen(where, kind, without_file(kind))
+    return Chosen(where, kind, read_robot_file(Path(robot_file), kind), has_file=True)
+
+
+@contextmanager
+def reached(
+    robot: Chosen, world: World, sound: Sound = SILENT, password: str | None = None
+) -> Iterator[Driver]:
+    """The driver of a robot, let go of in the end. Raises `UserError`."""
+    with _alone(robot):
+        try:
+            driver = open_robot(
+                robot.address,
+                robot.kind,
+                read=robot.read,
+                places=places_of(world, zones_of(world)),
+                sound=sound,
+                password=password or os.environ.get(PASSWORD),
+            )
+        except LostConnection:
+            raise
+        except RobotError as error:
+            raise UserError(str(error), ExitStatus.NO_ROBOT) from error
+        try:
+            yield driver
+        finally:
+            driver.close()
+
+
+def zones_of(world: World) -> tuple[Zone, ...]:
+    """The keep-out zones of the world's file, and those that were drawn on its map."""
+    from nl2robot.console.zones import DrawnZones
+    from nl2robot.paths import data_file
+
+    return (*world.zones, *DrawnZones(data_file("zones.yaml")).of(world))
+
+
+def places_of(world: World, zones: tuple[Zone, ...]) -> Places:
+    """What a robot that drives by a map of its own is told of the house."""
+    named = {}
+    for place in world.places:
+        pose = place.pose
+        named[place.name] = NamedPlace(
+            name=place.name,
+            kind=place.kind,
+            goal=Goal(pose.x, pose.y, pose.theta, place.name) if pose is not None else None,
+            aliases=tuple(alias for aliases in place.aliases.values() for alias in aliases),
+        )
+    return Places(named=named, keep_out=tuple(zone.polygon for zone in zones))
+
+
+@contextmanager
+def _alone(robot: Chosen) -> Iterator[None]:
+    """No other server of this machine drives the robot meanwhile. Raises `UserError`."""
+    if robot.kind.shared:
+        yield
+        return
+    folder = made(data_folder() / "robots")
+    name = "".join(c if c.isalnum() or c in ".-" else "_" for c in _machine(robot))
+    with (folder / f"{name}.lock").open("a") as file:
+        if not _locked(file):
+            raise UserError(
+                f"The robot at {robot.address} is already being driven from this machine. End the"
+                " other server first, or talk to the robot through it: --robot ws://HOST:PORT.",
+                ExitStatus.NO_ROBOT,
+            )
+        yield
+
+
+def _machine(robot: Chosen) -> str:
+    port = robot.address.port or robot.kind.port or ""
+    return f"{robot.kind.scheme} {robot.address.host.lower()} {port}"
+
+
+def _locked(file: IO[str]) -> bool:
+    with suppress(ImportError):  # a system without such locks
+        import fcntl
+
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            return False
+    return True
