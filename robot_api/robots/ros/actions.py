@@ -56,9 +56,10 @@ class Pursuit:
 class Cancelling(ABC):
     """A cancel of everything that an action server pursues."""
 
-    @property
     @abstractmethod
-    def confirmed(self) -> bool: ...
+    def confirmed(self, since: float) -> bool:
+        """Whether the server has said that it pursues nothing more; what it says by itself counts
+        from `since` on, on the monotonic clock."""
 
 
 class Action(ABC):
@@ -113,8 +114,7 @@ class _Ros2Cancelling(Cancelling):
     def __init__(self, answer: Answer) -> None:
         self._answer = answer
 
-    @property
-    def confirmed(self) -> bool:
+    def confirmed(self, since: float) -> bool:
         """Nothing to cancel is as good; only that it refuses (1) is not."""
         return self._answer.ok and field(self._answer.values, "return_code") != 1
 
@@ -149,11 +149,9 @@ class Ros2Action(Action):
 class _Ros1Cancelling(Cancelling):
     def __init__(self, action: Ros1Action) -> None:
         self._action = action
-        self._began = time.monotonic()
 
-    @property
-    def confirmed(self) -> bool:
-        return self._action.idle_since(self._began)
+    def confirmed(self, since: float) -> bool:
+        return self._action.idle_since(since)
 
 
 class Ros1Action(Action):
@@ -176,11 +174,10 @@ class Ros1Action(Action):
         return at > began and not going_on
 
     def cancel_all(self) -> Cancelling:
-        cancelling = _Ros1Cancelling(self)
         self._connection.halt.publish(
             f"{self.name}/cancel", {"stamp": {"secs": 0, "nsecs": 0}, "id": ""}, repeated=True
         )
-        return cancelling
+        return _Ros1Cancelling(self)
 
     def _send(self, goal: Mapping[str, Any], pursuit: Pursuit) -> None:
         name = f"nl2robot-{uuid.uuid4()}"

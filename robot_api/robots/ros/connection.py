@@ -127,6 +127,10 @@ class Connection:
             line.now.on_end(self._broken)
         self._watcher.start()
 
+    def ask(self) -> Answer:
+        """Ask it anything, on the connection for stopping."""
+        return self.halt.now.ask(_PULSE)
+
     def close(self) -> None:
         """Say goodbye to whoever listens for the heartbeat, and let go."""
         if self._closed.is_set():
@@ -181,7 +185,7 @@ class Connection:
             self._pulse, self._heard = None, time.monotonic()
         if self._pulse is None and time.monotonic() - self._asked >= _ASK_EVERY:
             self._asked = time.monotonic()
-            self._pulse = self.halt.now.ask(_PULSE)
+            self._pulse = self.ask()
 
     def _find(self) -> bool:
         assert self._link is not None

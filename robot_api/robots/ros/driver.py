@@ -137,6 +137,7 @@ class _Assembly:
             self._connection.work.subscribe(*found.battery, self._battery.hear, 1.0)
         halting = Halting(
             self._actions,
+            self._connection.ask,
             self._still(found),
             self._wheels if found.odometry is not None else None,
             self._settings.stop_within,

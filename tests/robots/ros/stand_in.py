@@ -89,6 +89,8 @@ class Faults:
     mute: bool = False
     """Nothing is answered any more; the connections stay."""
     answers_after: float = 0.0
+    hears_after: float = 0.0
+    """Seconds that a message is on its way."""
     nonsense: bool = False
     no_odometry: bool = False
     nan_odometry: bool = False
@@ -300,7 +302,11 @@ class StandIn:
         try:
             async for text in connection:
                 await client.free.wait()
-                await self._hear(client, json.loads(text))
+                message = json.loads(text)
+                if self.faults.hears_after:
+                    self._loop.call_later(self.faults.hears_after, self._hear, client, message)
+                else:
+                    self._hear(client, message)
         except ConnectionClosed:
             pass
         finally:
@@ -344,7 +350,7 @@ class StandIn:
 
     # --- the protocol ----------------------------------------------------------------------------
 
-    async def _hear(self, client: Client, message: Message) -> None:
+    def _hear(self, client: Client, message: Message) -> None:
         topic = str(message.get("topic", ""))
         match message.get("op"):
             case "subscribe":

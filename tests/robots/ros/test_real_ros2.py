@@ -123,6 +123,6 @@ def test_an_action_is_cancelled_from_the_connection_for_stopping(port: int) -> N
         cancelling = action.cancel_all()
         assert pursuit.ended.wait(2)
         assert pursuit.outcome == CANCELED
-        assert cancelling.confirmed
+        assert cancelling.confirmed(0.0)
     finally:
         connection.close()

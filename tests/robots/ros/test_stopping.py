@@ -27,6 +27,16 @@ def test_a_robot_that_stands_confirms_it(version) -> None:
 
 
 @both
+def test_a_stop_is_not_confirmed_by_what_was_said_before_the_robot_heard_it(version) -> None:
+    """Over a slow network: it stands already, and says so all the time."""
+    with StandIn(version) as robot, connected(robot) as driver:
+        call(driver, "wait", seconds=0.5)  # what is advertised is then known
+        robot.faults.hears_after = 0.7
+        driver.stop("Just to be sure.")
+        assert robot.heard("/cmd_vel")
+
+
+@both
 def test_the_stop_returns_when_it_stands_and_not_before(version) -> None:
     with StandIn(version, speed=1.5) as robot, connected(robot) as driver:
         robot.body.braking = 3.0  # half a second to stand
