@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import queue
+import re
 import socket
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -31,10 +33,12 @@ from robot_api.errors import (
 from robot_api.robots.address import Address
 from robot_api.robots.furhat import FURHAT, connection, face, robot, voice
 from robot_api.robots.furhat.settings import FurhatSettings
+from robot_api.robots.reading import read_robot_file
 from robot_api.robots.registry import NamedPlace, Places, Setup
 from robot_api.robots.robot_file import RobotFile
 from tests.robot_api.furhat_stand_in import SOON, VOICES, Cable, FurhatStandIn
 
+DOCS = Path(__file__).parents[2] / "docs" / "furhat.md"
 PLACES = Places({name: NamedPlace(name, kind="room") for name in ("pharmacy", "radiology")})
 
 WELCOME = """
@@ -259,6 +263,22 @@ def test_the_robot_file_names_voice_gestures_and_emotions(furhat: FurhatStandIn)
     assert len(furhat.asked("request.face.reset")) == 1
     assert furhat.asked("request.voice.config")[-1]["name"] == "Vicki"
     assert furhat.asked("request.listen.config")[-1]["languages"] == ["de-CH"]
+
+
+def test_the_robot_file_in_the_docs_is_one(tmp_path: Path) -> None:
+    [written] = re.findall(r"```yaml\n(.*?)```", DOCS.read_text("utf-8"), re.DOTALL)
+    file = tmp_path / "robot.yaml"
+    file.write_text(written, "utf-8")
+    read = read_robot_file(file, FURHAT)
+    assert read.file.name == "Frieda"
+    assert read.settings == FurhatSettings(voices={"de": "Vicki"}, locales={"en": "en-GB"})
+
+
+def test_the_docs_name_what_it_can_do(driver: ComposedDriver) -> None:
+    works = DOCS.read_text("utf-8").split("## What works")[1].split("What it lacks")[0]
+    has = driver.capabilities()
+    assert set(re.findall(r"`([a-z_]+)`", works)) - {"light"} == set(has.methods)
+    assert all(name in works for name in (*has.gestures, *has.skills))
 
 
 def test_its_light_and_where_it_looks(furhat: FurhatStandIn, driver: ComposedDriver) -> None:
