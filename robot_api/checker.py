@@ -170,9 +170,6 @@ class _Check:
             "type_text": [{"selector": "#field", "text": "Bob"}],
             "read_text": [{"selector": "#name"}],
             "touch": [{"options": ["yes", "no"]}],
-            # A robot that sees anything sees people.
-            "sees": [{"thing": "person"}],
-            "count": [{"thing": "people"}],
             "find": [{"thing": "person", "place": place}],
             "wait_for": [{"thing": "person", "timeout": 1}],
             "follow": [{"person": "person", "to": place}],
