@@ -141,20 +141,34 @@ def _hotword() -> Iterator[Figure]:
 
 def _serve() -> Iterator[Figure]:
     """A server of its own process: its memory, and stop from the request to zero speed."""
-    command = [sys.executable, "-m", "nl2robot.cli", "serve", "--port", "0"]
-    with tempfile.TemporaryDirectory() as home:
+    with served() as (process, address):
+        delays = [_stop_delay(address) for _ in range(10)]
+        yield Figure("serve", "stop to zero speed, median", statistics.median(delays), "ms", "50")
+        yield Figure("serve", "stop to zero speed, worst of 10", max(delays), "ms", "50")
+        yield Figure("serve", "memory after that", megabytes(process), "MB")
+
+
+@contextlib.contextmanager
+def served(*options: str) -> Iterator[tuple[int, str]]:
+    """`nl2robot serve` with these options in a process of its own: its number, and its "host:port".
+    Raises `ChildProcessError` if it does not come up, with what it says."""
+    command = [sys.executable, "-m", "nl2robot.cli", "serve", "--port", "0", *options]
+    with tempfile.TemporaryDirectory() as home, tempfile.TemporaryFile("w+") as complaints:
         server = subprocess.Popen(
-            command, stdout=subprocess.PIPE, text=True, env=_environment(Path(home))
+            command,
+            stdout=subprocess.PIPE,
+            stderr=complaints,
+            text=True,
+            env=_environment(Path(home)),
         )
         try:
             assert server.stdout is not None
-            address = server.stdout.readline().split("ws://")[1].split()[0]
-            delays = [_stop_delay(address) for _ in range(10)]
-            yield Figure(
-                "serve", "stop to zero speed, median", statistics.median(delays), "ms", "50"
-            )
-            yield Figure("serve", "stop to zero speed, worst of 10", max(delays), "ms", "50")
-            yield Figure("serve", "memory after that", megabytes(server.pid), "MB")
+            line = server.stdout.readline()
+            if "ws://" not in line:
+                server.wait()
+                complaints.seek(0)
+                raise ChildProcessError(line + complaints.read())
+            yield server.pid, line.split("ws://")[1].split()[0]
         finally:
             server.terminate()
             server.wait()

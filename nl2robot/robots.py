@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -71,25 +71,44 @@ def chosen(address: str, robot_file: str | None = None) -> Chosen:
 def reached(
     robot: Chosen, world: World, sound: Sound = SILENT, password: str | None = None
 ) -> Iterator[Driver]:
-    """The driver of a robot, let go of in the end. Raises `UserError`."""
-    with _alone(robot):
-        try:
-            driver = open_robot(
-                robot.address,
-                robot.kind,
-                read=robot.read,
-                places=places_of(world, zones_of(world)),
-                sound=sound,
-                password=password or os.environ.get(PASSWORD),
-            )
-        except LostConnection:
-            raise
-        except RobotError as error:
-            raise UserError(str(error), ExitStatus.NO_ROBOT) from error
+    """The driver of a robot, let go of in the end. Raises `UserError`, `LostConnection`."""
+    with alone(robot):
+        with trouble_reaching():
+            driver = opener(robot, world, sound, password)(robot.address)
         try:
             yield driver
         finally:
             driver.close()
+
+
+def opener(
+    robot: Chosen, world: World, sound: Sound = SILENT, password: str | None = None
+) -> Callable[[Address], Driver]:
+    """Makes a driver for the robot, wherever it is reached. Raises `RobotError`."""
+    places = places_of(world, zones_of(world))
+
+    def open_at(address: Address) -> Driver:
+        return open_robot(
+            address,
+            robot.kind,
+            read=robot.read,
+            places=places,
+            sound=sound,
+            password=password or os.environ.get(PASSWORD),
+        )
+
+    return open_at
+
+
+@contextmanager
+def trouble_reaching() -> Iterator[None]:
+    """What a robot says that does not let itself be driven is for the user. Raises `UserError`."""
+    try:
+        yield
+    except LostConnection:
+        raise
+    except RobotError as error:
+        raise UserError(str(error), ExitStatus.NO_ROBOT) from error
 
 
 def zones_of(world: World) -> tuple[Zone, ...]:
@@ -115,7 +134,7 @@ def places_of(world: World, zones: tuple[Zone, ...]) -> Places:
 
 
 @contextmanager
-def _alone(robot: Chosen) -> Iterator[None]:
+def alone(robot: Chosen) -> Iterator[None]:
     """No other server of this machine drives the robot meanwhile. Raises `UserError`."""
     if robot.kind.shared:
         yield

@@ -74,7 +74,7 @@ INTERFACES: Mapping[str, type[Capability]] = {
 _STOP: Final = "stop"
 _JOYSTICK: Final = "drive"
 """The one movement that a newer call of itself takes over from."""
-_PATIENCE: Final = 0.25
+_PATIENCE: Final = 0.02
 """Seconds beyond `Capabilities.stop_within` after which a driver that does not come back from a
 stop has not confirmed it."""
 
@@ -133,6 +133,11 @@ class ComposedDriver:
             kind=kind,
             units=units,
             methods=tuple(method for method in METHODS if method in self._offered),
+            stand_ins={
+                part.name: part.stand_in
+                for part in self._parts.values()
+                if part.stand_in is not None
+            },
             **self._declared(),
         )
         self._lock = threading.Lock()  # for what follows

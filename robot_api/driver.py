@@ -38,6 +38,9 @@ class Capabilities(msgspec.Struct, frozen=True, kw_only=True):
     """How many things it can hold at once."""
     units: str = "m"
     """The unit of the map, "m" or "cm": what the paper's message style counts in."""
+    stand_ins: dict[str, str] = {}
+    """The capabilities that something else does in the robot's place, each with what does it, for
+    people: {"face": "a face on the screen"}."""
     stop_within: float = 0.05
     """Seconds in which the robot confirms that it stands after a stop."""
     limits: dict[str, float] = {}

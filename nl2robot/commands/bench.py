@@ -1,6 +1,7 @@
 """`nl2robot bench`: how fast everything is on this machine, in one table; `nl2robot bench hearing`:
 how well it hears; `nl2robot bench console`: how fast the web console is, in a real browser;
-`nl2robot bench planner`: how fast the language model is."""
+`nl2robot bench planner`: how fast the language model is; `nl2robot bench robots`: how fast robots
+are, and stop, over each wire."""
 
 from __future__ import annotations
 
@@ -21,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "only",
         nargs="*",
-        help="parts (default: all but hearing, console and planner)",
+        help="parts (default: all but hearing, console, planner and robots)",
     )
     hearing = parser.add_argument_group(
         "hearing", "with the part hearing: commands and answers, synthesised and in noise"
@@ -29,6 +30,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     hearing.add_argument("--quick", action="store_true", help="a smaller sample")
     hearing.add_argument("--lang", default="en", help="the language that is spoken (en, de, fr)")
     hearing.add_argument("--seed", type=int, default=1, help="for another sample")
+    robots = parser.add_argument_group("robots", "with the part robots")
+    robots.add_argument(
+        "--robot",
+        action="append",
+        default=[],
+        metavar="ADDRESS",
+        help="a further robot, which will drive to and fro (may be given several times)",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -40,6 +49,8 @@ def run(options: argparse.Namespace) -> int:
         return _hearing(options, terminal)
     if "console" in options.only:
         return _console(options, terminal)
+    if "robots" in options.only:
+        return _robots(options, terminal)
     table = terminal.table("part", "what", "measured", "aim")
     results = []
     for part in options.only or PARTS:
@@ -76,6 +87,31 @@ def _console(options: argparse.Namespace, terminal: Terminal) -> int:
         table.add_row(what, f"{figure:.1f} {unit}", f"{aim} {unit}" if aim else "")
     terminal.console.print(table)
     return ExitStatus.OK
+
+
+def _robots(options: argparse.Namespace, terminal: Terminal) -> int:
+    from rich.progress import Progress
+
+    from nl2robot.robots_benchmark import WHAT, measure
+
+    measured: dict[str, dict[str, float]] = {}
+    with Progress(console=terminal.console, transient=True) as progress:
+        progress.add_task("Driving to and fro", total=None)
+        measured.update(measure(options.robot))
+    if options.json:
+        print(json.dumps(measured))
+        return ExitStatus.OK
+    table = terminal.table("what", *measured, "aim")
+    for key, (what, unit, aim) in WHAT.items():
+        figures = [robot.get(key) for robot in measured.values()]
+        shown = ["" if figure is None else f"{_rounded(figure)} {unit}" for figure in figures]
+        table.add_row(what, *shown, f"{aim} {unit}" if aim else "")
+    terminal.console.print(table)
+    return ExitStatus.OK
+
+
+def _rounded(figure: float) -> str:
+    return f"{figure:,.0f}" if figure >= 100 else f"{figure:.3g}"
 
 
 def _hearing(options: argparse.Namespace, terminal: Terminal) -> int:

@@ -83,4 +83,4 @@ def _check(options: argparse.Namespace) -> int:
         print(json.dumps(report.to_json(), ensure_ascii=False))
     else:
         print(report.table(), end="")
-    return ExitStatus.FAILED if report.problems else ExitStatus.OK
+    return ExitStatus.FAILED if report else ExitStatus.OK

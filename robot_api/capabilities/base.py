@@ -30,6 +30,9 @@ class Capability(ABC):
     """Its name in the table: `Method.capability`."""
     lacking: ClassVar[str]
     """Why a robot without it cannot do its methods, after "this robot": "has no hand"."""
+    stand_in: str | None = None
+    """What does it in the place of the robot's own body, for people: "a face on the screen"; None
+    if the robot does it itself."""
     tablet: Tablet = NO_TABLET
     """A real tablet, for the capabilities that people meet on its screen."""
 

@@ -57,6 +57,8 @@ class SimulatedFace(InSimulation, Face):
 class ScreenFace(Face):
     """A face drawn on the screen."""
 
+    stand_in = "a face on the screen"
+
     def __init__(self, screen: Screen, hub: Hub) -> None:
         self._screen = screen
         self._hub = hub

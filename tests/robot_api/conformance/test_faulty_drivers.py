@@ -2,42 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 import msgspec
 import pytest
 
-from robot_api.checker import check_driver, missing_fields
+from robot_api.checker import check_driver
+from robot_api.conformance.behaviour import missing_fields
 from robot_api.driver import EVENTS, Capabilities, Event, StopFlag
 from robot_api.drivers import emulated
 from robot_api.errors import RobotError
-
-
-class Faulty:
-    """The emulated robot with one fault."""
-
-    def __init__(self, speed: float | None = None) -> None:
-        self._sound = emulated(speed=speed)
-
-    def capabilities(self) -> Capabilities:
-        return self._sound.capabilities()
-
-    def call(self, method: str, arguments: dict[str, Any], stop: StopFlag) -> Any:
-        return self._sound.call(method, arguments, stop)
-
-    def stop(self, because: str) -> None:
-        self._sound.stop(because)
-
-    def subscribe(self, listener: Callable[[str, Event], None]) -> Callable[[], None]:
-        return self._sound.subscribe(listener)
-
-    def close(self) -> None:
-        self._sound.close()
-
-
-def problems(driver: Faulty) -> list[str]:
-    return [str(problem) for problem in check_driver(driver)]
+from tests.robot_api.conformance.faulty import Faulty, problems
 
 
 @pytest.mark.parametrize(
@@ -111,30 +88,6 @@ def test_a_method_that_works_without_being_declared() -> None:
     ]
 
 
-def test_a_call_that_no_stop_brings_back() -> None:
-    class Robot(Faulty):
-        def call(self, method: str, arguments: dict[str, Any], stop: StopFlag) -> Any:
-            return super().call(method, arguments, StopFlag() if method == "say" else stop)
-
-        def stop(self, because: str) -> None:
-            """Does nothing."""
-
-    robot = Robot(speed=100)  # the long text takes more than a second
-    found = check_driver(robot, stop_within=0.1)
-    assert any(p.method == "say" and "ms after a stop" in p.message for p in found)
-
-
-def test_a_stop_that_a_program_could_swallow() -> None:
-    class Robot(Faulty):
-        def call(self, method: str, arguments: dict[str, Any], stop: StopFlag) -> Any:
-            if method == "wait" and arguments["seconds"] > 0.1:
-                stop.wait(60)
-                raise RobotError("The robot was stopped.")
-            return super().call(method, arguments, stop)
-
-    assert "wait: raised RobotError at a stop, not Stopped" in problems(Robot())
-
-
 def test_a_robot_that_is_somewhere_else_than_it_says() -> None:
     class Robot(Faulty):
         def call(self, method: str, arguments: dict[str, Any], stop: StopFlag) -> Any:
@@ -148,7 +101,7 @@ def test_a_robot_that_is_somewhere_else_than_it_says() -> None:
 def test_two_movements_at_once() -> None:
     class Robot(Faulty):
         def call(self, method: str, arguments: dict[str, Any], stop: StopFlag) -> Any:
-            if method == "turn" and arguments["degrees"] > 360:
+            if method == "turn" and 360 < arguments["degrees"] < math.inf:
                 stop.wait(60)
                 return stop.check()
             return super().call(method, arguments, stop)
