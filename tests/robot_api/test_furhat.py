@@ -17,7 +17,7 @@ from robot_api import Robot, Server
 from robot_api.capabilities import screen
 from robot_api.capabilities.sound import Asked
 from robot_api.capabilities.tablet import NO_TABLET
-from robot_api.checker import check_driver
+from robot_api.checker import check_robot
 from robot_api.driver import Event, StopFlag
 from robot_api.drivers import ComposedDriver, emulated
 from robot_api.errors import (
@@ -334,14 +334,16 @@ def test_nobody_touches_a_tablet_that_is_not_there(
         do(driver, "touch", options=["yes", "no"])
 
 
-def test_it_conforms(
-    furhat: FurhatStandIn, driver: ComposedDriver, monkeypatch: pytest.MonkeyPatch
+def test_it_conforms_also_where_the_network_fails(
+    furhat: FurhatStandIn, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(screen, "TOUCH_TIMEOUT", 0.2)
     furhat.seconds_a_letter = 0.01
     furhat.hears += ["yes"] * 4
     furhat.users.append("user-1")
-    assert check_driver(driver, stop_within=1.0) == []
+    address = Address("furhat", "127.0.0.1", furhat.port)
+    report = check_robot(lambda address: FURHAT.connect(Setup(address=address)), address)
+    assert list(report) == []
 
 
 # --- listening -----------------------------------------------------------------------------------
