@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import queue
+import re
 import socket
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -15,7 +17,7 @@ from robot_api import Robot, Server
 from robot_api.capabilities import screen
 from robot_api.capabilities.sound import Asked
 from robot_api.capabilities.tablet import NO_TABLET
-from robot_api.checker import check_driver
+from robot_api.checker import check_robot
 from robot_api.driver import Event, StopFlag
 from robot_api.drivers import ComposedDriver, emulated
 from robot_api.errors import (
@@ -31,10 +33,12 @@ from robot_api.errors import (
 from robot_api.robots.address import Address
 from robot_api.robots.furhat import FURHAT, connection, face, robot, voice
 from robot_api.robots.furhat.settings import FurhatSettings
+from robot_api.robots.reading import read_robot_file
 from robot_api.robots.registry import NamedPlace, Places, Setup
 from robot_api.robots.robot_file import RobotFile
 from tests.robot_api.furhat_stand_in import SOON, VOICES, Cable, FurhatStandIn
 
+DOCS = Path(__file__).parents[2] / "docs" / "furhat.md"
 PLACES = Places({name: NamedPlace(name, kind="room") for name in ("pharmacy", "radiology")})
 
 WELCOME = """
@@ -261,6 +265,22 @@ def test_the_robot_file_names_voice_gestures_and_emotions(furhat: FurhatStandIn)
     assert furhat.asked("request.listen.config")[-1]["languages"] == ["de-CH"]
 
 
+def test_the_robot_file_in_the_docs_is_one(tmp_path: Path) -> None:
+    [written] = re.findall(r"```yaml\n(.*?)```", DOCS.read_text("utf-8"), re.DOTALL)
+    file = tmp_path / "robot.yaml"
+    file.write_text(written, "utf-8")
+    read = read_robot_file(file, FURHAT)
+    assert read.file.name == "Frieda"
+    assert read.settings == FurhatSettings(voices={"de": "Vicki"}, locales={"en": "en-GB"})
+
+
+def test_the_docs_name_what_it_can_do(driver: ComposedDriver) -> None:
+    works = DOCS.read_text("utf-8").split("## What works")[1].split("What it lacks")[0]
+    has = driver.capabilities()
+    assert set(re.findall(r"`([a-z_]+)`", works)) - {"light"} == set(has.methods)
+    assert all(name in works for name in (*has.gestures, *has.skills))
+
+
 def test_its_light_and_where_it_looks(furhat: FurhatStandIn, driver: ComposedDriver) -> None:
     do(driver, "do", skill="light", color="#00ff00")
     assert furhat.light == "#00ff00"
@@ -314,14 +334,16 @@ def test_nobody_touches_a_tablet_that_is_not_there(
         do(driver, "touch", options=["yes", "no"])
 
 
-def test_it_conforms(
-    furhat: FurhatStandIn, driver: ComposedDriver, monkeypatch: pytest.MonkeyPatch
+def test_it_conforms_also_where_the_network_fails(
+    furhat: FurhatStandIn, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(screen, "TOUCH_TIMEOUT", 0.2)
     furhat.seconds_a_letter = 0.01
     furhat.hears += ["yes"] * 4
     furhat.users.append("user-1")
-    assert check_driver(driver, stop_within=1.0) == []
+    address = Address("furhat", "127.0.0.1", furhat.port)
+    report = check_robot(lambda address: FURHAT.connect(Setup(address=address)), address)
+    assert list(report) == []
 
 
 # --- listening -----------------------------------------------------------------------------------

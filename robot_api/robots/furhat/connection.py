@@ -7,6 +7,7 @@ the robot answers carries the `request_id` of what was asked, if that had one.
 from __future__ import annotations
 
 import json
+import logging
 import threading
 import time
 import uuid
@@ -31,6 +32,8 @@ PONG_WITHIN: Final = 2.0
 _CLOSES_WITHIN: Final = 0.5
 _LARGEST: Final = 2**20
 """Bytes of a message; nothing that is asked for here comes near."""
+_QUIET: Final = logging.Logger("furhat", logging.CRITICAL)
+"""That a robot is gone is told by its link; how the library came to know it is nobody's matter."""
 _REFUSED: Final = 1008
 """The code of a connection that is closed since it may not be."""
 
@@ -124,6 +127,7 @@ def _opened(where: str) -> ClientConnection:
             close_timeout=_CLOSES_WITHIN,
             max_size=_LARGEST,
             compression=None,
+            logger=_QUIET,
             proxy=None,  # the robot is in the house
         )
     except (InvalidHandshake, InvalidURI, EOFError) as error:
