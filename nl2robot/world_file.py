@@ -94,8 +94,11 @@ def exported(world: World, named: Sequence[NamedByHand], zones: Sequence[Zone] =
             " there: nl2robot world from-map"
         )
     per_unit = 1 / _factor(root)
-    text = _with_entries(before, "places", [_place(each.place, per_unit) for each in named])
-    text = _with_entries(text, "zones", [_zone(zone, per_unit) for zone in zones])
+    try:
+        text = _with_entries(before, "places", [_place(each.place, per_unit) for each in named])
+        text = _with_entries(text, "zones", [_zone(zone, per_unit) for zone in zones])
+    except yaml.YAMLError as error:
+        raise _by_hand(world) from error
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / Path(world.file).name
         file.write_text(text, encoding="utf-8")
@@ -187,6 +190,10 @@ def _with_entries(text: str, section: str, entries: Sequence[str]) -> str:
 def _last_line(node: yaml.Node) -> int:
     """The last line that the node is on, without what empty lines and comments follow."""
     if not isinstance(node, yaml.CollectionNode) or node.flow_style or not node.value:
-        return int(node.end_mark.line)
+        end = node.end_mark
+        # A text of several lines ends where the next line begins.
+        return int(
+            end.line - 1 if end.column == 0 and end.line > node.start_mark.line else end.line
+        )
     last = node.value[-1]
     return _last_line(last[1] if isinstance(last, tuple) else last)
