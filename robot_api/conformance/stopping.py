@@ -16,7 +16,7 @@ from robot_api.conformance.subject import (
     honest,
 )
 from robot_api.driver import StopFlag
-from robot_api.errors import Stopped
+from robot_api.errors import RobotError, Stopped
 from robot_api.methods import METHODS
 
 _TRIES = 3
@@ -106,7 +106,9 @@ def _ended(subject: Subject, call: Attempt, began: float, what: str, faults: _Fa
     if call.error is None:  # it may just have been done
         faults.late.append(f"returned after {what} as if nothing had been, and raised no Stopped")
     elif not isinstance(call.error, Stopped):
-        faults.wrong.append(f"{call.outcome} at {what}, not Stopped")
+        # It may just have failed, as it may at any time.
+        counts = faults.late if isinstance(call.error, RobotError) else faults.wrong
+        counts.append(f"{call.outcome} at {what}, not Stopped")
 
 
 def _settled(subject: Subject, stop: Attempt, start: int, faults: _Faults) -> None:

@@ -94,6 +94,20 @@ def test_a_call_that_swallows_the_stop() -> None:
     ]
 
 
+def test_a_call_that_fails_by_itself_in_the_moment_of_the_stop() -> None:
+    class Robot(Waiting):
+        failed = False
+
+        def wait(self, stop: StopFlag) -> None:
+            stop.wait(60)
+            if not self.failed:
+                self.failed = True
+                raise RobotError("Just then I lost my balance. Look after me.")
+            stop.check()
+
+    assert problems(Robot()) == []
+
+
 def test_a_call_that_is_stopped_but_not_cancelled() -> None:
     class Robot(Waiting):
         stopped = False
