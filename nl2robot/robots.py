@@ -69,12 +69,17 @@ def chosen(address: str, robot_file: str | None = None) -> Chosen:
 
 @contextmanager
 def reached(
-    robot: Chosen, world: World, sound: Sound = SILENT, password: str | None = None
+    robot: Chosen,
+    world: World,
+    sound: Sound = SILENT,
+    password: str | None = None,
+    places: Places | None = None,
 ) -> Iterator[Driver]:
-    """The driver of a robot, let go of in the end. Raises `UserError`, `LostConnection`."""
+    """The driver of a robot, let go of in the end; sent by `places`, else by those of the world.
+    Raises `UserError`, `LostConnection`."""
     with alone(robot):
         with trouble_reaching():
-            driver = opener(robot, world, sound, password)(robot.address)
+            driver = opener(robot, world, sound, password, places)(robot.address)
         try:
             yield driver
         finally:
@@ -82,10 +87,14 @@ def reached(
 
 
 def opener(
-    robot: Chosen, world: World, sound: Sound = SILENT, password: str | None = None
+    robot: Chosen,
+    world: World,
+    sound: Sound = SILENT,
+    password: str | None = None,
+    places: Places | None = None,
 ) -> Callable[[Address], Driver]:
     """Makes a driver for the robot, wherever it is reached. Raises `RobotError`."""
-    places = places_of(world, zones_of(world))
+    known = places or places_of(world, zones_of(world))
     with_ears = _with_ears(sound, world)
 
     def open_at(address: Address) -> Driver:
@@ -93,7 +102,7 @@ def opener(
             address,
             robot.kind,
             read=robot.read,
-            places=places,
+            places=known,
             sound=with_ears,
             password=password or os.environ.get(PASSWORD),
         )

@@ -31,6 +31,7 @@ from robot_api.driver import Driver, Event
 from robot_api.errors import AccessDenied, RobotError
 from robot_api.robots.opening import hold
 from robot_api.robots.reading import Read
+from robot_api.robots.registry import Places
 from robot_api.server import CannotListen, Server
 from sim.record import Record
 from sim.simulation import Simulation
@@ -170,7 +171,7 @@ def simulated_station(
         driver,
         world,
         log,
-        simulation.copy,
+        lambda world: simulation.copy(),
         on_program,
         give_way=heard.give_way,
         seed=seed,
@@ -232,6 +233,7 @@ def robot_station(
     log: RunLog,
     *,
     zones: Sequence[Zone] = (),
+    places: Places | None = None,
     sound: Sound = SILENT,
     host: str = "127.0.0.1",
     port: int = 0,
@@ -239,10 +241,11 @@ def robot_station(
     console: Callable[[Backstage], Console] | None = None,
 ) -> Iterator[tuple[Station, Server]]:
     """A station with a robot that is not simulated. Its places are those of `world`, in which dry
-    runs are simulated, with these keep-out zones. `sound` is what the driver speaks and hears
+    runs are simulated, with these keep-out zones. `places` are what the driver is sent by: it is
+    told there of places that are named on the map. `sound` is what the driver speaks and hears
     with, if it does so on this machine."""
 
-    def stage() -> Simulation:
+    def stage(world: World) -> Simulation:
         simulation = Simulation(world)
         if zones:
             simulation.set_zones(tuple(zones))
@@ -254,6 +257,7 @@ def robot_station(
         log,
         stage,
         _at_each_beginning(driver),
+        places=places,
         give_way=sound.give_way,
         host=host,
         port=port,
@@ -294,9 +298,10 @@ def _open(
     driver: Driver,
     world: World,
     log: RunLog,
-    stage: Callable[[], Simulation],
+    stage: Callable[[World], Simulation],
     on_program: Callable[[Mapping[str, Any]], None],
     *,
+    places: Places | None = None,
     give_way: Callable[[], None] = SILENT.give_way,
     seed: int | None = None,
     host: str = "127.0.0.1",
@@ -319,7 +324,7 @@ def _open(
         connect=lambda: Robot(server.address, token=server.token),
         log=log,
         publish=publish,
-        stage=stage if world.has_geometry else None,
+        stage=(lambda: stage(runner.knowledge.world)) if world.has_geometry else None,
         seed=seed,
     )
 
@@ -330,6 +335,7 @@ def _open(
         runner=runner,
         talks=talks,
         simulation=simulation,
+        places=places,
         publish=publish,
         wanted=lambda kind: server.wanted(kind),
         stop=lambda because: server.stop(because),

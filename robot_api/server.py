@@ -50,7 +50,7 @@ from robot_api.schema import read_arguments
 from robot_api.status import HEADERS, Status, status_page
 
 DEFAULT_PORT: Final = 9090
-PING_SECONDS: Final = 5.0
+PING_SECONDS: Final = 1.25
 """How often a client is asked for a sign of life, and how long it has to answer."""
 
 PATIENCE: Final = 2.0

@@ -23,7 +23,7 @@ from nl2robot.commands.options import (
 )
 from nl2robot.errors import ExitStatus
 from nl2robot.paths import pictures_folder
-from nl2robot.robots import reached, zones_of
+from nl2robot.robots import places_of, reached, zones_of
 from nl2robot.station import robot_station, simulated_station
 from robot_api.capabilities.sound import SILENT
 from robot_api.server import Server
@@ -72,12 +72,15 @@ def run(options: argparse.Namespace) -> int:
             server = stack.enter_context(simulated).server
         else:
             here = sound(time.monotonic) if sound else SILENT
-            driver = stack.enter_context(reached(robot, world, here))
+            zones = zones_of(world)
+            places = places_of(world, zones)
+            driver = stack.enter_context(reached(robot, world, here, places=places))
             station = robot_station(
                 driver,
                 world,
                 log,
-                zones=zones_of(world),
+                zones=zones,
+                places=places,
                 sound=here,
                 host=options.host,
                 port=options.port,

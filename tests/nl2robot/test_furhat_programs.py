@@ -18,7 +18,7 @@ from robot_api.robots.address import Address
 from robot_api.robots.furhat import FURHAT
 from robot_api.robots.registry import Setup
 from sim.world import load_world
-from tests.robot_api.furhat_stand_in import FurhatStandIn
+from tests.robots.furhat.stand_in import FurhatStandIn
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ that takes the standard library's name. The tests drive our stand-in with it, so
 speaks as a Furhat does.
 
 `connection` is one WebSocket, `robot` the robot by two of them (one for stopping alone), `parts`
-its capabilities, `driver` what puts them together. docs/furhat.md says what works.
+its capabilities, `driver` what puts them together. docs/robots/furhat.md says what works.
 """
 
 from __future__ import annotations

@@ -81,8 +81,10 @@ class Wheels:
         self._listeners.append(listener)
 
     def now(self, within: float = FRESH) -> Moment:
-        """The last of it. Raises `NotPossible` if that is missing or older than `within` s."""
+        """The last of it; of a robot that has just been reached the first is waited for. Raises
+        `NotPossible` if that is missing or older than `within` s."""
         with self._changed:
+            self._changed.wait_for(lambda: self._recent or self._nonsense, within)
             last = self._recent[-1] if self._recent else None
         if last is None or time.monotonic() - last.at > within:
             raise NotPossible(

@@ -13,7 +13,7 @@ from robot_api.driver import StopFlag
 from robot_api.robots.address import Address
 from robot_api.robots.furhat import FURHAT
 from robot_api.robots.registry import Setup
-from tests.robot_api.furhat_stand_in import SOON, FurhatStandIn
+from tests.robots.furhat.stand_in import SOON, FurhatStandIn
 
 realtime = pytest.importorskip("furhat_realtime_api")
 

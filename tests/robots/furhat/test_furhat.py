@@ -36,9 +36,9 @@ from robot_api.robots.furhat.settings import FurhatSettings
 from robot_api.robots.reading import read_robot_file
 from robot_api.robots.registry import NamedPlace, Places, Setup
 from robot_api.robots.robot_file import RobotFile
-from tests.robot_api.furhat_stand_in import SOON, VOICES, Cable, FurhatStandIn
+from tests.robots.furhat.stand_in import SOON, VOICES, Cable, FurhatStandIn
 
-DOCS = Path(__file__).parents[2] / "docs" / "furhat.md"
+DOCS = Path(__file__).parents[3] / "docs" / "robots" / "furhat.md"
 PLACES = Places({name: NamedPlace(name, kind="room") for name in ("pharmacy", "radiology")})
 
 WELCOME = """
