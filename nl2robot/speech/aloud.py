@@ -24,6 +24,7 @@ from nl2robot.speech.loudspeaker import Nowhere, Output, SoundCard, SoundError, 
 from nl2robot.speech.speaking import Speaker, Utterance
 from nl2robot.speech.voices import Voice, espeak, voice
 from robot_api.capabilities.sound import Ears, Sound, Voices
+from robot_api.capabilities.sound import Microphone as RobotsMicrophone
 
 if TYPE_CHECKING:
     from nl2robot.speech.audio import Samples
@@ -146,11 +147,36 @@ def _robots_voice(language: str, wishes: Wishes) -> Voice:
     return voice(language, wishes.voice)
 
 
+def ears_at(world: World) -> Callable[[RobotsMicrophone], Ears]:
+    """Makes ears of a robot's own microphone. What recognises words is loaded when somebody is
+    first listened to."""
+
+    def made(microphone: RobotsMicrophone) -> Ears:
+        import numpy as np
+
+        from nl2robot.speech.replies import AtMicrophone
+
+        @contextmanager
+        def opened() -> Iterator[Iterator[Samples]]:
+            with microphone() as blocks:
+                yield (np.frombuffer(block, "<i2").astype(np.int16) for block in blocks)
+
+        return AtMicrophone(opened, _replies_here(world))
+
+    return made
+
+
 def _replies(language: str, world: World) -> Replies:
+    from nl2robot.speech.recogniser import load
+
+    load(language)
+    return _replies_here(world)
+
+
+def _replies_here(world: World) -> Replies:
     from nl2robot.speech.recogniser import load
     from nl2robot.speech.replies import Replies
 
-    load(language)
     return Replies(load, cache(lambda language: _said_here(world, language)))
 
 

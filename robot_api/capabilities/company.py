@@ -6,6 +6,7 @@ from abc import abstractmethod
 from typing import TYPE_CHECKING
 
 from robot_api.capabilities.base import Capability
+from robot_api.capabilities.languages import language_data
 from robot_api.capabilities.simulation import InSimulation
 from robot_api.driver import StopFlag
 from robot_api.values import Location
@@ -13,6 +14,7 @@ from robot_api.values import Location
 if TYPE_CHECKING:
     from robot_api.capabilities.driving import Navigation
     from robot_api.capabilities.emulation import Emulation
+    from robot_api.capabilities.speech import Speech
     from sim.simulation import Simulation
 
 
@@ -58,6 +60,21 @@ class EmulatedGuiding(Guiding):
 
     def guide(self, stop: StopFlag, person: str, place: str | Location) -> None:
         self._navigation.goto(stop, place)
+
+
+class LeadingGuiding(Guiding):
+    """Asks to be followed and goes ahead, for robots that cannot see who comes along."""
+
+    stand_in = "going ahead, without looking whether somebody comes along"
+
+    def __init__(self, navigation: Navigation, speech: Speech) -> None:
+        self._navigation = navigation
+        self._speech = speech
+
+    def guide(self, stop: StopFlag, person: str, place: str | Location) -> None:
+        goal = self._navigation.goal(place)  # or nobody is asked to come along
+        self._speech.say(stop, language_data(self._speech.language).follow_me)
+        self._navigation.drive_to(stop, goal)
 
 
 class SimulatedFollowing(InSimulation, Following):

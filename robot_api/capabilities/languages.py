@@ -23,6 +23,7 @@ class _Raw(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     again: str
     was_that: str
     choose: str
+    follow_me: str
     no_answer: str
     plain_yes: str
     agreeing: str
@@ -50,6 +51,8 @@ class Language:
     """Asked about an answer that was heard badly, which stands for the braces."""
     choose: str = "?"
     """Said when the options are offered on the screen."""
+    follow_me: str = "?"
+    """Said to somebody who is to be led."""
     no_answer: str = "?"
     """Said to a question that nobody prepared an answer for."""
     plain_yes: frozenset[Words] = frozenset()
@@ -108,6 +111,7 @@ def _language(raw: _Raw) -> Language:
         again=raw.again,
         was_that=raw.was_that,
         choose=raw.choose,
+        follow_me=raw.follow_me,
         no_answer=raw.no_answer,
         plain_yes=_phrases(raw.plain_yes),
         agreeing=_phrases(raw.agreeing),

@@ -89,7 +89,7 @@ def test_henry_is_asked_what_he_drinks_and_is_understood_at_once(
         (["--speak", "/proc/no/sound.wav"], "cannot be written"),
         (["--speak", "sound.wav", "--robot-voice", "anna"], "There is no voice 'anna'"),
         (["--robot-voice", "piper"], "Add --speak"),
-        (["--robot", "ws://127.0.0.1:1", "--speak"], "Only a robot simulated here"),
+        (["--robot", "ws://127.0.0.1:1", "--speak"], "A robot at a server is heard there"),
     ],
 )
 def test_what_is_missing_is_told_before_anything_runs(
