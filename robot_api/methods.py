@@ -294,6 +294,7 @@ METHODS: Final[dict[str, Method]] = {
             "Tell where the robot is.",
             returns=LOCATION,
             needs="navigation",
+            errors=("NotPossible",),
             paper=6,
         ),
         _method(
@@ -304,7 +305,7 @@ METHODS: Final[dict[str, Method]] = {
                 (X, Y, P("theta", DEGREES, "degrees it faces")),
             ),
             needs="navigation",
-            errors=("UnknownPlace",),
+            errors=("UnknownPlace", "NotPossible"),
             paper=7,
         ),
         _method(

@@ -14,12 +14,13 @@ from functools import partial
 from typing import Any
 
 from robot_api.capabilities.base import Capability, Hub
+from robot_api.capabilities.company import LeadingGuiding
 from robot_api.capabilities.core import LogBook
 from robot_api.capabilities.face import ScreenFace
 from robot_api.capabilities.hearing import EarsHearing, Hearing, TabletHearing
 from robot_api.capabilities.screen import Screen, TabletScreen
 from robot_api.capabilities.speech import LoudspeakerSpeech, Speech
-from robot_api.drivers import ComposedDriver
+from robot_api.composed import ComposedDriver
 from robot_api.errors import AccessDenied, LostConnection, NotSupported, StopNotConfirmed
 from robot_api.robots.link import Link
 from robot_api.robots.registry import Setup
@@ -123,7 +124,7 @@ class _Assembly:
         found = survey(self._graph, self._dialect, self._settings)
         speech = self._speech(found)
         screen = TabletScreen(self._hub, speech)
-        base = self._base(found)
+        base = self._base(found, speech)
         parts: list[Capability] = [
             speech,
             screen,
@@ -185,7 +186,7 @@ class _Assembly:
 
     # --- putting together ------------------------------------------------------------------------
 
-    def _base(self, found: Found) -> list[Capability]:
+    def _base(self, found: Found, speech: Speech) -> list[Capability]:
         if found.odometry is None:
             if found.velocity is not None or found.navigate is not None:
                 self._book.write(
@@ -212,7 +213,7 @@ class _Assembly:
                 )
             )
         if found.navigate is not None and where is not None:
-            parts += self._navigation(found, found.navigate, where)
+            parts += self._navigation(found, found.navigate, where, speech)
         return parts
 
     def _whereabouts(self, found: Found) -> Whereabouts | None:
@@ -229,7 +230,9 @@ class _Assembly:
             self._wheels.wait(end - time.monotonic())
         return where
 
-    def _navigation(self, found: Found, name: str, where: Whereabouts) -> list[Capability]:
+    def _navigation(
+        self, found: Found, name: str, where: Whereabouts, speech: Speech
+    ) -> list[Capability]:
         way = Way(
             action=self._action(name, going(self._dialect)),
             link=self._link,
@@ -275,9 +278,10 @@ class _Assembly:
                 keep_out=self._keep_out,
                 settings=self._settings,
             )
+        parts: list[Capability] = [navigation, LeadingGuiding(navigation, speech)]
         if docking is None and charger is None:
-            return [navigation]
-        return [navigation, RosDock(navigation, charger, docking, self._settings.dock_id)]
+            return parts
+        return [*parts, RosDock(navigation, charger, docking, self._settings.dock_id)]
 
     def _bounds(self, found: Found) -> Bounds | None:
         if found.map is None:

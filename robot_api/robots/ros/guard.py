@@ -65,6 +65,8 @@ class Guard:
         """Stop the robot if whoever drove it is gone; whether it did."""
         if self._heard is None or time.monotonic() - self._heard < self._patience:
             return False
+        if not self._ros.is_connected:  # rosbridge itself is gone: as soon as it is there again
+            return False
         self._heard = None
         log.warning("No heartbeat for %g seconds: the robot is stopped.", self._patience)
         end = time.monotonic() + _STOP_FOR

@@ -153,7 +153,7 @@ def test_what_it_lacks_is_stood_in_for_by_the_server_and_the_tablet() -> None:
         assert heard.of("speech")[0]["text"] == "More tea?"
         assert heard.of("heard") == [{"text": "yes please", "person": None}]
         assert "svg" in heard.of("screen")[-1]["html"]
-        lacking = {"call", "sees", "grab", "follow", "guide", "do", "joint", "gesture", "scan"}
+        lacking = {"call", "sees", "grab", "follow", "do", "joint", "gesture", "scan"}
         assert not lacking & set(driver.capabilities().methods)
         with pytest.raises(NotSupported, match="cannot see"):
             call(driver, "sees", thing="cup")

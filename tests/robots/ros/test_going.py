@@ -123,6 +123,14 @@ def test_a_stop_is_felt_on_a_connection_that_a_goal_blocks() -> None:
         assert isinstance(under_way.ended(0.5), Stopped)
 
 
+def test_it_leads_the_way_and_asks_to_be_followed() -> None:
+    with StandIn() as robot, connected(robot) as driver:
+        heard = Heard(driver)
+        call(driver, "guide", person="visitor", place="pharmacy")
+        assert "follow me" in heard.of("speech")[0]["text"]
+        assert call(driver, "location").place == "pharmacy"
+
+
 # --- where it is ---------------------------------------------------------------------------------
 
 

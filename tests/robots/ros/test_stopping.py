@@ -12,6 +12,7 @@ import pytest
 
 from robot_api.errors import StopNotConfirmed
 from robot_api.robots.ros.settings import RosSettings
+from robot_api.robots.ros.wire import Where, Wire
 from tests.robots.ros.stand_in import HEARTBEAT, StandIn
 from tests.robots.ros.ward import Heard, Under, call, connected
 
@@ -141,6 +142,21 @@ def test_the_guard_stops_the_robot_when_the_server_is_gone(version) -> None:
         robot.cut_off_from_outside()
         robot.until(lambda: robot.stands and robot.goal is None, within=5)
         assert robot.body.x < 5
+
+
+@both
+def test_the_guard_stops_it_when_its_rosbridge_is_there_again(version) -> None:
+    with StandIn(version, speed=0.5) as robot, guarded(robot):
+        server = Wire.open(Where("127.0.0.1", robot.port))
+        server.advertise(HEARTBEAT, robot.kind("std_msgs/String"))
+        server.publish(HEARTBEAT, {"data": "here"})
+        robot.until(lambda: robot.heartbeats)
+        robot.at_the_robot(lambda: robot.pursue(30, 0))
+        robot.cut()
+        robot.until(lambda: robot.body.x > 0.2)
+        robot.mend()
+        robot.until(lambda: robot.stands and robot.goal is None, within=20)
+        assert robot.body.x < 15
 
 
 def test_the_guard_lets_a_robot_be_that_was_left_with_a_goodbye() -> None:
