@@ -1,4 +1,4 @@
-"""How fast Pepper's wire is, measured on the stand-in: `python -m tests.robot_api.pepper.measure`.
+"""How fast Pepper's wire is, measured on the stand-in: `python -m tests.robots.pepper.measure`.
 
 Prints what docs/robots/pepper.md says.
 """
@@ -13,7 +13,7 @@ from typing import Any
 from robot_api.robots.address import parse
 from robot_api.robots.pepper import PEPPER, PepperSettings
 from robot_api.robots.registry import Setup
-from tests.robot_api.pepper.conftest import MAP, PLACES, Call, StandIn, call, until
+from tests.robots.pepper.conftest import MAP, PLACES, Call, StandIn, call, until
 
 CALLS = 2000
 STOPS = 50

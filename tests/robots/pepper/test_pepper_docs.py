@@ -9,7 +9,7 @@ from typing import Any
 
 from robot_api.robots.pepper import PEPPER
 from robot_api.robots.reading import read_robot_file
-from tests.robot_api.pepper.conftest import call
+from tests.robots.pepper.conftest import call
 
 PAGE = Path(__file__).parents[3] / "docs" / "robots" / "pepper.md"
 

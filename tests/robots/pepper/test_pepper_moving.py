@@ -10,7 +10,7 @@ import pytest
 from robot_api.errors import Blocked, InvalidCall, NotPossible, NotSupported, UnknownPlace
 from robot_api.robots.pepper import PepperSettings
 from robot_api.robots.robot_file import Limits, RobotFile
-from tests.robot_api.pepper.conftest import MAP, PLACES, Call, call, until
+from tests.robots.pepper.conftest import MAP, PLACES, Call, call, until
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from robot_api.driver import StopFlag
 from robot_api.errors import InvalidCall, NotPossible, NotSupported, TimedOut
 from robot_api.robots.pepper import PepperSettings
 from robot_api.robots.robot_file import RobotFile
-from tests.robot_api.pepper.conftest import Call, call, until
+from tests.robots.pepper.conftest import Call, call, until
 
 RECORDING = Path(__file__).parents[2] / "speech" / "recordings" / "to-the-pharmacy-please.wav"
 

@@ -23,7 +23,7 @@ from robot_api.robots.address import parse
 from robot_api.robots.pepper import PEPPER, line
 from robot_api.robots.registry import Setup
 from robot_api.robots.robot_file import RobotFile
-from tests.robot_api.pepper.conftest import MAP, call
+from tests.robots.pepper.conftest import MAP, call
 
 
 def reach(address: str, password: str | None = None) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from robot_api.driver import StopFlag
 from robot_api.errors import StopNotConfirmed, Stopped
-from tests.robot_api.pepper.conftest import Call, call, until
+from tests.robots.pepper.conftest import Call, call, until
 
 
 @pytest.mark.parametrize(

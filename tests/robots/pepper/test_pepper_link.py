@@ -12,7 +12,7 @@ import pytest
 
 from robot_api.errors import LostConnection
 from robot_api.robots.pepper.session import BEAT, SILENT_AFTER
-from tests.robot_api.pepper.conftest import Call, call, until
+from tests.robots.pepper.conftest import Call, call, until
 
 
 class Links:

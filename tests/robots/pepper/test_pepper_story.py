@@ -18,7 +18,7 @@ from sandbox.execution import Execution, Outcome
 from sim.simulation import Simulation
 from sim.world import load_world
 from tests.fetched import fetched
-from tests.robot_api.pepper.conftest import until
+from tests.robots.pepper.conftest import until
 
 RECORDINGS = Path(__file__).parents[2] / "speech" / "recordings"
 
