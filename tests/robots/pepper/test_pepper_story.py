@@ -10,86 +10,25 @@ from typing import Any
 import pytest
 
 from nl2robot.speech.aloud import ears_at
-from robot_api.capabilities.sound import Asked, Sound
-from robot_api.driver import StopFlag
-from robot_api.drivers import ComposedDriver, simulated
-from robot_api.values import Location
-from sandbox.execution import Execution, Outcome
-from sim.simulation import Simulation
-from sim.world import load_world
+from robot_api.capabilities.sound import Sound
+from sandbox.execution import Outcome
 from tests.fetched import fetched
+from tests.robots.errand import Visitor, execution_on, in_the_simulator, outcome_on, ward_in
 from tests.robots.pepper.conftest import until
 
 RECORDINGS = Path(__file__).parents[2] / "speech" / "recordings"
 
-ERRAND = """\
-desk = robot.location()
-place = robot.ask("Shall we go to radiology or to the pharmacy?", ["radiology", "pharmacy"])
-robot.guide("person", place)
-right = robot.ask("Is this where you wanted to go?", ["yes", "no"])
-robot.goto(desk)
-robot.say(f"A visitor is at the {place}. Was it right? The answer was {right}.")
-"""
-
-WARD = """\
-name: ward
-robot: {start: lobby}
-walls: [[-6, -3, 6, -3], [6, -3, 6, 5], [6, 5, -6, 5], [-6, 5, -6, -3]]
-places:
-  - {name: lobby, pose: [0, 0, 0]}
-  - {name: pharmacy, kind: room, pose: [3, 2, 90]}
-  - {name: radiology, kind: room, pose: [-3, 2, 90]}
-people:
-  - {name: Ann, kind: visitor, at: lobby, answers: ["to the pharmacy please", "yes please"]}
-"""
-
-
-class Answers:
-    """Ears that hear what a visitor says, one answer after the other."""
-
-    def __init__(self, *words: str) -> None:
-        self._words = list(words)
-
-    def hear(self, stop: StopFlag, timeout: float, asked: Asked) -> str | None:
-        return self._words.pop(0) if self._words else None
-
-
-def execution_on(driver: ComposedDriver, program: str = ERRAND) -> Execution:
-    def call(method: str, arguments: dict[str, Any], line: int) -> Any:
-        return driver.call(method, arguments, StopFlag())
-
-    return Execution(program, call)
-
-
-def outcome_on(driver: ComposedDriver) -> tuple[Outcome, list[tuple[str, Any]], str]:
-    """How it ended, what each call gave, and what was said last. Where the desk is on the robot's
-    map is the robot's own affair."""
-    outcome = execution_on(driver).run()
-    results = [
-        (made.method, None if isinstance(made.result, Location) else made.result)
-        for made in driver.calls
-    ]
-    return outcome, results, str(driver.calls[-1].arguments["text"])
-
-
-@pytest.fixture
-def ward(tmp_path: Path) -> Any:
-    file = tmp_path / "ward.yaml"
-    file.write_text(WARD, encoding="utf-8")
-    return load_world(str(file))
-
 
 def test_a_visitor_is_shown_the_way_by_pepper_as_in_the_simulator(
-    ward: Any, standing_in: Callable[..., Any], drive: Callable[..., Any]
+    tmp_path: Path, standing_in: Callable[..., Any], drive: Callable[..., Any]
 ) -> None:
     """Pepper hears the visitor by its own microphone and our recogniser."""
     fetched("en")
     voices = ("to-the-pharmacy-please.wav", "yes-please.wav")
     pepper = standing_in(voices=[str(RECORDINGS / voice) for voice in voices])
-    on_pepper = drive(pepper, sound=Sound(ears_at=ears_at(ward)))
+    on_pepper = drive(pepper, sound=Sound(ears_at=ears_at(ward_in(tmp_path))))
     with_pepper = outcome_on(on_pepper)
-    in_the_simulator = outcome_on(simulated(Simulation(ward)))
-    assert with_pepper == in_the_simulator
+    assert with_pepper == in_the_simulator(tmp_path)
     assert with_pepper[0].status == "done"
     assert pepper.texts[-1] == with_pepper[2]
     assert "Please follow me." in pepper.texts
@@ -104,7 +43,7 @@ def test_stopped_in_the_middle_it_stands_and_the_program_is_over(
     standing_in: Callable[..., Any], drive: Callable[..., Any]
 ) -> None:
     pepper = standing_in(hurry=2.0)
-    driver = drive(pepper, sound=Sound(ears_at=lambda _: Answers("pharmacy")))
+    driver = drive(pepper, sound=Sound(ears_at=lambda _: Visitor("pharmacy")))
     execution = execution_on(driver)
     outcomes: list[Outcome] = []
     running = threading.Thread(target=lambda: outcomes.append(execution.run()))
@@ -125,7 +64,7 @@ def test_cut_in_the_middle_the_program_ends_and_is_not_taken_up_again(
     stop."""
     pepper = standing_in(hurry=0.5)
     way = network(pepper)
-    driver = drive(way, sound=Sound(ears_at=lambda _: Answers("pharmacy")))
+    driver = drive(way, sound=Sound(ears_at=lambda _: Visitor("pharmacy")))
     links: list[str] = []
     driver.subscribe(lambda kind, data: links.append(data["state"]) if kind == "link" else None)
     outcomes: list[Outcome] = []

@@ -3,50 +3,19 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import pytest
 
-from robot_api.capabilities.sound import Asked, Sound
+from robot_api.capabilities.sound import Sound
 from robot_api.driver import Driver, StopFlag
-from robot_api.drivers import simulated
 from robot_api.errors import StopNotConfirmed
 from sandbox.execution import Execution, Outcome
-from sim.simulation import Simulation
-from sim.world import load_world
+from tests.robots import errand
+from tests.robots.errand import Visitor, outcome_on
 from tests.robots.ros.stand_in import StandIn
 from tests.robots.ros.ward import Heard, connected
-
-GUIDE = """\
-desk = robot.location()
-robot.say("Please come with me to the pharmacy.")
-robot.goto("pharmacy")
-answer = robot.ask("Is there anything else?", ["yes", "no"])
-robot.goto(desk)
-robot.say(f"The visitor is at the pharmacy. Anything else: {answer}.")
-"""
-REPORT = "The visitor is at the pharmacy. Anything else: no."
-WORLD = """\
-name: ward
-walls: [[-5, -5, 10, -5], [10, -5, 10, 8], [10, 8, -5, 8], [-5, 8, -5, -5]]
-robot: {start: charger}
-places:
-  - {name: charger, pose: [0, 0, 0]}
-  - {name: pharmacy, pose: [4, 3, 90]}
-people:
-  - {name: Ann, kind: visitor, at: pharmacy, answers: ["no"]}
-"""
-
-
-class Visitor:
-    """Answers what is asked."""
-
-    def __init__(self, words: Sequence[str]) -> None:
-        self._words = list(words)
-
-    def hear(self, stop: StopFlag, timeout: float, asked: Asked) -> str | None:
-        return self._words.pop(0) if self._words else None
 
 
 def run(driver: Driver, program: str, during: Callable[[Execution], None] | None = None) -> Outcome:
@@ -61,37 +30,18 @@ def run(driver: Driver, program: str, during: Callable[[Execution], None] | None
     return execution.run()
 
 
-def told(driver: Driver) -> list[str]:
-    said: list[str] = []
-
-    def hear(kind: str, data: Any) -> None:
-        if kind == "speech":
-            said.append(data["text"])
-
-    driver.subscribe(hear)
-    return said
-
-
 @pytest.mark.parametrize("version", [1, 2])
 def test_the_visitor_comes_to_the_pharmacy_as_in_the_simulation(version: int, tmp_path) -> None:
-    file = tmp_path / "ward.yaml"
-    file.write_text(WORLD, encoding="utf-8")
-    in_simulation = simulated(Simulation(load_world(str(file))))
-    said_there = told(in_simulation)
-    there = run(in_simulation, GUIDE)
-    in_simulation.close()
-
-    visitor = Sound(ears=Visitor(["no"]))
-    with StandIn(version) as robot, connected(robot, sound=visitor) as driver:
-        said_here = told(driver)
-        here = run(driver, GUIDE)
-        assert [(goal.x, goal.y) for goal in robot.goals] == [(4, 3), (0, 0)]
+    visitor = Sound(ears=Visitor("to the pharmacy please", "yes please"))
+    with (
+        StandIn(version) as robot,
+        connected(robot, sound=visitor, places=errand.PLACES) as driver,
+    ):
+        here = outcome_on(driver)
+        assert [(goal.x, goal.y) for goal in robot.goals] == [(3, 2), (0, 0)]
         assert robot.stands
-
-    assert (here.status, here.line, here.calls) == (there.status, there.line, there.calls)
-    assert here.status == "done"
-    assert said_here == said_there
-    assert said_here[-1] == REPORT
+    assert here == errand.in_the_simulator(tmp_path)
+    assert (here[0].status, here[2]) == ("done", errand.REPORT)
 
 
 @pytest.mark.parametrize("version", [1, 2])

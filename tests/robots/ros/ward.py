@@ -34,6 +34,7 @@ def connected(
     file: RobotFile | None = None,
     *,
     keep_out: list[list[tuple[float, float]]] | None = None,
+    places: dict[str, NamedPlace] | None = None,
     sound: Sound = SILENT,
     user: str = "",
     password: str | None = None,
@@ -43,7 +44,7 @@ def connected(
         Setup(
             address=parse(f"{kind.scheme}://{user}127.0.0.1:{robot.port}"),
             file=file or RobotFile(),
-            places=Places(WARD, keep_out or ()),
+            places=Places(places or WARD, keep_out or ()),
             settings=settings,
             sound=sound,
             password=password,
