@@ -23,7 +23,7 @@ from robot_api.conformance.subject import (
     honest,
 )
 from robot_api.driver import Driver
-from robot_api.errors import LostConnection, NotSupported, RobotError, Stopped
+from robot_api.errors import AccessDenied, LostConnection, NotSupported, RobotError, Stopped
 from robot_api.robots.address import Address
 
 Connect = Callable[[Address], Driver]
@@ -106,8 +106,9 @@ class Losing:
     def answers_nonsense(self) -> None:
         with self.proxy() as link:
             link.garble()
-            # That may as well be a robot of another kind.
-            self.refused(link, "to what answers nonsense", LostConnection, NotSupported)
+            # That may as well be a robot of another kind, or one that wants another login.
+            known = (LostConnection, NotSupported, AccessDenied)
+            self.refused(link, "to what answers nonsense", *known)
 
     def refused(self, link: Proxy, where: str, *errors: type[RobotError]) -> None:
         """Connecting raises one of the errors in time, `LostConnection` if none are given."""

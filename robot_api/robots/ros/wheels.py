@@ -80,13 +80,16 @@ class Wheels:
         """Must not wait."""
         self._listeners.append(listener)
 
+    def _is_fresh(self, within: float) -> bool:
+        return bool(self._recent) and time.monotonic() - self._recent[-1].at <= within
+
     def now(self, within: float = FRESH) -> Moment:
-        """The last of it; of a robot that has just been reached the first is waited for. Raises
-        `NotPossible` if that is missing or older than `within` s."""
+        """The last of it, waited for if it is older than `within` s. Raises `NotPossible` if none
+        comes as long again."""
         with self._changed:
-            self._changed.wait_for(lambda: self._recent or self._nonsense, within)
-            last = self._recent[-1] if self._recent else None
-        if last is None or time.monotonic() - last.at > within:
+            self._changed.wait_for(lambda: self._is_fresh(within) or self._nonsense, within)
+            last = self._recent[-1] if self._is_fresh(within) else None
+        if last is None:
             raise NotPossible(
                 "My wheels tell nonsense about how far I have come, so I do not drive."
                 " Tell whoever looks after the robot."

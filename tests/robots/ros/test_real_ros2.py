@@ -1,7 +1,7 @@
 """The same wire with real ROS 2 nodes under a real rosbridge, where such an environment is there.
 
-`NL2ROBOT_ROS2` names it, a Python environment of its own: its packages start every Python in it
-twice, so they cannot be in ours. docs/robots/ros.md says how to make one. rosapi is not to be had
+`make ros2` makes it, a Python environment of its own (or `NL2ROBOT_ROS2` names one): its packages
+start every Python in it twice, so they cannot be in ours. rosapi is not to be had
 there, nor are Nav2's messages: what is shown is velocities, odometry, the stop, and an action that
 is cancelled from another connection than its own.
 """
@@ -29,15 +29,15 @@ from robot_api.robots.ros.wire import Where
 from tests.robots.ros.stand_in import free_port
 from tests.robots.ros.ward import Under, call
 
-ENVIRONMENT = os.environ.get("NL2ROBOT_ROS2")
-pytestmark = pytest.mark.skipif(ENVIRONMENT is None, reason="there is no NL2ROBOT_ROS2")
+ENVIRONMENT = Path(os.environ.get("NL2ROBOT_ROS2", Path(__file__).parents[3] / ".venv-ros2"))
+pytestmark = pytest.mark.skipif(not ENVIRONMENT.exists(), reason="there is no ROS 2 (make ros2)")
 
 TYPES = {"velocity": "geometry_msgs/msg/Twist", "odometry": "nav_msgs/msg/Odometry"}
 
 
 @pytest.fixture(scope="module")
 def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
-    home, place = Path(str(ENVIRONMENT)), tmp_path_factory.mktemp("ros2")
+    home, place = ENVIRONMENT, tmp_path_factory.mktemp("ros2")
     packages = next(home.glob("lib/python3.*/site-packages"))
     bridge = place / "rosbridge"
     shutil.copy(packages / "rosbridge_server_rs" / "rosbridge_server_rs_jazzy", bridge)
@@ -64,13 +64,19 @@ def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
         subprocess.Popen([python, Path(__file__).with_name("real_base.py")], env=domain),
     ]
     try:
-        _driver(found).close()
         yield found
     finally:
         for program in programs:
             program.terminate()
         for program in programs:
             program.wait(10)
+
+
+@pytest.fixture(scope="module")
+def driver(port: int) -> Iterator[RosDriver]:
+    driver = _driver(port)
+    yield driver
+    driver.close()
 
 
 def _driver(port: int) -> RosDriver:
@@ -96,20 +102,17 @@ def _driver(port: int) -> RosDriver:
     raise AssertionError("there is no robot")
 
 
-def test_it_moves_turns_and_stands(port: int) -> None:
-    driver = _driver(port)
-    try:
-        assert {"move", "turn", "drive"} <= set(driver.capabilities().methods)
-        call(driver, "move", metres=0.3)
-        call(driver, "turn", degrees=-45)
-        under_way = Under(driver, "drive", linear=0.3, angular=0, seconds=30)
-        StopFlag().wait(0.5)
-        driver.stop("The nurse said stop.")
-        assert isinstance(under_way.ended(0.5), Stopped)
-    finally:
-        driver.close()
+def test_it_moves_turns_and_stands(driver: RosDriver) -> None:
+    assert {"move", "turn", "drive"} <= set(driver.capabilities().methods)
+    call(driver, "move", metres=0.3)
+    call(driver, "turn", degrees=-45)
+    under_way = Under(driver, "drive", linear=0.3, angular=0, seconds=30)
+    StopFlag().wait(0.5)
+    driver.stop("The nurse said stop.")
+    assert isinstance(under_way.ended(0.5), Stopped)
 
 
+@pytest.mark.usefixtures("driver")  # then the robot is there
 def test_an_action_is_cancelled_from_the_connection_for_stopping(port: int) -> None:
     connection = Connection(Where("127.0.0.1", port), lost_after=2.0)
     try:
