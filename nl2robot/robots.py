@@ -151,7 +151,7 @@ def places_of(world: World, zones: tuple[Zone, ...]) -> Places:
             goal=Goal(pose.x, pose.y, pose.theta, place.name) if pose is not None else None,
             aliases=tuple(alias for aliases in place.aliases.values() for alias in aliases),
         )
-    return Places(named=named, keep_out=tuple(zone.polygon for zone in zones))
+    return Places(named=named, keep_out=[zone.polygon for zone in zones])
 
 
 @contextmanager

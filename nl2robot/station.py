@@ -232,7 +232,7 @@ def robot_station(
     world: World,
     log: RunLog,
     *,
-    zones: Sequence[Zone] = (),
+    zones: Callable[[], Sequence[Zone]] = tuple,
     places: Places | None = None,
     sound: Sound = SILENT,
     host: str = "127.0.0.1",
@@ -241,14 +241,15 @@ def robot_station(
     console: Callable[[Backstage], Console] | None = None,
 ) -> Iterator[tuple[Station, Server]]:
     """A station with a robot that is not simulated. Its places are those of `world`, in which dry
-    runs are simulated, with these keep-out zones. `places` are what the driver is sent by: it is
-    told there of places that are named on the map. `sound` is what the driver speaks and hears
-    with, if it does so on this machine."""
+    runs are simulated, with the keep-out zones as they are then. `places` are what the driver is
+    sent by: it is told there of what is named and drawn on the map. `sound` is what the driver
+    speaks and hears with, if it does so on this machine."""
 
     def stage(world: World) -> Simulation:
         simulation = Simulation(world)
-        if zones:
-            simulation.set_zones(tuple(zones))
+        drawn = tuple(zones())
+        if drawn:
+            simulation.set_zones(drawn)
         return simulation
 
     with _open(

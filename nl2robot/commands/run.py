@@ -146,8 +146,7 @@ def _station(
             return
         here = sound(time.monotonic) if sound else SILENT
         driver = stack.enter_context(reached(robot, world, here))
-        zones = zones_of(world)
-        real = robot_station(driver, world, log, zones=zones, sound=here)
+        real = robot_station(driver, world, log, zones=lambda: zones_of(world), sound=here)
         station, _ = stack.enter_context(real)
         yield station
 

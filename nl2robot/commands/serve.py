@@ -72,14 +72,13 @@ def run(options: argparse.Namespace) -> int:
             server = stack.enter_context(simulated).server
         else:
             here = sound(time.monotonic) if sound else SILENT
-            zones = zones_of(world)
-            places = places_of(world, zones)
+            places = places_of(world, zones_of(world))
             driver = stack.enter_context(reached(robot, world, here, places=places))
             station = robot_station(
                 driver,
                 world,
                 log,
-                zones=zones,
+                zones=lambda: zones_of(world),
                 places=places,
                 sound=here,
                 host=options.host,

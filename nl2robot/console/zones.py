@@ -17,7 +17,6 @@ from nl2robot.drawn import Drawn
 from nl2robot.errors import UserError
 from nl2robot.paths import data_file
 from nl2robot.wire import service
-from sim.simulation import Simulation
 from sim.world import Zone, key
 from sim.zones import trouble_with
 
@@ -55,51 +54,72 @@ def part(backstage: Backstage) -> Part:
     simulation = backstage.simulation
     fixed = backstage.runner.knowledge.world.zones
     changing = threading.Lock()
+    known = backstage.places
+    keeps = simulation is not None or (known is not None and known.keeps_out)
+
+    world = backstage.runner.knowledge.world
+    held = fixed
+    """All of them, as they hold now."""
 
     def listed() -> list[dict[str, Any]]:
-        zones = simulation.world.zones if simulation is not None else fixed
         return [
             {
                 "name": zone.name,
                 "polygon": [list(corner) for corner in zone.polygon],
                 "removable": zone not in fixed,
             }
-            for zone in zones
+            for zone in held
         ]
 
-    def hold(robot: Simulation, zones: tuple[Zone, ...]) -> list[dict[str, Any]]:
-        robot.set_zones((*fixed, *zones))
+    def hold(zones: tuple[Zone, ...]) -> None:
+        nonlocal held
+        held = (*fixed, *zones)
+        if simulation is not None:
+            simulation.set_zones(held)
+        if known is not None:
+            known.keep_out_of([zone.polygon for zone in held])
+
+    def changed(zones: tuple[Zone, ...]) -> list[dict[str, Any]]:
+        hold(zones)
         told = listed()
         backstage.publish("zones", {"zones": told})
         return told
 
+    def check_driver() -> None:
+        if not keeps:
+            raise UserError(
+                "This robot cannot be kept out of zones from here. Draw them in the software that"
+                " drives it."
+            )
+
     def added(p: Mapping[str, Any]) -> list[dict[str, Any]]:
-        robot = _simulated(simulation)
+        check_driver()
         zone = _sound(p["name"], p["polygon"])
         _check_free(zone.name, fixed)
         with changing:
-            others = tuple(_others(drawn.of(robot.world), zone.name))
+            others = tuple(_others(drawn.of(world), zone.name))
             if len(others) >= MOST_ZONES:
                 raise UserError(
                     f"There are {MOST_ZONES} keep-out zones already. Remove one of them first."
                 )
-            drawn.keep(robot.world, (*others, zone))
-            return hold(robot, (*others, zone))
+            drawn.keep(world, (*others, zone))
+            return changed((*others, zone))
 
     def removed(p: Mapping[str, Any]) -> list[dict[str, Any]]:
-        robot, name = _simulated(simulation), p["name"]
+        check_driver()
+        name = p["name"]
         _check_free(name, fixed)
         with changing:
-            zones = drawn.of(robot.world)
+            zones = drawn.of(world)
             others = tuple(_others(zones, name))
             if len(others) == len(zones):
                 raise UserError(f'There is no keep-out zone "{name}". It may be removed already.')
-            drawn.keep(robot.world, others)
-            return hold(robot, others)
+            drawn.keep(world, others)
+            return changed(others)
 
-    if simulation is not None:
+    if keeps:
         try:
-            simulation.set_zones((*fixed, *drawn.of(simulation.world)))
+            hold(drawn.of(world))
         except UserError as error:  # the robot is served without them, and who draws is told why
             _log.warning("%s", error)
     return Part(
@@ -124,15 +144,6 @@ def part(backstage: Backstage) -> Part:
         },
         events={"zones": "zones, as zones.list tells them, whenever they were drawn anew"},
     )
-
-
-def _simulated(simulation: Simulation | None) -> Simulation:
-    if simulation is None:
-        raise UserError(
-            "Only a simulated robot can be kept out of zones from here. Draw them in the software"
-            " that drives this robot."
-        )
-    return simulation
 
 
 def _sound(name: str, polygon: list[list[float]]) -> Zone:

@@ -61,8 +61,24 @@ class Places:
     named: dict[str, NamedPlace] = field(default_factory=dict)
     """By name. Operators name more on the map while the robot is served, so a driver looks here at
     each call and keeps no copy."""
-    keep_out: Sequence[Sequence[Point]] = ()
-    """Outlines of where it must not drive, in metres on its map."""
+    keep_out: list[Sequence[Point]] = field(default_factory=list)
+    """Outlines of where it must not drive, in metres on its map; drawn anew by `keep_out_of`."""
+    _listeners: list[Callable[[], None]] = field(default_factory=list)
+
+    def keep_out_of(self, outlines: Sequence[Sequence[Point]]) -> None:
+        """Operators have drawn the zones anew: these are all of them now."""
+        self.keep_out[:] = outlines
+        for listener in self._listeners:
+            listener()
+
+    @property
+    def keeps_out(self) -> bool:
+        """Whether the driver heeds zones that are drawn while the robot is served."""
+        return bool(self._listeners)
+
+    def on_keep_out(self, listener: Callable[[], None]) -> None:
+        """Call it, from any thread, whenever the zones were drawn anew."""
+        self._listeners.append(listener)
 
 
 @dataclass(frozen=True, kw_only=True)

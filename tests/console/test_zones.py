@@ -15,6 +15,7 @@ from nl2robot.console.part import Backstage
 from nl2robot.knowledge import Knowledge
 from robot_api.driver import StopFlag
 from robot_api.errors import InvalidCall
+from robot_api.robots.registry import Places
 from robot_api.server import Context
 from sim.simulation import Simulation
 from sim.world import World, Zone, load_world
@@ -25,12 +26,13 @@ SQUARE = [[4, 1], [6, 1], [6, 2], [4, 2]]
 class Console:
     """The part by itself, as one start of the server has it."""
 
-    def __init__(self, world: World, real: bool = False) -> None:
+    def __init__(self, world: World, real: bool = False, places: Places | None = None) -> None:
         self.published: list[tuple[str, Any]] = []
         self.simulation = None if real else Simulation(world)
         backstage = SimpleNamespace(
             runner=SimpleNamespace(knowledge=Knowledge(world)),
             simulation=self.simulation,
+            places=places,
             publish=lambda kind, data: self.published.append((kind, data)),
         )
         self.part = zones.part(cast(Backstage, backstage))
@@ -144,10 +146,24 @@ def test_there_is_an_end_to_zones(start) -> None:
     console("zones.set", name="7", polygon=SQUARE)
 
 
-def test_a_real_robot_is_kept_out_by_its_own_software(start) -> None:
-    console = start(load_world("ward"), real=True)
+def test_a_real_robot_is_told_of_zones_as_they_are_drawn(start) -> None:
+    places, told = Places(), []
+    places.on_keep_out(lambda: told.append(list(places.keep_out)))
+    console = start(load_world("ward"), real=True, places=places)
+    console("zones.set", name="stairs", polygon=SQUARE)
+    assert console.names() == ["stairs"] and told[-1] == [tuple(map(tuple, SQUARE))]
+    again = Places()
+    again.on_keep_out(lambda: None)
+    start(load_world("ward"), real=True, places=again)
+    assert again.keep_out == told[-1], "a new start knows them"
+    console("zones.remove", name="stairs")
+    assert told[-1] == [] == places.keep_out
+
+
+def test_a_robot_that_goes_by_no_map_is_kept_out_by_its_own_software(start) -> None:
+    console = start(load_world("ward"), real=True, places=Places())
     assert console("zones.list") == []
-    with pytest.raises(InvalidCall, match="software that drives this robot"):
+    with pytest.raises(InvalidCall, match="software that drives it"):
         console("zones.set", name="x", polygon=SQUARE)
 
 

@@ -50,6 +50,7 @@ class PepperNavigation(Navigation):
         self._places = places
         self._most = most
         self._keep_out = _area(places)
+        places.on_keep_out(self._drawn_anew)
         self._file = file
         self._chosen = False  # the map; until then Pepper may have another
         wire.each_time(self._find_its_way)
@@ -185,6 +186,9 @@ class PepperNavigation(Navigation):
         away = {name: math.hypot(goal.x - x, goal.y - y) for name, goal in goals.items()}
         nearest = min(away, key=away.__getitem__, default=None)
         return nearest if nearest is not None and away[nearest] <= _AT else None
+
+    def _drawn_anew(self) -> None:
+        self._keep_out = _area(self._places)
 
     def _forbidden(self, x: float, y: float) -> bool:
         from shapely import Point

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import threading
 import time
+from contextlib import suppress
 from datetime import datetime
 from functools import partial
 from typing import Any
@@ -426,7 +427,13 @@ class _Assembly:
                 self._book.write(f"found again, but: {error}", "error")
             mask()
 
+        def drawn_anew() -> None:
+            self._keep_out.hold(self._setup.places.keep_out)
+            with suppress(LostConnection):  # it is given them when it is found again
+                mask()
+
         mask()
+        self._setup.places.on_keep_out(drawn_anew)
         self._connection.watch(self._link, found_again, heart)
 
     def _mask(self, found: Found) -> Any:
@@ -435,13 +442,19 @@ class _Assembly:
         topics, line = self._settings.topics, self._connection.work
         info = found.filter_info
         mask = topics.keep_out_mask or USUAL_TOPICS.keep_out_mask
-        if info is None or mask is None or not self._keep_out or self._graph.is_published(info[0]):
+        if info is None or mask is None or self._graph.is_published(info[0]):
             return lambda: None
-        line.advertise(mask, self._dialect.type("nav_msgs/OccupancyGrid"), latch=True)
-        line.advertise(*info, latch=True)
         frame = self._settings.frames.map
+        given = False
 
         def give() -> None:
+            nonlocal given
+            if not given and not self._keep_out:
+                return  # it has never had any
+            if not given:
+                line.advertise(mask, self._dialect.type("nav_msgs/OccupancyGrid"), latch=True)
+                line.advertise(*info, latch=True)
+            given = True
             grid = self._keep_out.mask(self._dialect, frame, self._settings.mask_resolution)
             line.publish(mask, grid)
             line.publish(

@@ -22,10 +22,15 @@ class KeepOut:
     """The zones: outlines in metres on the robot's map."""
 
     def __init__(self, zones: Sequence[Sequence[Point]]) -> None:
+        self.hold(zones)
+
+    def hold(self, zones: Sequence[Sequence[Point]]) -> None:
+        """These are all of them from now on."""
         from shapely import Polygon, prepare, union_all
 
-        self._area = union_all([Polygon(zone).buffer(0) for zone in zones if len(zone) >= 3])
-        prepare(self._area)
+        area = union_all([Polygon(zone).buffer(0) for zone in zones if len(zone) >= 3])
+        prepare(area)
+        self._area = area
 
     def __bool__(self) -> bool:
         return not self._area.is_empty
@@ -48,7 +53,7 @@ class KeepOut:
         import numpy as np
         from shapely import intersects_xy
 
-        left, bottom, right, top = self._area.bounds
+        left, bottom, right, top = self._area.bounds if self else (0.0, 0.0, 0.0, 0.0)
         cell = max(resolution, math.sqrt((right - left + 1) * (top - bottom + 1) / _MOST_CELLS))
         left, bottom = left - 2 * cell, bottom - 2 * cell
         width = math.ceil((right - left) / cell) + 2

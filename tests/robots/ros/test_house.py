@@ -8,12 +8,13 @@ import pytest
 
 from robot_api.errors import Blocked, LostConnection, NotPossible, NotSupported
 from robot_api.robots.address import parse
+from robot_api.robots.registry import Places
 from robot_api.robots.ros import grid
 from robot_api.robots.ros.dialect import Dialect
 from robot_api.robots.ros.grid import fetch_map
 from robot_api.robots.ros.keep_out import KeepOut
 from tests.robots.ros.stand_in import StandIn, free_port
-from tests.robots.ros.ward import Under, call, connected
+from tests.robots.ros.ward import WARD, Under, call, connected
 
 both = pytest.mark.parametrize("version", [1, 2])
 STAIRS = [(2.0, -1.0), (3.0, -1.0), (3.0, 1.0), (2.0, 1.0)]
@@ -64,6 +65,30 @@ def test_a_robot_with_a_filter_is_given_the_zones_as_a_mask() -> None:
         robot.cut()
         robot.mend()
         robot.until(lambda: len(robot.heard("/costmap_filter_info")) == 2)
+
+
+@both
+def test_a_zone_that_is_drawn_while_it_is_driven_holds_at_once(version) -> None:
+    known = Places(WARD)
+    with StandIn(version) as robot, connected(robot, known=known) as driver:
+        known.keep_out_of([STAIRS])
+        with pytest.raises(NotPossible, match="must not drive"):
+            call(driver, "goto", x=2.5, y=0)
+        known.keep_out_of([])
+        call(driver, "goto", x=2.5, y=0)
+
+
+def test_the_mask_is_given_anew_when_zones_are_drawn() -> None:
+    robot, known = StandIn(keep_out_filter=True), Places(WARD)
+    with robot, connected(robot, known=known):
+        assert not robot.heard("/keepout_filter_mask")
+        known.keep_out_of([STAIRS])
+        robot.until(lambda: robot.heard("/costmap_filter_info"))
+        (mask,) = robot.heard("/keepout_filter_mask")
+        assert _at(mask, 2.5, 0.0) == 100
+        known.keep_out_of([])
+        robot.until(lambda: len(robot.heard("/keepout_filter_mask")) == 2)
+        assert not any(robot.heard("/keepout_filter_mask")[1]["data"])
 
 
 def test_a_robot_without_a_filter_is_given_none() -> None:

@@ -35,6 +35,7 @@ def connected(
     *,
     keep_out: list[list[tuple[float, float]]] | None = None,
     places: dict[str, NamedPlace] | None = None,
+    known: Places | None = None,
     sound: Sound = SILENT,
     user: str = "",
     password: str | None = None,
@@ -44,7 +45,7 @@ def connected(
         Setup(
             address=parse(f"{kind.scheme}://{user}127.0.0.1:{robot.port}"),
             file=file or RobotFile(),
-            places=Places(places or WARD, keep_out or ()),
+            places=known or Places(places or WARD, list(keep_out or ())),
             settings=settings,
             sound=sound,
             password=password,
