@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from nl2robot.commands import chat
+from nl2robot.commands.options import robot_of
 from nl2robot.speech import aloud as aloud_module
 from nl2robot.speech import full_duplex as module
 from nl2robot.speech.aloud import RobotVoice, Wishes, aloud
@@ -220,7 +221,8 @@ def test_it_takes_a_loudspeaker_and_a_microphone_that_are_both_here(
 ) -> None:
     parser = argparse.ArgumentParser()
     chat.add_arguments(parser)
-    assert (chat._duplex(parser.parse_args(options)) is not None) is here
+    given = parser.parse_args(options)
+    assert (chat._duplex(given, robot_of(given)) is not None) is here
 
 
 # --- answers that begin before the question has ended --------------------------------------------

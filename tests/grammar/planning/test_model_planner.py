@@ -99,7 +99,7 @@ def test_a_way_out_that_is_only_second_best_is_none(scripted: Scripted) -> None:
 
 def test_why_there_is_no_model_is_told(scripted: Scripted) -> None:
     answer = planned(scripted({}, ill="It has a cold. Come back tomorrow."))
-    assert answer == Refusal("It has a cold. Come back tomorrow.")
+    assert answer == Refusal("It has a cold. Come back tomorrow.", absent=True)
 
 
 def test_a_long_story_is_not_even_read(scripted: Scripted) -> None:

@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import Iterator
+from collections.abc import Coroutine, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 import pytest
 
@@ -22,6 +24,12 @@ realtime = pytest.importorskip("furhat_realtime_api")
 def furhat() -> Iterator[FurhatStandIn]:
     with FurhatStandIn(key="sesame", users=["user-1"], hears=["to the pharmacy"]) as furhat:
         yield furhat
+
+
+def finished(work: Coroutine[Any, Any, None]) -> None:
+    """Do it in a thread of its own: the tests of pages leave a loop running in theirs."""
+    with ThreadPoolExecutor(1) as thread:
+        thread.submit(asyncio.run, work).result()
 
 
 def makers_client(furhat: FurhatStandIn, key: str | None = "sesame") -> realtime.AsyncFurhatClient:
@@ -58,7 +66,7 @@ async def everything(client: realtime.AsyncFurhatClient) -> None:
 
 
 def test_the_makers_package_talks_to_it(furhat: FurhatStandIn) -> None:
-    asyncio.run(everything(makers_client(furhat)))
+    finished(everything(makers_client(furhat)))
     assert furhat.said == ["Hello."]
     assert furhat.light == "red"
     assert furhat.attends == (0.0, 0.0, 1.0)
@@ -79,17 +87,17 @@ def test_the_makers_package_stops_what_it_says(furhat: FurhatStandIn) -> None:
         assert (await ended)["aborted"]
         await client.disconnect()
 
-    asyncio.run(talk())
+    finished(talk())
     assert furhat.said == []
 
 
 def test_the_makers_package_needs_the_key(furhat: FurhatStandIn) -> None:
     with pytest.raises(RuntimeError, match="Authentication failed"):
-        asyncio.run(makers_client(furhat, "guessed").connect())
+        finished(makers_client(furhat, "guessed").connect())
 
 
 def test_our_driver_sends_what_the_makers_package_sends(furhat: FurhatStandIn) -> None:
-    asyncio.run(everything(makers_client(furhat)))
+    finished(everything(makers_client(furhat)))
     theirs: dict[str, set[str]] = {}
     for message in furhat.received:
         theirs.setdefault(message["type"], set()).update(message)
