@@ -68,7 +68,7 @@ def review(
     findings = [*check(program, stub()), *violations(program, knowledge)]
     findings.sort(key=lambda finding: (finding.line, finding.column))
     acceptable = not any(finding.severity == "error" for finding in findings)
-    tried = _tried(program, stage(), seed) if acceptable and stage is not None else None
+    tried = _tried(program, stage(), seed, knowledge) if acceptable and stage is not None else None
     return Review(
         program=program,
         sha256=digest(program),
@@ -79,9 +79,10 @@ def review(
     )
 
 
-def _tried(program: str, simulation: Simulation, seed: int | None) -> Tried:
+def _tried(program: str, simulation: Simulation, seed: int | None, knowledge: Knowledge) -> Tried:
     situation = Situation.of(simulation)
-    return Tried(situation, *watched(program, simulation, seed=seed))
+    skills = knowledge.capabilities.skills if knowledge.capabilities is not None else ()
+    return Tried(situation, *watched(program, simulation, seed=seed, skills=skills))
 
 
 def reading(program: str, knowledge: Knowledge, language: str) -> Iterator[Reading]:

@@ -66,3 +66,16 @@ def test_what_computes_too_much_is_foreseen(ward) -> None:
     told = rehearse('print("x" * 100)\nwhile True:\n    print("x" * 5000)\n', ward)
     assert told.status == "limit"
     assert "printed more" in told.message
+
+
+def test_a_skill_of_the_real_robot_does_not_fail_for_the_simulated_one(ward) -> None:
+    program = 'robot.do("sit")\nrobot.say("Hello!")\n'
+    told = rehearse(program, ward, skills={"sit": "sit down"})
+    assert (told.status, told.message) == ("done", None)
+    assert "Hello!" in told.says
+
+
+def test_a_skill_that_no_robot_has_fails(ward) -> None:
+    told = rehearse('robot.do("juggle")\n', ward, skills={"sit": "sit down"})
+    assert (told.status, told.line) == ("failed", 1)
+    assert "juggle" in told.message
