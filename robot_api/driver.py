@@ -98,6 +98,8 @@ Event = Mapping[str, Any]
 
 EVENTS: Mapping[str, str] = {
     "pose": "x, y (metres), theta (degrees), place, speed (m/s), time (s); 10 a second when moving",
+    "lidar": "metres: distances to what is around it, evenly round it from straight ahead to the"
+    " left, null where nothing is in reach; at most 5 a second",
     "speech": "text, language: the robot speaks",
     "heard": "text, person: somebody answered",
     "language": "code: the robot speaks and hears it from now on",

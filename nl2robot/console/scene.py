@@ -2,7 +2,7 @@
 
 Ten times a second, while somebody watches, one look at the simulation becomes one frame for all who
 watch; a frame that tells nothing new is not sent. A robot that is not simulated is known by its
-pose events alone: there the frames hold no people and no lidar.
+events alone: its poses, and what its lidar measures if it has one. There the frames hold no people.
 """
 
 from __future__ import annotations
@@ -28,6 +28,8 @@ TRAIL_STEP: Final = 0.15
 TRAIL_POINTS: Final = 600
 LEAP: Final = 3.0
 """Metres that nobody drives between two poses: the robot was carried, and a new trail begins."""
+FAR: Final = 10_000
+"""Centimetres that stand for nothing in reach of the lidar."""
 MOST_PEOPLE: Final = 40
 """Of a frame; a crowd would make it slow to send, and nobody could read the names."""
 
@@ -68,6 +70,7 @@ class Scene:
     def __init__(self, backstage: Backstage) -> None:
         self._backstage = backstage
         self._pose: Event = {}
+        self._lidar: Sequence[int] = ()
         self._trail: deque[tuple[float, float]] = deque(maxlen=TRAIL_POINTS)
         simulation = backstage.simulation
         self._things: Sequence[ThingSeen] = simulation.view().things if simulation else ()
@@ -108,6 +111,8 @@ class Scene:
                 self._ticker.start()
 
     def _hear(self, kind: str, data: Event) -> None:
+        if kind == "lidar":
+            self._lidar = [FAR if each is None else round(100 * each) for each in data["metres"]]
         if kind != "pose":
             return
         self._pose = data
@@ -142,7 +147,7 @@ class Scene:
         simulation = self._backstage.simulation
         if simulation is not None:
             return frame_of_view(simulation.view(), self._things)
-        return frame_of_pose(self._pose)
+        return frame_of_pose(self._pose, self._lidar)
 
 
 def frame_of_view(view: View, things: Sequence[ThingSeen]) -> Frame:
@@ -165,8 +170,8 @@ def frame_of_view(view: View, things: Sequence[ThingSeen]) -> Frame:
     }
 
 
-def frame_of_pose(pose: Event) -> Frame:
-    """The frame of a robot of which only the pose is known, or nothing yet."""
+def frame_of_pose(pose: Event, lidar: Sequence[int] = ()) -> Frame:
+    """The frame of a robot of which only the pose and the lidar are known, or nothing yet."""
     return {
         "time": pose.get("time"),
         "x": pose.get("x"),
@@ -175,7 +180,7 @@ def frame_of_pose(pose: Event) -> Frame:
         "speed": pose.get("speed", 0.0),
         "place": pose.get("place"),
         "way": (),
-        "lidar": (),
+        "lidar": lidar,
         "people": (),
         "things": (),
         "closed": None,

@@ -210,6 +210,8 @@ def test_a_robot_that_is_not_simulated_is_known_by_its_pose() -> None:
         watched.backstage.tell("pose", {"x": 3.0, "y": 2.0, "theta": 90.0, "place": "pharmacy"})
         frame = watched.until(lambda frame: frame["x"] == 3.0)
         assert frame["place"] == "pharmacy" and frame["closed"] is None
+        watched.backstage.tell("lidar", {"metres": [1.5, None]})
+        assert watched.until(lambda frame: len(frame["lidar"]) == 2)["lidar"] == [150, 10_000]
     finally:
         watched.scene.close()
 

@@ -40,6 +40,7 @@ from robot_api.robots.ros.graph import Graph
 from robot_api.robots.ros.grid import received
 from robot_api.robots.ros.halting import Halting
 from robot_api.robots.ros.keep_out import KeepOut
+from robot_api.robots.ros.laser import EVERY, Laser
 from robot_api.robots.ros.motion import RosMotion, Velocity
 from robot_api.robots.ros.navigation import Bounds, RosDock, RosNavigation, Way
 from robot_api.robots.ros.settings import USUAL_TOPICS, RosSettings
@@ -137,6 +138,9 @@ class _Assembly:
         if found.battery is not None:
             self._battery.expected = True
             self._connection.work.subscribe(*found.battery, self._battery.hear, 1.0)
+        if found.laser is not None:
+            laser = Laser(self._hub, self._settings.laser_turned)
+            self._connection.work.subscribe(*found.laser, laser.hear, EVERY)
         halting = Halting(
             self._actions,
             self._connection.ask,

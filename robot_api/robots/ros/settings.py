@@ -28,6 +28,8 @@ class Topics(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     joint_states: str | None = None
     camera: str | None = None
     """CompressedImage, for reading codes."""
+    laser: str | None = None
+    """LaserScan, for the pages' map."""
     speech: str | None = None
     """String: what is published there is spoken."""
     gesture: str | None = None
@@ -50,6 +52,7 @@ USUAL_TOPICS = Topics(
     joint_states="/joint_states",
     keep_out_mask="/keepout_filter_mask",
     keep_out_info="/costmap_filter_info",
+    laser="/scan",
     heartbeat="/nl2robot/heartbeat",
 )
 
@@ -116,5 +119,7 @@ class RosSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_on
     """Metres that it may drive by odometry alone before it no longer knows where it is."""
     mask_resolution: float = 0.1
     """Metres per cell of the keep-out mask."""
+    laser_turned: float = 0.0
+    """Degrees that the laser looks to the left of straight ahead; 180: it is mounted backwards."""
     tls: bool = False
     """Whether rosbridge is reached by wss."""

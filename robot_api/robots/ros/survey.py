@@ -28,6 +28,7 @@ class Found:
     battery: Topic
     joint_states: Topic
     camera: Topic
+    laser: Topic
     speech: Topic
     gesture: Topic
     emotion: Topic
@@ -56,6 +57,7 @@ def survey(graph: Graph, dialect: Dialect, settings: RosSettings) -> Found:
         battery=topic("battery", "sensor_msgs/BatteryState"),
         joint_states=topic("joint_states", "sensor_msgs/JointState"),
         camera=topic("camera", "sensor_msgs/CompressedImage"),
+        laser=topic("laser", "sensor_msgs/LaserScan"),
         speech=topic("speech", "std_msgs/String"),
         gesture=topic("gesture", "std_msgs/String"),
         emotion=topic("emotion", "std_msgs/String"),

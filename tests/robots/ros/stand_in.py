@@ -139,6 +139,7 @@ class StandIn:
         self.percentage: float | None = 0.73
         self.joints = {"head_pan": 0.0, "head_tilt": 0.1}
         self.camera: str | None = None
+        self.scan: Message | None = None
         self.rosapi = rosapi
         self.map = _floor()
         self._stood = 0.0
@@ -233,6 +234,7 @@ class StandIn:
             "/joint_states": "sensor_msgs/JointState",
             "/head_controller/joint_trajectory": "trajectory_msgs/JointTrajectory",
             "/camera/compressed": "sensor_msgs/CompressedImage",
+            "/scan": "sensor_msgs/LaserScan",
             "/say": "std_msgs/String",
         }
         if keep_out_filter:
@@ -576,6 +578,8 @@ class StandIn:
             "/joint_states",
             {"name": list(self.joints), "position": list(self.joints.values())},
         )
+        if self.scan is not None:
+            self._publish("/scan", self.scan)
         if self.camera is not None:
             self._publish("/camera/compressed", {"format": "jpeg", "data": self.camera})
         if self._stood < 1.0 or self.faults.nan_pose:

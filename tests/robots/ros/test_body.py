@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 from base64 import b64encode
 
 import pytest
@@ -12,6 +13,7 @@ from robot_api.driver import StopFlag
 from robot_api.errors import InvalidCall, NotPossible, NotSupported, Stopped, TimedOut
 from robot_api.robots.robot_file import RobotFile
 from robot_api.robots.ros import body
+from robot_api.robots.ros.laser import RAYS, around
 from robot_api.robots.ros.settings import RosSettings, SpeechService, Topics
 from tests.robots.ros.stand_in import StandIn
 from tests.robots.ros.ward import Heard, Under, call, connected
@@ -139,6 +141,42 @@ def test_its_camera_reads_codes_and_is_left_alone_otherwise() -> None:
         robot.camera = None
         with pytest.raises(TimedOut):
             call(driver, "scan", timeout=0.3)
+
+
+QUARTER = {"angle_min": 0.0, "angle_increment": math.pi / 2, "range_min": 0.1, "range_max": 8.0}
+
+
+@pytest.mark.parametrize("version", [1, 2])
+def test_what_its_laser_measures_is_told_round_the_robot(version) -> None:
+    with StandIn(version) as robot, connected(robot) as driver:
+        heard = Heard(driver)
+        robot.scan = {**QUARTER, "ranges": [1.0, 2.0, None, 3.0]}  # ahead, left, behind, right
+        heard.wait(lambda: heard.of("lidar"))
+        metres = heard.of("lidar")[0]["metres"]
+        told = {side: distance for side, distance in enumerate(metres) if distance is not None}
+        assert told == {0: 1.0, RAYS // 4: 2.0, 3 * RAYS // 4: 3.0}
+
+
+@pytest.mark.parametrize(
+    ("scan", "turned", "told"),
+    [
+        ({**QUARTER, "ranges": [1.0]}, 180.0, {RAYS // 2: 1.0}),
+        ({**QUARTER, "ranges": [0.05, 9.0, "far", True]}, 0.0, {}),
+        ({**QUARTER, "angle_increment": 0.001, "ranges": [2.0, 1.5, 1.8]}, 0.0, {0: 1.5}),
+        ({**QUARTER, "angle_min": -math.pi / 2, "ranges": [4.0]}, 0.0, {3 * RAYS // 4: 4.0}),
+    ],
+)
+def test_rays_are_where_they_were_measured(scan, turned, told) -> None:
+    metres = around(scan, turned)
+    assert metres is not None and len(metres) == RAYS
+    assert {side: each for side, each in enumerate(metres) if each is not None} == told
+
+
+@pytest.mark.parametrize(
+    "scan", [{}, {**QUARTER, "ranges": "none"}, {**QUARTER, "angle_min": None, "ranges": [1.0]}]
+)
+def test_a_laser_that_tells_nonsense_tells_nothing(scan) -> None:
+    assert around(scan) is None
 
 
 def test_what_it_lacks_is_stood_in_for_by_the_server_and_the_tablet() -> None:
