@@ -256,7 +256,8 @@ export class FloorMap {
   #build() {
     const {words, root} = this;
     this.planCanvas = element('canvas', {'aria-hidden': 'true'});
-    this.canvas = element('canvas', {role: 'img'});
+    const named = filled(words.map_label, {floor: this.floor.name});
+    this.canvas = element('canvas', {role: 'img', 'aria-label': named});
     const {buttons, follow} = zoomButtons(words, this);
     this.followButton = follow;
     this.hint = element('p', {class: 'floor-hint'});
@@ -267,7 +268,7 @@ export class FloorMap {
         class: 'floor-stage',
         tabindex: 0,
         role: 'group',
-        'aria-label': filled(words.map_label, {floor: this.floor.name}),
+        'aria-label': named,
       },
       this.planCanvas,
       this.canvas,
