@@ -27,6 +27,8 @@ WRITTEN: Final = frozenset({"show"})
 """Meanings whose text is shown: doubted where it names something instead: "the lunch menu"."""
 REQUESTED: Final = frozenset({"ask_to"})
 ANSWERS: Final = frozenset({"option_words", "said_so"})
+INFINITIVE_WITHIN: Final = 5
+"""Words: "de ne pas le lui dire"."""
 QUIET: Final = frozenset({"remark", "remark_where", "remark_name", "refused"})
 """Meanings whose text asks for nothing."""
 
@@ -246,6 +248,8 @@ class Judge:
         asked_to = node.means in REQUESTED and self.tokens[start - 1].norm in words.to
         if asked_to and self.tokens[start].norm in self.language.speech.get("articles", ()):
             return doubt(start, "not_understood")  # "tell Bob to the kitchen": no verb
+        if node.means in REQUESTED and not self.has_infinitive(start, end):
+            return doubt(start, "not_understood")  # "demande-lui d'abord s'il ...": no request
         last = self.tokens[end - 1].norm
         if last in self.joins | self.words.goes_on:
             return doubt(end - 1, "not_understood")  # "..., except"
@@ -295,6 +299,13 @@ class Judge:
         if spoken and self.asks(start, end):
             return doubt(start, "cannot_say")
         return self.fragment(node, start, end, doubt)
+
+    def has_infinitive(self, start: int, end: int) -> bool:
+        """Whether what somebody is asked to do begins with a verb, in a language whose infinitives
+        are known by their endings."""
+        pattern = self.language.speech.get("infinitive")
+        first = self.norms(start, min(end, start + INFINITIVE_WITHIN))
+        return pattern is None or any(re.search(pattern, norm) for norm in first)
 
     def open_condition(self, at: int, end: int) -> bool:
         """Whether a condition begins here of which nothing is said that would then be so: "I am on

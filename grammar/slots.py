@@ -57,6 +57,7 @@ class Slots:
         self._possessive = str(self.language.speech.get("possessive", "")).strip()
         self._no_nouns = frozenset(self.language.speech.get("no_nouns", ()))
         self._measures = self.language.words_called("measures")
+        self._behind_nouns = frozenset(self.language.speech.get("behind_nouns", ()))
         self._no_heads = frozenset(self.language.speech.get("no_heads", ()))
         self._noun_joins = frozenset(self.language.speech.get("noun_joins", ()))
         clause = self.language.speech.get("clause", {})
@@ -233,6 +234,9 @@ class Slots:
             words = self._judge.words
             if self.tokens[at].norm in words.objects | words.adverbs or self._named("person", at):
                 return []
+            after = self.tokens[at + 1].norm if at + 1 < len(self.tokens) else ""
+            if after in self._behind_nouns:
+                return []  # "which of the three wards has ...": no verb
             return [(at + 1, FREE_WORD, self.tokens[at].norm)]
         return []
 

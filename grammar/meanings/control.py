@@ -24,6 +24,7 @@ from grammar.meanings.visiting import with_each_asked
 from grammar.meanings.volunteers import guard_found
 from grammar.meanings.waiting import until_then
 from grammar.plan import (
+    Ask,
     Call,
     Items,
     Recall,
@@ -187,11 +188,26 @@ def reversed_(d: Discourse, node: Node) -> Steps:
     at = len(d.done)
     if not done_already(d, node):
         d.done.extend(d.build(earlier))
+    said = len(d.done)
     for part in clauses(later):  # each may take back what was done before it
         d.done.extend(d.build(part))
+    if later.start < earlier.start:
+        found_before(d, at, said)
     result = d.done[at:]
     del d.done[at:]
     return result
+
+
+def found_before(d: Discourse, at: int, said: int) -> None:
+    """Whoever is somewhere is found there before anything is said to them first: "take the visitor
+    in the lobby to the lift, but ask her name first". `at`, `said`: where among the steps begin
+    what is done first, and the rest."""
+    first, rest = d.done[at:said], d.done[said:]
+    search = rest[0] if rest else None
+    sought = isinstance(search, Call) and search.method == "find" and "place" in search.arguments
+    done = {each.method for each in nodes(tuple(first)) if isinstance(each, Call | Ask)}
+    if sought and done & {"say", "ask"} and "find" not in done:
+        d.done[at:] = [*rest[:1], *first, *rest[1:]]
 
 
 def clauses(part: Leaf | Node) -> list[Leaf | Node]:

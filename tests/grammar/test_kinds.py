@@ -506,3 +506,21 @@ def test_things_are_carried_and_never_pushed(words: str, thing: str) -> None:
 def test_an_article_speaks_of_a_place_and_not_of_a_point() -> None:
     assert said("en", "go to the one oh one").program is None
     assert "robot.goto(3, 4)" in program("en", "go to 3 4")
+
+
+def test_whoever_is_somewhere_is_found_before_they_are_spoken_to() -> None:
+    found = program("en", "take the visitor in the lobby to the lift, but ask her name first")
+    search, asked, led = (found.index(f"robot.{each}(") for each in ("find", "ask", "guide"))
+    assert search < asked < led, found
+
+
+@pytest.mark.parametrize("noun", ["wards", "people", "rooms", "cups"])
+@pytest.mark.parametrize("verb", ["has", "is", "was"])
+def test_a_noun_is_no_verb(noun: str, verb: str) -> None:
+    found = said("en", f"find out which of the three {noun} {verb} the best").program or ""
+    assert f"Do you {noun.rstrip('s')}" not in found, found
+
+
+@pytest.mark.parametrize("who", ["-lui", " à Bob"])
+def test_nobody_is_asked_to_do_what_has_no_verb(who: str) -> None:
+    assert "abord" not in (said("fr", f"demande{who} d'abord s'il est prêt").program or "")
