@@ -17,8 +17,9 @@ from robot_api.driver import Driver
 from robot_api.errors import LostConnection, RobotError
 from robot_api.robots.address import Address, BadAddress, parse
 from robot_api.robots.opening import open_robot
+from robot_api.robots.places import NamedPlace, Places
 from robot_api.robots.reading import Read, read_robot_file, without_file
-from robot_api.robots.registry import NamedPlace, Places, RobotKind, kind_of
+from robot_api.robots.registry import RobotKind, kind_of
 
 if TYPE_CHECKING:
     from sim.world import World, Zone

@@ -30,8 +30,8 @@ from robot_api.composed import ComposedDriver
 from robot_api.driver import Driver, Event
 from robot_api.errors import AccessDenied, RobotError
 from robot_api.robots.opening import hold
+from robot_api.robots.places import Places
 from robot_api.robots.reading import Read
-from robot_api.robots.registry import Places
 from robot_api.server import CannotListen, Server
 from sim.record import Record
 from sim.simulation import Simulation

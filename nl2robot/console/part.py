@@ -15,7 +15,7 @@ from robot_api.server import Publish, Service
 if TYPE_CHECKING:
     from nl2robot.runner import Runner
     from nl2robot.talks import Talks
-    from robot_api.robots.registry import Places
+    from robot_api.robots.places import Places
     from sim.simulation import Simulation
 
 Listener = Callable[[str, Event], None]

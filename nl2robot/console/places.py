@@ -212,7 +212,7 @@ def _as_its_file_has_it(world: World, named: tuple[NamedByHand, ...]) -> World:
 def _tell_driver(named: dict[str, Any], world: World) -> None:
     """Let the driver of a real robot know the places."""
     from robot_api.capabilities.driving import Goal
-    from robot_api.robots.registry import NamedPlace
+    from robot_api.robots.places import NamedPlace
 
     for place in world.places:
         pose = place.pose

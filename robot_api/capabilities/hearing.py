@@ -74,9 +74,9 @@ class Hearing(Capability):
         answers that count and who is asked may help to recognise them; an answer that was heard
         badly is `Unsure`."""
 
-    @abstractmethod
     def prepared(self, language: str) -> Sequence[Prepared]:
-        """The questions that there are answers for."""
+        """The questions that there are answers for: none, unless a robot has some."""
+        return ()
 
     def is_here(self, person: str) -> bool:
         """Whether that person can be spoken to; a robot that cannot tell believes it."""
@@ -311,9 +311,6 @@ class EarsHearing(Hearing):
             self._hub.publish("heard", text=_words(heard), person=person)
         return heard or None
 
-    def prepared(self, language: str) -> Sequence[Prepared]:
-        return ()
-
 
 class TabletHearing(Hearing):
     """A robot that nobody can speak to: people answer on its tablet."""
@@ -339,6 +336,3 @@ class TabletHearing(Hearing):
         """Gives people time to touch and to type, if they can."""
         patience(stop, self.tablet, timeout)
         return None
-
-    def prepared(self, language: str) -> Sequence[Prepared]:
-        return ()

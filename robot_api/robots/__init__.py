@@ -4,6 +4,7 @@
     driver = kind_of(address).connect(Setup(address=address, file=RobotFile(), places=Places()))
 
 `registry` knows the kinds of robots, ours and those of other packages; `robot_file` reads what an
-engineer writes down of one robot; `link` tells everybody whether it can be reached. A folder for
-each wire holds its driver, put together from `robot_api.capabilities` like every other.
+engineer writes down of one robot; `places` is what it is told of the house; `link` tells everybody
+whether it can be reached. A folder for each wire holds its driver, put together from
+`robot_api.capabilities` like every other.
 """

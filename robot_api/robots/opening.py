@@ -10,8 +10,9 @@ from robot_api.composed import ComposedDriver
 from robot_api.driver import Driver
 from robot_api.errors import InternalError, NotSupported, RobotError
 from robot_api.robots.address import Address
+from robot_api.robots.places import Places
 from robot_api.robots.reading import Read, without_file
-from robot_api.robots.registry import Places, RobotKind, Setup
+from robot_api.robots.registry import RobotKind, Setup
 from robot_api.robots.robot_file import RobotFile
 
 _log = logging.getLogger("robot_api.robots")

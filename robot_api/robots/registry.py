@@ -9,7 +9,7 @@ A package adds one by an entry point of the group `nl2robot.robots` that names a
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
@@ -18,11 +18,11 @@ from typing import Final
 
 import msgspec
 
-from robot_api.capabilities.driving import Goal
 from robot_api.capabilities.names import nearest
 from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.driver import Driver
 from robot_api.robots.address import Address, BadAddress
+from robot_api.robots.places import Places
 from robot_api.robots.robot_file import RobotFile
 
 GROUP: Final = "nl2robot.robots"
@@ -41,44 +41,6 @@ OURS: Final = (
 they need is imported when a robot is connected."""
 
 _SCHEME: Final = re.compile(r"[a-z][a-z0-9+.-]*")
-
-Point = tuple[float, float]
-
-
-@dataclass(frozen=True)
-class NamedPlace:
-    name: str
-    kind: str
-    goal: Goal | None = None
-    """Where it is on the robot's map, in metres and degrees; None if nobody has said."""
-    aliases: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Places:
-    """What the world's file says of the house: a driver that knows its way is sent by these."""
-
-    named: dict[str, NamedPlace] = field(default_factory=dict)
-    """By name. Operators name more on the map while the robot is served, so a driver looks here at
-    each call and keeps no copy."""
-    keep_out: list[Sequence[Point]] = field(default_factory=list)
-    """Outlines of where it must not drive, in metres on its map; drawn anew by `keep_out_of`."""
-    _listeners: list[Callable[[], None]] = field(default_factory=list)
-
-    def keep_out_of(self, outlines: Sequence[Sequence[Point]]) -> None:
-        """Operators have drawn the zones anew: these are all of them now."""
-        self.keep_out[:] = outlines
-        for listener in self._listeners:
-            listener()
-
-    @property
-    def keeps_out(self) -> bool:
-        """Whether the driver heeds zones that are drawn while the robot is served."""
-        return bool(self._listeners)
-
-    def on_keep_out(self, listener: Callable[[], None]) -> None:
-        """Call it, from any thread, whenever the zones were drawn anew."""
-        self._listeners.append(listener)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -20,7 +20,7 @@ from nl2robot.named_places import with_named_places
 from nl2robot.translation import translate
 from robot_api.driver import StopFlag
 from robot_api.errors import InvalidCall
-from robot_api.robots.registry import Places
+from robot_api.robots.places import Places
 from robot_api.server import Context
 from sim.simulation import Simulation
 from sim.world import World, load_world

@@ -15,7 +15,7 @@ from nl2robot.console.part import Backstage
 from nl2robot.knowledge import Knowledge
 from robot_api.driver import StopFlag
 from robot_api.errors import InvalidCall
-from robot_api.robots.registry import Places
+from robot_api.robots.places import Places
 from robot_api.server import Context
 from sim.simulation import Simulation
 from sim.world import World, Zone, load_world

@@ -10,7 +10,7 @@ from robot_api.capabilities.driving import Goal
 from robot_api.capabilities.sound import Asked
 from robot_api.driver import StopFlag
 from robot_api.drivers import ComposedDriver, simulated
-from robot_api.robots.registry import NamedPlace
+from robot_api.robots.places import NamedPlace
 from robot_api.values import Location
 from sandbox.execution import Execution, Outcome
 from sim.simulation import Simulation

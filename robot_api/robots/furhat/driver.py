@@ -20,7 +20,8 @@ from robot_api.robots.furhat.settings import FurhatSettings
 from robot_api.robots.furhat.skills import FurhatSkills
 from robot_api.robots.furhat.voice import FurhatHearing, FurhatSpeech, Voice
 from robot_api.robots.link import Link
-from robot_api.robots.registry import Places, Setup
+from robot_api.robots.places import Places
+from robot_api.robots.registry import Setup
 from robot_api.robots.robot_file import RobotFile
 
 

@@ -29,7 +29,6 @@ FIRST_PAUSE: Final = 0.25
 """Seconds before a lost robot is looked for; each pause is twice the one before."""
 LONGEST_PAUSE: Final = 4.0
 
-_NOT_CONFIRMED = "The robot has not confirmed that it stands. Use the robot's own button."
 _SIGN: Final = "response.face.status"
 _DOES_NOTHING = (
     "The Furhat is there but does not do what it is asked. Wait a little, or switch it off and on."
@@ -191,9 +190,9 @@ class Furhat:
                 at_rest = self._changed.wait_for(self._at_rest, max(0.0, end - time.monotonic()))
             self._link.check()
         except LostConnection as error:
-            raise StopNotConfirmed(_NOT_CONFIRMED) from error
+            raise StopNotConfirmed() from error
         if not at_rest:
-            raise StopNotConfirmed(_NOT_CONFIRMED)
+            raise StopNotConfirmed()
 
     def close(self) -> None:
         self._closing.set()

@@ -8,7 +8,7 @@ from contextlib import suppress
 from typing import Any, Final
 
 from robot_api.capabilities.base import Hub, Turns
-from robot_api.capabilities.hearing import Hearing, Prepared
+from robot_api.capabilities.hearing import Hearing
 from robot_api.capabilities.screen import Screen
 from robot_api.capabilities.speech import LANGUAGES, Speech
 from robot_api.driver import StopFlag
@@ -181,9 +181,6 @@ class FurhatHearing(Hearing):
         if heard is not None:
             self._hub.publish("heard", text=heard, person=person)
         return heard
-
-    def prepared(self, language: str) -> Sequence[Prepared]:
-        return ()
 
     def _listened(self, exchange: Exchange, end: float) -> str | None:
         """What was said until it stopped listening, which it does before the time is up when it is

@@ -10,7 +10,7 @@ from robot_api.capabilities.core import Core, LogBook
 from robot_api.driver import StopFlag
 from robot_api.robots.pepper.body import STOP_WITHIN, Body
 from robot_api.robots.pepper.session import Wire
-from robot_api.robots.registry import Places
+from robot_api.robots.places import Places
 
 
 class PepperCore(Core):

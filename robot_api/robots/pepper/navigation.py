@@ -5,19 +5,18 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Final
 
 from robot_api.capabilities.base import Hub
 from robot_api.capabilities.driving import Goal, Navigation
-from robot_api.capabilities.names import one_of, unknown_place
 from robot_api.driver import StopFlag
-from robot_api.errors import Blocked, NotPossible, NotSupported, UnknownPlace
+from robot_api.errors import Blocked, NotPossible, NotSupported
 from robot_api.robots.pepper.body import STOP_MOVING, Body
 from robot_api.robots.pepper.line import Line
 from robot_api.robots.pepper.session import Wire
-from robot_api.robots.registry import Places
+from robot_api.robots.places import Places
 from robot_api.values import Location
 
 if TYPE_CHECKING:
@@ -74,28 +73,14 @@ class PepperNavigation(Navigation):
     # --- places ----------------------------------------------------------------------------------
 
     def locate(self, place: str) -> Goal:
-        names = {
-            name: known.name
-            for known in self._places.named.values()
-            for name in (known.name, *known.aliases)
-        }
-        name = one_of(place, names)
-        if name is None:
-            raise unknown_place(place, names)
-        goal = self._places.named[names[name]].goal
-        if goal is None:
-            raise UnknownPlace(
-                f"I know of {names[name]}, but not where it is on my map."
-                " Give the place a pose in the world's file."
-            )
-        return Goal(goal.x, goal.y, goal.theta, names[name])
+        return self._places.goal_of(place)
 
     # --- where it is -----------------------------------------------------------------------------
 
     def location(self, stop: StopFlag) -> Location:
         """Asked of the robot at this moment."""
         x, y, theta = self._pose()
-        return Location(x, y, theta, self._place_at(x, y))
+        return Location(x, y, theta, self._places.near(x, y, _AT))
 
     def believe(self, goal: Goal) -> None:
         theta = self._pose()[2] if goal.theta is None else goal.theta
@@ -149,7 +134,7 @@ class PepperNavigation(Navigation):
                 x=x,
                 y=y,
                 theta=theta,
-                place=self._place_at(x, y),
+                place=self._places.near(x, y, _AT),
                 speed=speed,
                 time=time.time(),
             )
@@ -176,16 +161,6 @@ class PepperNavigation(Navigation):
                 " which it is."
             )
         return pose
-
-    def _place_at(self, x: float, y: float) -> str | None:
-        goals: Mapping[str, Goal] = {
-            place.name: place.goal
-            for place in self._places.named.values()
-            if place.goal is not None
-        }
-        away = {name: math.hypot(goal.x - x, goal.y - y) for name, goal in goals.items()}
-        nearest = min(away, key=away.__getitem__, default=None)
-        return nearest if nearest is not None and away[nearest] <= _AT else None
 
     def _drawn_anew(self) -> None:
         self._keep_out = _area(self._places)

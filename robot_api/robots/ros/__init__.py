@@ -2,9 +2,11 @@
 
 wire        one connection to a rosbridge; connection: those of a robot, and whether it is there
 dialect     what ROS 1 and ROS 2 spell differently; graph: what is there on the robot
-wheels      odometry and where the robot is; halt: the stop that is confirmed
-actions     goals that a robot pursues; navigation, motion, body, voice, sights: capabilities
-keep_out    where it must not drive; grid: the map that it drives by
+survey      what of all that its file and its capabilities need; settings: the file's section ros
+wheels      odometry and where the robot is; halting: the stop that is confirmed
+actions     goals that a robot pursues; navigation, motion, body, voice: capabilities
+keep_out    where it must not drive; grid: the map that it drives by; laser: what is around it
+driver      all of it put together
 guard       a script for the robot's side that stops it when we are gone
 """
 

@@ -20,7 +20,7 @@ from robot_api.capabilities.scanner import Scanner
 from robot_api.capabilities.speech import Speech
 from robot_api.driver import StopFlag
 from robot_api.errors import NotPossible, NotSupported
-from robot_api.robots.registry import NamedPlace
+from robot_api.robots.places import NamedPlace
 from robot_api.robots.ros import dialect as ros
 from robot_api.robots.ros.actions import SUCCEEDED, Action
 from robot_api.robots.ros.connection import Connection, Line

@@ -46,6 +46,7 @@ from robot_api.robots.ros.navigation import Bounds, RosDock, RosNavigation, Way
 from robot_api.robots.ros.settings import USUAL_TOPICS, RosSettings
 from robot_api.robots.ros.survey import DOCKING, TRAJECTORIES, Found, going, needed, survey
 from robot_api.robots.ros.voice import (
+    Names,
     RosFace,
     RosGesture,
     RosSkills,
@@ -246,7 +247,7 @@ class _Assembly:
             keep_out=self._keep_out,
             settings=self._settings,
         )
-        places = self._setup.places.named
+        places = self._setup.places
         navigation = RosNavigation(
             way, self._dialect, places, self._bounds(found), self._set_pose(found)
         )
@@ -267,7 +268,7 @@ class _Assembly:
         charger = next(
             (
                 place.name
-                for place in places.values()
+                for place in places.named.values()
                 if place.goal is not None and place.kind in _CHARGERS
             ),
             None,
@@ -319,7 +320,8 @@ class _Assembly:
         file, hub, line = self._setup.file, self._hub, self._connection.work
         parts: list[Capability] = []
         if file.gestures:
-            parts.append(RosGesture(hub, line, *needed(found.gesture, "gesture"), file.gestures))
+            names = Names(line, *needed(found.gesture, "gesture"), file.gestures)
+            parts.append(RosGesture(hub, names))
         if file.skills:
             for skill in file.skills:
                 service = self._settings.skills.get(skill)
@@ -406,7 +408,7 @@ class _Assembly:
         if not file.emotions:
             return ScreenFace(screen, self._hub)
         topic, kind = needed(found.emotion, "emotion")
-        return RosFace(self._hub, self._connection.work, topic, kind, file.emotions)
+        return RosFace(self._hub, Names(self._connection.work, topic, kind, file.emotions))
 
     # --- standing, and being there ---------------------------------------------------------------
 

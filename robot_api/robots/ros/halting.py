@@ -54,7 +54,7 @@ class Halting:
             while answered is None or not self._is_over(cancels, answered):
                 now = time.monotonic()
                 if now >= end:
-                    raise _not_confirmed()
+                    raise StopNotConfirmed()
                 if answered is None and (answer.ok or answer.said):
                     answered = now
                 if now - cancelled > _CANCEL_AGAIN:
@@ -64,7 +64,7 @@ class Halting:
                 self._pause(min(_AGAIN, end - now))
                 self._stand()
         except LostConnection:
-            raise _not_confirmed() from None
+            raise StopNotConfirmed() from None
 
     def _stand(self) -> None:
         if self._still is not None:
@@ -79,9 +79,3 @@ class Halting:
             time.sleep(seconds)
         else:
             self._wheels.wait(seconds)
-
-
-def _not_confirmed() -> StopNotConfirmed:
-    return StopNotConfirmed(
-        "The robot has not confirmed that it stands. Use the robot's own button."
-    )

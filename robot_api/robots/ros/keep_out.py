@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from robot_api.errors import Blocked, NotPossible
-from robot_api.robots.registry import Point
+from robot_api.robots.places import Point
 from robot_api.robots.ros.dialect import Dialect, Pose
 
 _MOST_CELLS = 250_000

@@ -10,11 +10,10 @@ from typing import Any
 
 from robot_api.capabilities.base import POLL
 from robot_api.capabilities.driving import Dock, Goal, Navigation
-from robot_api.capabilities.names import one_of, unknown_place, with_article
 from robot_api.driver import StopFlag
-from robot_api.errors import Blocked, InvalidCall, NotPossible, RobotError, UnknownPlace
+from robot_api.errors import Blocked, InvalidCall, NotPossible, RobotError
 from robot_api.robots.link import Link
-from robot_api.robots.registry import NamedPlace
+from robot_api.robots.places import Places
 from robot_api.robots.ros.actions import ABORTED, CANCELED, SUCCEEDED, Action, Pursuit
 from robot_api.robots.ros.dialect import Dialect, Pose, field, number
 from robot_api.robots.ros.keep_out import Guarding, KeepOut
@@ -158,7 +157,7 @@ class RosNavigation(Navigation):
         self,
         way: Way,
         dialect: Dialect,
-        places: Mapping[str, NamedPlace],
+        places: Places,
         bounds: Bounds | None,
         set_pose: Callable[[Pose], None] | None,
     ) -> None:
@@ -174,20 +173,7 @@ class RosNavigation(Navigation):
         )
 
     def locate(self, place: str) -> Goal:
-        names = {name: name for name in self._places}
-        for name, known in self._places.items():
-            for alias in known.aliases:
-                names.setdefault(alias, name)
-        found = one_of(place, names)
-        if found is None:
-            raise unknown_place(place, names)
-        goal = self._places[names[found]].goal
-        if goal is None:
-            raise UnknownPlace(
-                f"Nobody has said where {with_article(names[found])} is on my map."
-                " Give it a pose in the world's file."
-            )
-        return Goal(goal.x, goal.y, goal.theta, names[found])
+        return self._places.goal_of(place)
 
     def drive_to(self, stop: StopFlag, goal: Goal) -> None:
         self._check(goal)
@@ -206,15 +192,8 @@ class RosNavigation(Navigation):
 
     def location_at(self, pose: Pose) -> Location:
         """With the place that is near, if one is."""
-        near = {
-            name: math.hypot(place.goal.x - pose.x, place.goal.y - pose.y)
-            for name, place in self._places.items()
-            if place.goal is not None
-        }
-        nearest = min(near, key=near.__getitem__, default=None)
-        if nearest is not None and near[nearest] > self._way.settings.place_radius:
-            nearest = None
-        return Location(pose.x, pose.y, math.degrees(pose.theta), nearest)
+        near = self._places.near(pose.x, pose.y, self._way.settings.place_radius)
+        return Location(pose.x, pose.y, math.degrees(pose.theta), near)
 
     def localize(
         self,

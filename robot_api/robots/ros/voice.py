@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from robot_api.capabilities.arms import Gesture
@@ -89,41 +89,43 @@ class RosSpeech(Speech):
         self._hub.publish("language", code=code)
 
 
-class RosGesture(Gesture):
-    """Each by the robot's own name, published on a topic."""
+class Names:
+    """Things that a robot has names of its own for, published on a topic."""
 
-    def __init__(
-        self, hub: Hub, line: Line, topic: str, kind: str, names: Mapping[str, str]
-    ) -> None:
-        self._hub = hub
+    def __init__(self, line: Line, topic: str, kind: str, names: Mapping[str, str]) -> None:
         self._line = line
         self._topic = topic
         self._names = names
-        self.gestures = tuple(names)
         line.advertise(topic, kind)
 
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def publish(self, name: str) -> None:
+        self._line.publish(self._topic, {"data": self._names[name]})
+
+
+class RosGesture(Gesture):
+    def __init__(self, hub: Hub, names: Names) -> None:
+        self._hub = hub
+        self._names = names
+        self.gestures = tuple(names)
+
     def make(self, stop: StopFlag, gesture: str) -> None:
-        self._line.publish(self._topic, {"data": self._names[gesture]})
+        self._names.publish(gesture)
         self._hub.publish("gesture", name=gesture)
         stop.wait(_GESTURE_SECONDS)
         stop.check()
 
 
 class RosFace(Face):
-    """Likewise."""
-
-    def __init__(
-        self, hub: Hub, line: Line, topic: str, kind: str, names: Mapping[str, str]
-    ) -> None:
+    def __init__(self, hub: Hub, names: Names) -> None:
         self._hub = hub
-        self._line = line
-        self._topic = topic
         self._names = names
         self.emotions = tuple(names)
-        line.advertise(topic, kind)
 
     def express(self, stop: StopFlag, emotion: str) -> None:
-        self._line.publish(self._topic, {"data": self._names[emotion]})
+        self._names.publish(emotion)
         self._hub.publish("emotion", name=emotion)
 
 

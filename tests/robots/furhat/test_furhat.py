@@ -33,8 +33,9 @@ from robot_api.errors import (
 from robot_api.robots.address import Address
 from robot_api.robots.furhat import FURHAT, connection, face, robot, voice
 from robot_api.robots.furhat.settings import FurhatSettings
+from robot_api.robots.places import NamedPlace, Places
 from robot_api.robots.reading import read_robot_file
-from robot_api.robots.registry import NamedPlace, Places, Setup
+from robot_api.robots.registry import Setup
 from robot_api.robots.robot_file import RobotFile
 from tests.robots.furhat.stand_in import SOON, VOICES, Cable, FurhatStandIn
 

@@ -22,7 +22,8 @@ from robot_api.capabilities.driving import Goal
 from robot_api.driver import StopFlag
 from robot_api.robots.address import parse
 from robot_api.robots.pepper import PepperSettings
-from robot_api.robots.registry import NamedPlace, Places, Setup
+from robot_api.robots.places import NamedPlace, Places
+from robot_api.robots.registry import Setup
 from robot_api.robots.robot_file import RobotFile
 
 qi = pytest.importorskip("qi", reason="qi has no wheel for this Python")

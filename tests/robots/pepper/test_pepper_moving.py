@@ -228,7 +228,7 @@ def test_it_keeps_out_of_where_it_must_not_be(
     standing_in: Callable[..., Any], drive: Callable[..., Any]
 ) -> None:
     """Pepper knows nothing of such an area: its way is watched."""
-    from robot_api.robots.registry import Places
+    from robot_api.robots.places import Places
 
     area = [(1.0, -1.0), (2.0, -1.0), (2.0, 4.0), (1.0, 4.0)]
     pepper = standing_in(hurry=1.0)

@@ -8,7 +8,7 @@ import pytest
 
 from robot_api.errors import Blocked, LostConnection, NotPossible, NotSupported
 from robot_api.robots.address import parse
-from robot_api.robots.registry import Places
+from robot_api.robots.places import Places
 from robot_api.robots.ros import grid
 from robot_api.robots.ros.dialect import Dialect
 from robot_api.robots.ros.grid import fetch_map

@@ -12,7 +12,8 @@ from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.driver import Event, StopFlag
 from robot_api.errors import StopNotConfirmed
 from robot_api.robots.address import parse
-from robot_api.robots.registry import NamedPlace, Places, Setup
+from robot_api.robots.places import NamedPlace, Places
+from robot_api.robots.registry import Setup
 from robot_api.robots.robot_file import RobotFile
 from robot_api.robots.ros import ROS1, ROS2
 from robot_api.robots.ros.driver import RosDriver
