@@ -337,6 +337,7 @@ def _open(
         talks=talks,
         simulation=simulation,
         places=places,
+        camera=driver.camera if isinstance(driver, ComposedDriver) else None,
         publish=publish,
         wanted=lambda kind: server.wanted(kind),
         stop=lambda because: server.stop(because),

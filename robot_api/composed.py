@@ -20,6 +20,7 @@ from typing import Any, Final
 from robot_api import limits
 from robot_api.capabilities.arms import Gesture, Joints
 from robot_api.capabilities.base import Capability, Hub, Listener
+from robot_api.capabilities.camera import Camera
 from robot_api.capabilities.company import Following, Guiding
 from robot_api.capabilities.core import Core, LogBook
 from robot_api.capabilities.driving import Dock, Motion, Navigation
@@ -104,7 +105,7 @@ class ComposedDriver:
 
     `parts` are its capabilities, `Core` among them. `hub` hands out the events that they publish.
     `publish(kind, data)` takes the driver's own events, if not the hub. `link` is the connection to
-    a robot that can be lost. Any thread may call any of it.
+    a robot that can be lost, `camera` what it sees with. Any thread may call any of it.
     """
 
     def __init__(
@@ -118,7 +119,9 @@ class ComposedDriver:
         units: str = "m",
         publish: Callable[[str, dict[str, Any]], None] | None = None,
         link: Link | None = None,
+        camera: Camera | None = None,
     ) -> None:
+        self.camera: Final = camera
         self._parts = {part.name: part for part in parts}
         core = self._parts.get(Core.name)
         if not isinstance(core, Core):

@@ -17,7 +17,18 @@ from robot_api.server import Service
 
 STATIC: Final = Path(__file__).parent / "static"
 PARTS: Final = (
-    *("desk", "scene", "zones", "places", "helm_services", "codes", "drive", "face", "runs"),
+    *(
+        "desk",
+        "scene",
+        "zones",
+        "places",
+        "helm_services",
+        "codes",
+        "camera",
+        "drive",
+        "face",
+        "runs",
+    ),
 )
 """The modules of the parts; each has `part(backstage) -> Part`."""
 

@@ -40,6 +40,7 @@ class Controls:
         self._stop = backstage.stop
         self._runner = backstage.runner
         self._simulation = backstage.simulation
+        self._has_camera = backstage.camera is not None
         self.helm = Helm(lambda state: backstage.publish("helm", _plain(state)))
         self._seen: dict[str, Event] = {}
         self._log: deque[Event] = deque(maxlen=LINES_KEPT)
@@ -97,7 +98,12 @@ class Controls:
 
     def body(self, parameters: Mapping[str, Any], context: Context) -> Any:
         body = msgspec.to_builtins(self._driver.capabilities())
-        return {**body, "places": self._places(), "now": self._now()}
+        return {
+            **body,
+            "places": self._places(),
+            "camera": self._has_camera,
+            "now": self._now(),
+        }
 
     def log(self, parameters: Mapping[str, Any], context: Context) -> Any:
         return list(self._log)[-parameters.get("lines", 200) :]

@@ -15,6 +15,7 @@ from robot_api.server import Publish, Service
 if TYPE_CHECKING:
     from nl2robot.runner import Runner
     from nl2robot.talks import Talks
+    from robot_api.capabilities.camera import Camera
     from robot_api.robots.places import Places
     from sim.simulation import Simulation
 
@@ -44,6 +45,8 @@ class Backstage:
     stands. Raises `StopNotConfirmed`."""
     places: Places | None = None
     """What the driver of a real robot is sent by, if it is: told of places as people name them."""
+    camera: Camera | None = None
+    """The robot's, if people may look through it."""
     _listeners: list[Listener] = field(default_factory=list)
     _stops: Stops = field(default_factory=Stops)
 

@@ -1,13 +1,10 @@
-"""The rest of the body: what every robot has, joints, the camera that reads codes."""
+"""The rest of the body: what every robot has, and joints."""
 
 from __future__ import annotations
 
-import io
 import math
 import threading
 import time
-from base64 import b64decode
-from binascii import Error as NotBase64
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -16,14 +13,11 @@ from typing import Any
 from robot_api.capabilities.arms import Joints
 from robot_api.capabilities.base import POLL, Hub
 from robot_api.capabilities.core import Core, LogBook
-from robot_api.capabilities.scanner import Scanner
-from robot_api.capabilities.speech import Speech
 from robot_api.driver import StopFlag
 from robot_api.errors import NotPossible, NotSupported
 from robot_api.robots.places import NamedPlace
 from robot_api.robots.ros import dialect as ros
 from robot_api.robots.ros.actions import SUCCEEDED, Action
-from robot_api.robots.ros.connection import Connection, Line
 from robot_api.robots.ros.halting import Halting
 
 _CHARGING = 1
@@ -33,7 +27,6 @@ _JOINT_RATE = math.radians(45)
 _JOINT_WITHIN = 3.0
 """Seconds beyond its time in which a joint has to have arrived."""
 _JOINT_NEAR = math.radians(3)
-_LOOK_EVERY = 0.2
 
 
 class Battery:
@@ -207,56 +200,3 @@ def _held_up(joint: str) -> NotPossible:
     return NotPossible(
         f"My joint {joint} has not come where it should. Look whether something holds it."
     )
-
-
-class RosScanner(Scanner):
-    """Reads codes in the pictures of the robot's camera, which are fetched while it looks only."""
-
-    def __init__(
-        self, speech: Speech | None, connection: Connection, topic: str, kind: str
-    ) -> None:
-        super().__init__(speech)
-        self._connection = connection
-        self._topic = topic
-        self._kind = kind
-
-    def read_code(self, stop: StopFlag, timeout: float) -> str | None:
-        pictures: list[Any] = []
-        came = threading.Event()
-
-        def hear(message: Mapping[str, Any]) -> None:
-            pictures[:] = [message.get("data")]
-            came.set()
-
-        line = self._line()
-        line.subscribe(self._topic, self._kind, hear, _LOOK_EVERY)
-        end = time.monotonic() + timeout
-        try:
-            while time.monotonic() < end:
-                stop.check()
-                line.now  # noqa: B018 - raises when the robot is gone
-                if came.wait(POLL):
-                    came.clear()
-                    code = code_in(pictures[0])
-                    if code:
-                        return code
-            return None
-        finally:
-            line.unsubscribe(self._topic)
-
-    def _line(self) -> Line:
-        """Pictures are large: they have a connection of their own."""
-        return self._connection.line("camera")
-
-
-def code_in(data: Any) -> str | None:
-    """What the first code in a picture says, a JPEG or PNG in base64; None if there is none."""
-    import zxingcpp
-    from PIL import Image, UnidentifiedImageError
-
-    try:
-        picture = Image.open(io.BytesIO(b64decode(data, validate=True))).convert("L")
-    except (TypeError, ValueError, NotBase64, OSError, UnidentifiedImageError):
-        return None  # no picture: the next one may be one
-    found = zxingcpp.read_barcodes(picture)
-    return str(found[0].text) if found else None

@@ -32,8 +32,8 @@ from robot_api.robots.ros.body import (
     JointStates,
     RosCore,
     RosJoints,
-    RosScanner,
 )
+from robot_api.robots.ros.camera import RosCamera, RosScanner
 from robot_api.robots.ros.connection import Connection
 from robot_api.robots.ros.dialect import Dialect, Pose, Version
 from robot_api.robots.ros.graph import Graph
@@ -127,6 +127,7 @@ class _Assembly:
         found = survey(self._graph, self._dialect, self._settings)
         speech = self._speech(found)
         screen = TabletScreen(self._hub, speech)
+        camera = RosCamera(self._connection, *found.camera) if found.camera else None
         base = self._base(found, speech)
         parts: list[Capability] = [
             speech,
@@ -134,7 +135,7 @@ class _Assembly:
             self._hearing(speech, screen),
             self._face(found, screen),
             *base,
-            *self._body(found, speech),
+            *self._body(found, speech, camera),
         ]
         if found.battery is not None:
             self._battery.expected = True
@@ -164,6 +165,7 @@ class _Assembly:
             hub=self._hub,
             book=self._book,
             link=self._link,
+            camera=camera,
         )
         self._watch(found, halting)
         return driver
@@ -316,7 +318,7 @@ class _Assembly:
 
         return set_pose
 
-    def _body(self, found: Found, speech: Speech) -> list[Capability]:
+    def _body(self, found: Found, speech: Speech, camera: RosCamera | None) -> list[Capability]:
         file, hub, line = self._setup.file, self._hub, self._connection.work
         parts: list[Capability] = []
         if file.gestures:
@@ -331,8 +333,8 @@ class _Assembly:
                         " Name one in its section ros: skills, or start it."
                     )
             parts.append(RosSkills(line, self._settings.skills, file.skills))
-        if found.camera is not None:
-            parts.append(RosScanner(speech, self._connection, *found.camera))
+        if camera is not None:
+            parts.append(RosScanner(speech, camera))
         if file.joints:
             parts.append(self._joints(found))
         return parts

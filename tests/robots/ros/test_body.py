@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import math
+import queue
 from base64 import b64encode
 
 import pytest
@@ -15,6 +16,7 @@ from robot_api.robots.robot_file import RobotFile
 from robot_api.robots.ros import body
 from robot_api.robots.ros.laser import RAYS, around
 from robot_api.robots.ros.settings import RosSettings, SpeechService, Topics
+from tests.robots.far_robot import SOON
 from tests.robots.ros.stand_in import StandIn
 from tests.robots.ros.ward import Heard, Under, call, connected
 
@@ -141,6 +143,28 @@ def test_its_camera_reads_codes_and_is_left_alone_otherwise() -> None:
         robot.camera = None
         with pytest.raises(TimedOut):
             call(driver, "scan", timeout=0.3)
+
+
+def test_who_looks_through_its_camera_goes_on_looking_while_it_scans() -> None:
+    settings = RosSettings(topics=Topics(camera="/camera/compressed"))
+    with StandIn() as robot, connected(robot, settings) as driver:
+        assert driver.camera is not None
+        seen: queue.Queue[bytes] = queue.Queue()
+        leave = driver.camera.watch(seen.put)
+        robot.camera = _picture("4006381333931")
+        assert seen.get(timeout=SOON).startswith(b"\xff\xd8\xff")
+        assert call(driver, "scan", timeout=20) == "4006381333931"
+        with seen.mutex:
+            seen.queue.clear()
+        assert seen.get(timeout=SOON)
+        leave()
+        robot.until(lambda: not robot.listens("/camera/compressed"))
+        leave()  # once more is nothing
+
+
+def test_a_robot_without_a_camera_has_none_to_look_through() -> None:
+    with StandIn() as robot, connected(robot) as driver:
+        assert driver.camera is None
 
 
 QUARTER = {"angle_min": 0.0, "angle_increment": math.pi / 2, "range_min": 0.1, "range_max": 8.0}

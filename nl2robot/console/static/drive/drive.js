@@ -3,6 +3,7 @@
 import {appears, element, pageData} from '/static/page.js';
 import {wire} from '/static/wire.js';
 import {facePanel, gesturePanel, jointPanel, sayPanel} from './body.js';
+import {cameraPanel} from './camera.js';
 import {goPanel, helmBar, joystickPanel, mountMap} from './driving.js';
 import {helm} from './helm.js';
 import {logPanel} from './log.js';
@@ -20,7 +21,7 @@ root.classList.toggle('looks-on', !operates);
 const go = has('goto') && operates ? goPanel(body) : null;
 const map = element('div', {id: 'drive-map', class: 'floor-hugging'});
 const columns = [
-  [panel('map', map), go?.section, logPanel()],
+  [panel('map', map), body.camera && operates && cameraPanel(), go?.section, logPanel()],
   [
     has('drive') && operates && joystickPanel(body, () => go?.cancel()),
     has('say') && sayPanel(body, pageData.language),
