@@ -17,8 +17,8 @@ from __future__ import annotations
 import atexit
 import threading
 import time
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from typing import Any, Final
 
 from robot_api.capabilities.base import POLL
@@ -43,6 +43,8 @@ SILENT_AFTER: Final = 1.5
 """Seconds without an answer after which it is lost."""
 _TRIES_EVERY: Final = 1.0
 """Seconds between two attempts to find it again."""
+_COME_BACK_WITHIN: Final = 1.0
+"""Seconds in which calls come back whose connection was closed."""
 _NEEDED: Final = ("ALMotion", "ALMemory")
 """What every Pepper has."""
 
@@ -64,6 +66,8 @@ class Wire:
         self._watcher: threading.Thread | None = None
         self._look = threading.Event()  # something has happened: look at once
         self._closed = False
+        self._calls = 0
+        self._came_back = threading.Condition()
         self.services: frozenset[str] = frozenset()
         """The robot's, by name."""
 
@@ -91,7 +95,8 @@ class Wire:
     ) -> Any:
         """A light call. Raises `LostConnection` if it takes longer than `within` seconds."""
         self.check()
-        return self._work.call(service, method, *arguments, within=within)
+        with self._calling():
+            return self._work.call(service, method, *arguments, within=within)
 
     def run(
         self,
@@ -107,24 +112,25 @@ class Wire:
         is called again and again. Raises `Stopped`, `LostConnection`."""
         stop.check()
         self.check()
-        line = self._work
-        running = line.begin(service, method, *arguments)
-        try:
-            while not finished(running, POLL):
+        with self._calling():
+            line = self._work
+            running = line.begin(service, method, *arguments)
+            try:
+                while not finished(running, POLL):
+                    stop.check()
+                    self.check()
+                    meanwhile()
                 stop.check()
-                self.check()
-                meanwhile()
-            stop.check()
-        except LostConnection:
-            raise
-        except BaseException:
-            with suppress(RuntimeError):
-                running.cancel()  # of use to those few calls that can be taken back
-            for each in ending:
-                with suppress(RobotError):
-                    self.begin_stop(*each)
-            raise
-        return line.answered(running, f"{service}.{method}", POLL)
+            except LostConnection:
+                raise
+            except BaseException:
+                with suppress(RuntimeError):
+                    running.cancel()  # of use to those few calls that can be taken back
+                for each in ending:
+                    with suppress(RobotError):
+                        self.begin_stop(*each)
+                raise
+            return line.answered(running, f"{service}.{method}", POLL)
 
     def each_time(self, prepare: Callable[[Line], None]) -> None:
         """Do it now, and whenever the robot is reached anew, which may have been restarted
@@ -160,6 +166,9 @@ class Wire:
             self._watcher.join(CONNECTS_WITHIN + SILENT_AFTER)
         self._work.close()
         self._stops.close()
+        # A call of `qi` that outlives Python takes it down as well.
+        with self._came_back:
+            self._came_back.wait_for(lambda: self._calls == 0, _COME_BACK_WITHIN)
 
     # --- lost and found --------------------------------------------------------------------------
 
@@ -169,6 +178,17 @@ class Wire:
             raise LostConnection("The connection to Pepper is closed. Start the server again.")
         if self._link is not None:
             self._link.check()
+
+    @contextmanager
+    def _calling(self) -> Iterator[None]:
+        with self._came_back:
+            self._calls += 1
+        try:
+            yield
+        finally:
+            with self._came_back:
+                self._calls -= 1
+                self._came_back.notify_all()
 
     def _lines(self) -> tuple[Line, Line]:
         """Both connections, ready."""
