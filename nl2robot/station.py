@@ -24,6 +24,7 @@ from nl2robot.runner import Runner
 from nl2robot.services import EVENTS, services
 from nl2robot.talks import Talks
 from nl2robot.voice_services import Microphones
+from robot_api import limits
 from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.client import Robot
 from robot_api.composed import ComposedDriver
@@ -247,6 +248,7 @@ def robot_station(
 
     def stage(world: World) -> Simulation:
         simulation = Simulation(world)
+        simulation.limit_pace(**limits.pace(driver.capabilities()))
         drawn = tuple(zones())
         if drawn:
             simulation.set_zones(drawn)

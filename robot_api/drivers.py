@@ -15,6 +15,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from datetime import datetime
 from typing import TYPE_CHECKING, Any
 
+from robot_api import limits
 from robot_api.capabilities.arms import (
     EmulatedGesture,
     EmulatedJoints,
@@ -50,6 +51,7 @@ from robot_api.capabilities.telepresence import EmulatedTelepresence, SimulatedT
 from robot_api.capabilities.vision import EmulatedVision, SimulatedVision
 from robot_api.composed import INTERFACES, Call, ComposedDriver
 from robot_api.driver import StopFlag
+from robot_api.robots.robot_file import RobotFile
 from robot_api.schema import find_method
 
 if TYPE_CHECKING:
@@ -214,6 +216,10 @@ class SimulatedDriver(ComposedDriver):
     def copy(self) -> SimulatedDriver:
         """A driver of a copy of the simulation as it is now, to try a program out on, silently."""
         return SimulatedDriver(self.simulation.copy())
+
+    def hold(self, file: RobotFile) -> None:
+        super().hold(file)
+        self.simulation.limit_pace(**limits.pace(self.capabilities()))
 
     def begin(self) -> None:
         """A new program begins: whom another program met by `wait_for` is met anew."""

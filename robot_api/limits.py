@@ -17,6 +17,7 @@ from robot_api.driver import Capabilities
 from robot_api.errors import InvalidCall, NotSupported
 from robot_api.robots.robot_file import RobotFile
 
+_PACE = ("speed", "turn_rate", "acceleration")
 _DRIVES = {
     "linear": ("speed", "drives at {most:g} metres a second at most, not at {asked:g}"),
     "angular": ("turn_rate", "turns by {most:g} degrees a second at most, not by {asked:g}"),
@@ -73,6 +74,11 @@ def narrower(one: Mapping[str, float], other: Mapping[str, float]) -> dict[str, 
         name: min(limits[name] for limits in (one, other) if name in limits)
         for name in (*one, *(name for name in other if name not in one))
     }
+
+
+def pace(capabilities: Capabilities) -> dict[str, float]:
+    """How fast it drives at most, as `sim.simulation.Simulation.limit_pace` takes it."""
+    return {name: most for name, most in capabilities.limits.items() if name in _PACE}
 
 
 def complaint(method: str, arguments: Mapping[str, Any], capabilities: Capabilities) -> str | None:

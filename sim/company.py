@@ -12,7 +12,7 @@ from sim.hospital import Hospital
 from sim.navigation import Spot
 from sim.people import Errand, Human
 from sim.perception import person_in_view
-from sim.robot import TOP_SPEED, bearing
+from sim.robot import bearing
 from sim.runner import Behaviour
 from sim.searching import approach
 from sim.wheel import come_to_rest, face, wheel
@@ -71,7 +71,8 @@ class _Waiting:
     def limit(self) -> float:
         gap = self._human.distance(self._hospital.robot.position)
         share = (_WAIT_GAP - gap) / (_WAIT_GAP - _SLOW_GAP)
-        return TOP_SPEED * min(1.0, share) if share > _CREEP else 0.0
+        most = self._hospital.robot.pace.speed
+        return most * min(1.0, share) if share > _CREEP else 0.0
 
     def check(self) -> None:
         gap = self._human.distance(self._hospital.robot.position)
@@ -225,7 +226,7 @@ def _catch_up(hospital: Hospital, human: Human) -> Behaviour[None]:
 
 def _speed_after(hospital: Hospital, human: Human) -> float:
     gap = human.distance(hospital.robot.position)
-    return TOP_SPEED * max(0.1, min(1.0, gap - _FOLLOW_GAP + 0.5))
+    return hospital.robot.pace.speed * max(0.1, min(1.0, gap - _FOLLOW_GAP + 0.5))
 
 
 def _near(hospital: Hospital, spot: Spot) -> Spot | None:

@@ -14,7 +14,7 @@ from sim.hospital import PERSON_RADIUS, Hospital
 from sim.navigation import Disc, Route, Spot
 from sim.people import Errand, Human
 from sim.physics import STEP
-from sim.robot import TOP_SPEED, TOP_TURN, bearing
+from sim.robot import bearing
 from sim.runner import Behaviour
 from sim.tracking import KEEP, Progress, is_still, track
 from sim.wheel import braking, check_battery, come_to_rest, face, turn_by, wheel
@@ -58,7 +58,7 @@ def move(hospital: Hospital, metres: float) -> Behaviour[None]:
             free = _free_ahead(hospital, heading)
             if free < min(left, 0.02):
                 raise Blocked(_in_the_way(hospital, heading, gone))
-            robot.aim(ahead * min(TOP_SPEED, braking(min(left, free))), 0.0)
+            robot.aim(ahead * min(robot.pace.speed, braking(min(left, free))), 0.0)
             yield
             x, y = robot.position
             gone = (x - start[0]) * math.cos(heading) + (y - start[1]) * math.sin(heading)
@@ -72,8 +72,9 @@ def turn(hospital: Hospital, degrees: float) -> Behaviour[None]:
 
 def drive(hospital: Hospital, linear: float, angular: float, seconds: float) -> Behaviour[None]:
     robot = hospital.robot
-    linear = max(-TOP_SPEED, min(TOP_SPEED, linear))
-    angular = max(-TOP_TURN, min(TOP_TURN, angular))
+    pace = robot.pace
+    linear = max(-pace.speed, min(pace.speed, linear))
+    angular = max(-pace.turn_rate, min(pace.turn_rate, angular))
     with wheel(hospital, joystick=True) as mine:
         end = hospital.time + seconds
         while hospital.time < end - STEP / 2:

@@ -8,11 +8,6 @@ from typing import Any
 
 from sim.physics import STEP, RobotBody
 
-TOP_SPEED = 0.9
-"""m/s."""
-TOP_TURN = 110.0
-"""Degrees a second."""
-SPEED_UP = 0.8
 SLOW_DOWN = 1.2
 """m/s²."""
 TURN_CHANGE = 360.0
@@ -22,6 +17,28 @@ _IDLE_DRAIN = 100 / (10 * 3600)
 _DRIVE_DRAIN = 100 / (4 * 3600)
 _CHARGE = 100 / (1.5 * 3600)
 """Percent a second: ten hours of standing, four of driving, an hour and a half to charge."""
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How fast it drives at most."""
+
+    speed: float = 0.9
+    """m/s."""
+    turn_rate: float = 110.0
+    """Degrees a second."""
+    acceleration: float = 0.8
+    """m/s², with which it gets faster; it slows down by SLOW_DOWN."""
+
+    def within(
+        self, speed: float | None, turn_rate: float | None, acceleration: float | None
+    ) -> Pace:
+        """The same, but no faster than this; None: as before."""
+        return Pace(
+            min(self.speed, speed or self.speed),
+            min(self.turn_rate, turn_rate or self.turn_rate),
+            min(self.acceleration, acceleration or self.acceleration),
+        )
 
 
 @dataclass(frozen=True)
@@ -60,6 +77,7 @@ class Robot:
     volume: int = 70
     language: str = "en"
     screen: dict[str, Any] = field(default_factory=dict)
+    pace: Pace = Pace()
     speed: float = 0.0
     """What the wheels do now: m/s ahead, and `turning` degrees a second."""
     turning: float = 0.0
@@ -110,7 +128,7 @@ class Robot:
             self.wanted_speed = self.wanted_turning = 0.0
         braking = abs(self.wanted_speed) < abs(self.speed)
         self.speed = _towards(
-            self.speed, self.wanted_speed, (SLOW_DOWN if braking else SPEED_UP) * STEP
+            self.speed, self.wanted_speed, (SLOW_DOWN if braking else self.pace.acceleration) * STEP
         )
         self.turning = _towards(self.turning, self.wanted_turning, TURN_CHANGE * STEP)
         if self.turning:

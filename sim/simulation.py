@@ -213,6 +213,17 @@ class Simulation:
         with self._runner.turn:
             self._hospital.set_door(number, open_)
 
+    def limit_pace(
+        self,
+        speed: float | None = None,
+        turn_rate: float | None = None,
+        acceleration: float | None = None,
+    ) -> None:
+        """Drive no faster from now on: m/s, degrees a second, m/s²."""
+        with self._runner.turn:
+            robot = self._hospital.robot
+            robot.pace = robot.pace.within(speed, turn_rate, acceleration)
+
     def set_zones(self, zones: Iterable[Zone]) -> None:
         """Keep the robot out of these zones and no others; `world.zones` is these from now on.
         Their outlines must be sound (`sim.zones.trouble_with`). A robot that is in one may leave

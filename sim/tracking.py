@@ -12,7 +12,7 @@ from sim.hospital import PERSON_RADIUS, Hospital
 from sim.navigation import Route, Spot
 from sim.people import Human
 from sim.physics import STEP
-from sim.robot import TOP_SPEED, TOP_TURN, bearing, wrap
+from sim.robot import bearing, wrap
 from sim.runner import Behaviour
 from sim.wheel import braking, check_battery, come_to_rest
 
@@ -91,7 +91,7 @@ def track(
     robot, points, chart = hospital.robot, route.points, hospital.chart
     rest = _lengths_from_end(points)
     leg = 1
-    allowed = TOP_SPEED
+    allowed = robot.pace.speed
     pushed = 0  # steps without getting anywhere though the wheels turn
     looks = 0
     held_since = hospital.time
@@ -128,7 +128,7 @@ def track(
             speed = min(speed, limit())
         # Turn first when the way leads elsewhere; slow down in bends.
         speed *= 0.0 if abs(off) > 50 else max(0.15, math.cos(math.radians(off))) ** 2
-        robot.aim(speed, max(-TOP_TURN, min(TOP_TURN, 3.5 * off)))
+        robot.aim(speed, max(-robot.pace.turn_rate, min(robot.pace.turn_rate, 3.5 * off)))
         yield
         if robot.speed > 0.1 and math.dist(here, robot.position) < 0.3 * robot.speed * STEP:
             pushed += 1
@@ -157,7 +157,7 @@ def _people_ahead(
 ) -> tuple[float, Human | None]:
     """How fast people allow to drive, and who is in the way."""
     here = hospital.robot.position
-    allowed, who = TOP_SPEED, None
+    allowed, who = hospital.robot.pace.speed, None
     keep = hospital.robot.body.radius + PERSON_RADIUS + KEEP
     for human in hospital.people:
         now = human.distance(here)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from sim.errors import NotPossible
 from sim.hospital import Hospital
 from sim.physics import STEP
-from sim.robot import SLOW_DOWN, TOP_TURN, TURN_CHANGE, wrap
+from sim.robot import SLOW_DOWN, TURN_CHANGE, wrap
 from sim.runner import Behaviour
 
 
@@ -61,7 +61,8 @@ def turn_by(hospital: Hospital, degrees: float) -> Behaviour[None]:
     yield from come_to_rest(hospital)
     while abs(degrees) > 0.3:
         check_battery(hospital)
-        rate = min(TOP_TURN, math.sqrt(1.6 * TURN_CHANGE * abs(degrees)), abs(degrees) / STEP)
+        arriving = math.sqrt(1.6 * TURN_CHANGE * abs(degrees))
+        rate = min(robot.pace.turn_rate, arriving, abs(degrees) / STEP)
         robot.aim(0.0, math.copysign(rate, degrees))
         yield
         degrees -= robot.turning * STEP

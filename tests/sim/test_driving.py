@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from sim.errors import Blocked, NotPossible, UnknownPlace
 from sim.hospital import chart_of
-from sim.robot import TOP_SPEED
+from sim.robot import Pace
 from sim.world import load_world
 
 
@@ -36,8 +36,22 @@ def test_it_speeds_up_and_slows_down_smoothly(hospital, living) -> None:
     speeds = []
     ward.simulation.subscribe(lambda kind, data: kind == "pose" and speeds.append(data["speed"]))
     ward.goes_to("lobby")
-    assert max(speeds) <= TOP_SPEED
+    assert max(speeds) <= Pace().speed
     assert all(abs(b - a) < 0.2 for a, b in itertools.pairwise(speeds))
+
+
+def test_it_drives_no_faster_than_it_may(hospital, living) -> None:
+    ward = living(hospital)
+    ward.simulation.limit_pace(speed=0.3, acceleration=0.2)
+    ward.simulation.limit_pace(speed=0.5, turn_rate=45)  # what is slower stays
+    speeds = []
+    ward.simulation.subscribe(lambda kind, data: kind == "pose" and speeds.append(data["speed"]))
+    ward.goes_to("lobby")
+    assert 0.29 < max(speeds) <= 0.3
+    assert max(b - a for a, b in itertools.pairwise(speeds)) <= 0.2 * 0.1 + 1e-6
+    before = ward.simulation.time
+    ward.does(ward.simulation.turn(-90))
+    assert ward.simulation.time - before > 2
 
 
 def test_a_goal_in_a_bed_is_refused_at_once(small_ward, living) -> None:
