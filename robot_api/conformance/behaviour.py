@@ -8,6 +8,7 @@ from typing import Any
 
 import msgspec
 
+from robot_api.conformance.limits import check_pace
 from robot_api.conformance.samples import samples, strange_names
 from robot_api.conformance.subject import UNDER_WAY, Subject
 from robot_api.driver import EVENTS, Event
@@ -17,8 +18,6 @@ from robot_api.schema import compiled, result_schema
 
 _AT_ONCE = 4
 """Callers who ask the same robot at the same time."""
-_TOO_FAST = 1.1, 0.05
-"""How much faster than its limit a robot may be measured: by a factor, and metres a second."""
 
 
 def check_declared(subject: Subject) -> None:
@@ -153,11 +152,7 @@ def check_events(subject: Subject) -> None:
     for name, kind in (("say", "speech"), ("emotion", "emotion"), ("show", "screen")):
         if name in subject.has.methods and kind not in told:
             subject.findings.wrong("events", name, f"sends no event {kind!r}")
-    limit = subject.has.limits.get("speed")
-    speeds = [abs(data.get("speed", 0.0)) for kind, data in heard if kind == "pose"]
-    if limit is not None and speeds and max(speeds) > limit * _TOO_FAST[0] + _TOO_FAST[1]:
-        message = f"drove at {max(speeds):.2f} m/s, faster than its limit of {limit:g}"
-        subject.findings.wrong("limits", None, message)
+    check_pace(subject, [data for kind, data in heard if kind == "pose"])
 
 
 def check_event(subject: Subject, kind: str, data: Event) -> None:

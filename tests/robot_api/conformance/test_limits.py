@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+import re
+from functools import partial
 from typing import Any
 
 import msgspec
 
+from robot_api.checker import check_driver
+from robot_api.composed import ComposedDriver
 from robot_api.driver import Capabilities, StopFlag
+from robot_api.drivers import simulated
 from robot_api.errors import InvalidCall
+from robot_api.robots.robot_file import Limits, RobotFile
+from sim.simulation import Simulation
+from sim.world import load_world
 from tests.robot_api.conformance.faulty import Faulty, problems
 
 LIMITS = {"speed": 0.5, "turn_rate": 45.0, "volume": 80.0}
@@ -114,3 +122,23 @@ def test_a_robot_that_is_measured_to_be_too_fast() -> None:
             return result
 
     assert problems(Racing()) == ["drove at 1.20 m/s, faster than its limit of 0.5"]
+
+
+def simulated_porter(limits: Limits, keeps: bool = True) -> list[str]:
+    """What is wrong with a simulated robot with these limits that drives as they say, or not."""
+    with Simulation(load_world("ward")) as simulation:
+        driver = simulated(simulation)
+        hold = driver.hold if keeps else partial(ComposedDriver.hold, driver)
+        hold(RobotFile(limits=limits))
+        return [str(each) for each in check_driver(driver) if each.part == "limits"]
+
+
+def test_a_simulated_robot_gets_no_faster_than_its_file_says() -> None:
+    assert simulated_porter(Limits(speed=0.4, acceleration=0.2)) == []
+
+
+def test_a_robot_that_is_measured_to_accelerate_too_fast() -> None:
+    [found] = simulated_porter(Limits(acceleration=0.2), keeps=False)
+    assert re.fullmatch(
+        r"accelerated by 0\.\d+ m/s², more than its limit of 0\.2", found.removeprefix("None: ")
+    )
