@@ -61,13 +61,19 @@ CREATE TABLE IF NOT EXISTS output (
     time REAL NOT NULL,
     text TEXT NOT NULL
 );
+CREATE TABLE IF NOT EXISTS states (
+    run INTEGER NOT NULL REFERENCES runs(id),
+    time REAL NOT NULL,
+    state TEXT NOT NULL,             -- see nl2robot/state.py
+    because TEXT
+);
 CREATE TABLE IF NOT EXISTS movements (
     run INTEGER PRIMARY KEY REFERENCES runs(id),
     record BLOB NOT NULL             -- see nl2robot/kept_record.py
 );
 """
 
-_VERSION = 4
+_VERSION = 5
 _ADDED = {"start": "TEXT", "process": "INTEGER"}
 """Columns of `runs` that a log of an older version has not got."""
 
@@ -210,6 +216,15 @@ class RunLog:
             *(seconds, result, error, run, number),
         )
 
+    def state(self, run: int, state: str, because: str | None) -> None:
+        """Note how the robot and the program stand from now on, if that is news."""
+        with self._lock, self._trouble():
+            self._db.execute(
+                "INSERT INTO states SELECT ?1, ?2, ?3, ?4 WHERE ?3 IS NOT"
+                " (SELECT state FROM states WHERE run = ?1 ORDER BY rowid DESC LIMIT 1)",
+                (run, time.time(), state, because),
+            )
+
     def printed(self, run: int, text: str) -> None:
         self._write("INSERT INTO output VALUES (?, ?, ?)", run, time.time(), text)
 
@@ -255,6 +270,12 @@ class RunLog:
         )
         return [LoggedCall(**row) for row in rows]
 
+    def states(self, run: int) -> list[dict[str, Any]]:
+        """The states that a run went through while it lasted: time, state, because."""
+        return self._read(
+            "SELECT time, state, because FROM states WHERE run = ? ORDER BY rowid", run
+        )
+
     def output(self, run: int) -> list[str]:
         rows = self._read("SELECT text FROM output WHERE run = ? ORDER BY time, rowid", run)
         return [row["text"] for row in rows]
@@ -269,6 +290,7 @@ class RunLog:
         data["plan"] = json.loads(run.plan) if run.plan else None
         data["calls"] = msgspec.to_builtins(self.calls(run.id))
         data["output"] = self.output(run.id)
+        data["states"] = self.states(run.id)
         return data
 
     # --- the file

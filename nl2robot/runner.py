@@ -11,6 +11,7 @@ An approval is bound to the hash of exactly one program and is used up by one ru
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import logging
 import secrets
@@ -19,12 +20,23 @@ import time
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 import msgspec
 
+from nl2robot import state as happenings
 from nl2robot.history import Record, done_calls
 from nl2robot.knowledge import Knowledge
+from nl2robot.pausing import (
+    DRIVING,
+    MEASURED,
+    PAUSED,
+    Odometer,
+    comes_to_rest,
+    pose_of,
+    rest_of,
+)
+from nl2robot.present import Present
 from nl2robot.review import Review, digest, review
 from nl2robot.runlog import LogError, RunLog
 from robot_api.client import Robot
@@ -42,14 +54,30 @@ from sim.world import World, builtin_worlds
 
 _log = logging.getLogger("nl2robot.runner")
 
-State = Literal["running", "paused", "done", "failed", "stopped", "limit"]
+State = Literal["running", "pausing", "paused", "done", "failed", "stopped", "limit"]
+GOING: Final = ("running", "pausing", "paused")
+"""The states of a run that is not over."""
 
+SECONDS_TO_REST = 2.0
+"""How long a paused robot may take to stand, beside what it says of a stop. Then it is stopped."""
 SECONDS_TO_END = 3.0
 """How long a stopped run may take to be over, beside what the robot takes to stand."""
 BREAK_OFF_EVERY = 0.02
 """Seconds between two attempts to break off a robot call of a program that was stopped."""
 APPROVALS_KEPT = 100
 """An approval that was not used is forgotten when so many newer ones were given."""
+
+
+BUSY = "Another program is running. Wait until it is over, or stop it first."
+UNCONFIRMED = (
+    "The robot has not confirmed that it stands. Press STOP until it does; then approve it again."
+)
+_HALTED = "The movement was halted; what is left of it is made when the program goes on."
+_DOES_NOT_REST = "The robot did not come to rest when it was paused, so it was stopped."
+
+
+class _BrokenOff(Exception):
+    """A pause has broken off the call at hand."""
 
 
 class Approval(msgspec.Struct, frozen=True, kw_only=True):
@@ -92,7 +120,8 @@ class _Activity:
         self.approval = approval
         self.execution: Execution | None = None
         self.robot: Robot | None = None
-        self.state: State = "running"
+        self.ended: State | None = None
+        """How, once it is over and logged."""
         self.line: int | None = None
         self.message: str | None = None
         self.calls = 0
@@ -103,11 +132,19 @@ class _Activity:
         """Set when it is to be stopped, maybe before it has begun."""
         self.lost_because: str | None = None
         """Set when the robot is lost meanwhile."""
+        self.gate = threading.Lock()
+        """Around what follows, and around whether it is to pause."""
+        self.drives = False
+        """Whether a call is in flight that turns the wheels."""
+        self.broken_off = False
+        """Whether a pause has broken that off."""
+        self.odometer: Odometer | None = None
+        """Of the movement that is measured."""
 
-    def status(self) -> Status:
+    def status(self, state: State) -> Status:
         return Status(
             run=self.run,
-            state=self.state,
+            state=self.ended or state,
             line=self.line,
             message=self.message,
             error=self.outcome.error if self.outcome else None,
@@ -133,8 +170,11 @@ class Runner:
         publish: Callable[[str, Mapping[str, Any]], None],
         stage: Callable[[], Simulation] | None = None,
         seed: int | None = None,
+        present: Present | None = None,
     ) -> None:
         self.knowledge = knowledge
+        self.present = present or Present(lambda state: None)
+        """How the robot and its program stand."""
         self.log = log
         self._connect = connect
         self._publish = publish
@@ -145,6 +185,7 @@ class Runner:
         self._activity: _Activity | None = None
         self._lost_since: float | None = None
         self._lost_because = ""
+        self._pose: Mapping[str, Any] | None = None
 
     # --- before it runs
 
@@ -164,7 +205,8 @@ class Runner:
         plan: str | None = None,
     ) -> Approval:
         """Approve exactly this program. Raises `AccessDenied` if the hash is that of another text,
-        or if the review finds an error in it."""
+        or if the review finds an error in it, `NotPossible` while another program runs."""
+        self._check_free()
         if digest(program) != sha256:
             raise AccessDenied(
                 "The program was changed after its review. Review it again, then approve it."
@@ -203,19 +245,19 @@ class Runner:
         robot is lost."""
         if self._lost_since is not None:
             raise LostConnection(f"{self._lost_because} Nothing can be run before it is found.")
+        self._check_stands()
         with self._lock:
             approval = self._approvals.get(approval_id)
             if approval is None:
                 raise AccessDenied(
                     "This program has no approval that is still good. Review and approve it first."
                 )
-            if self._activity is not None and not self._activity.over.is_set():
-                raise NotPossible(
-                    "Another program is running. Wait until it is over, or stop it first."
-                )
+            self._check_free()
             del self._approvals[approval_id]
             run = self._begin(approval)
             activity = self._activity = _Activity(run, approval)
+        if self.present.happened(happenings.Began(run)).run != run:  # stopped in this very moment
+            activity.stop_because = self.present.state.because or "The robot was stopped."
         threading.Thread(
             target=self._perform, args=(activity,), name=f"program {run}", daemon=True
         ).start()
@@ -225,13 +267,13 @@ class Runner:
         """Wait until that run is over (or `timeout` seconds), then tell how it stands."""
         activity = self._of(run)
         activity.over.wait(timeout)
-        return activity.status()
+        return self._status(activity)
 
     def state(self) -> Status | None:
         """How the present or last run stands; None if there was none since the server started."""
         if self._activity is None:
             return None
-        status = self._activity.status()
+        status = self._status(self._activity)
         return msgspec.structs.replace(status, robot_lost_since=self._lost_since)
 
     def last(self) -> Record | None:
@@ -249,14 +291,19 @@ class Runner:
         return Record(run, running, line, done_calls(self.log.calls(run.id)))
 
     def pause(self) -> Status:
-        return self._control("paused", Execution.pause)
+        """Halt the robot at once, and the program with it: a movement at hand is broken off, a
+        sentence may end. It is `paused` when the robot has come to rest, until then `pausing`."""
+        activity = self._control(Execution.pause, happenings.PauseAsked())
+        threading.Thread(target=self._halt, args=(activity,), name="halt", daemon=True).start()
+        return self._status(activity)
 
     def step(self) -> Status:
-        """Do one more robot call, then pause again."""
-        return self._control("paused", Execution.step)
+        """Do one more robot call, or the rest of the one that was broken off, then pause again."""
+        return self._status(self._control(Execution.step, happenings.Resumed()))
 
     def resume(self) -> Status:
-        return self._control("running", Execution.resume)
+        """Go on: what was broken off goes on to its goal."""
+        return self._status(self._control(Execution.resume, happenings.Resumed()))
 
     def stop(self, because: str = "The program was stopped.") -> None:
         """Stop the program that runs, if any. `robot.stop` does this and stops the robot."""
@@ -264,6 +311,7 @@ class Runner:
         if activity is None or activity.outcome is not None or activity.stop_because is not None:
             return
         activity.stop_because = because
+        self.present.happened(happenings.EndAsked(because))
         if activity.execution is not None:
             activity.execution.stop(because)
         if activity.robot is not None:
@@ -288,6 +336,14 @@ class Runner:
             activity.lost_because = self._lost_because
             if activity.execution is not None:
                 activity.execution.stop(self._lost_because)
+
+    def note_pose(self, pose: Mapping[str, Any]) -> None:
+        """Where the robot is (the data of the event `pose`)."""
+        self._pose = pose
+        activity = self._activity
+        odometer = activity.odometer if activity is not None else None
+        if odometer is not None:
+            odometer.at(pose)
 
     # --- the run itself
 
@@ -330,11 +386,11 @@ class Runner:
     def _execute(self, activity: _Activity, robot: Robot) -> Outcome:
         def on_line(line: int) -> None:
             activity.line = line
+            self.present.happened(happenings.AtLine(line))
             self._tell(activity, "line")
 
         def call(method: str, arguments: dict[str, Any], line: int) -> Any:
-            activity.calls += 1
-            return self._logged_call(activity, robot, method, arguments, line)
+            return self._call(activity, robot, method, arguments, line)
 
         def on_print(text: str) -> None:
             self._logged(self.log.printed, activity.run, text)
@@ -346,6 +402,7 @@ class Runner:
             seed=self._seed,
             on_line=on_line,
             on_print=on_print,
+            on_hold=lambda: self._holds(activity),
         )
         activity.execution = execution
         self._tell(activity, "state")
@@ -353,9 +410,36 @@ class Runner:
             execution.stop(activity.stop_because)
         return execution.run()
 
+    def _call(
+        self, activity: _Activity, robot: Robot, method: str, arguments: dict[str, Any], line: int
+    ) -> Any:
+        """Make a robot call, in pieces if it is paused meanwhile."""
+        left: dict[str, Any] | None = arguments
+        while left is not None:
+            self._begin_driving(activity, robot, method)
+            try:
+                return self._logged_call(activity, robot, method, left, line)
+            except _BrokenOff:
+                assert activity.execution is not None
+                with activity.gate:
+                    activity.drives = False  # from now on nothing else is to be broken off
+                self._come_to_rest(activity, robot)
+                odometer, activity.odometer = activity.odometer, None
+                if odometer is not None:
+                    here = self._where(robot)
+                    if here is not None:
+                        odometer.at(here)
+                    left = rest_of(method, left, odometer)
+                activity.execution.hold()
+            finally:
+                with activity.gate:
+                    activity.drives, activity.odometer = False, None
+        return None
+
     def _logged_call(
         self, activity: _Activity, robot: Robot, method: str, arguments: dict[str, Any], line: int
     ) -> Any:
+        activity.calls += 1
         number = activity.calls
         written = msgspec.json.encode(arguments).decode()
         self._logged(self.log.call_begins, activity.run, number, line, method, written)
@@ -368,9 +452,12 @@ class Runner:
             result = getattr(robot, method)(**arguments)
         except (RobotError, Stopped) as error:
             seconds = time.perf_counter() - began
-            told = f"{type(error).__name__}: {error}"
+            broken_off = isinstance(error, Stopped) and self._was_broken_off(activity)
+            told = f"{PAUSED}: {_HALTED}" if broken_off else f"{type(error).__name__}: {error}"
             self._logged(self.log.call_ends, activity.run, number, seconds, error=told)
             self._tell(activity, "result", **about, error=told, seconds=seconds)
+            if broken_off:
+                raise _BrokenOff from None
             raise
         seconds = time.perf_counter() - began
         told = msgspec.json.encode(result).decode()
@@ -403,20 +490,124 @@ class Runner:
             self._tell(activity, "state", state=outcome.status, message=message)
         finally:
             with self._lock:  # whoever is told of the end may start the next run
-                activity.state, activity.message = outcome.status, message
+                activity.ended, activity.message = outcome.status, message
+                self.present.happened(happenings.Ended(activity.run, outcome.status, message))
                 activity.over.set()
+
+    # --- a pause
+
+    def _begin_driving(self, activity: _Activity, robot: Robot, method: str) -> None:
+        """Before a call that turns the wheels: not while they are to stand."""
+        assert activity.execution is not None
+        while True:
+            with activity.gate:
+                if not self._pauses(activity):
+                    activity.broken_off = False
+                    activity.drives = method in DRIVING
+                    break
+            activity.execution.hold()
+        if method == "localize":
+            self._pose = None  # it is elsewhere on the map than it was
+        if method in MEASURED:
+            activity.odometer = Odometer(self._pose or self._where(robot))
+
+    def _halt(self, activity: _Activity) -> None:
+        """Break off what turns the wheels. Whoever made that call then sees to the rest; if there
+        is none, we do."""
+        robot = activity.robot
+        assert robot is not None
+        while True:
+            with activity.gate:
+                if not self._pauses(activity) or self.present.state.state == "paused":
+                    return
+                if not activity.drives:
+                    break
+                activity.broken_off = True
+                robot.cancel()
+            if activity.over.wait(BREAK_OFF_EVERY):
+                return
+        if not activity.broken_off:
+            with contextlib.suppress(RobotError, Stopped):
+                self._come_to_rest(activity, robot)
+
+    def _come_to_rest(self, activity: _Activity, robot: Robot) -> None:
+        """Be sure that the robot stands, and say so; else stop it. Raises `Stopped`."""
+        has = self.knowledge.capabilities
+        if has is not None and self._knows_where:
+            within = has.stop_within + SECONDS_TO_REST
+            goes_on = lambda: activity.stop_because is None  # noqa: E731
+            if not comes_to_rest(robot, within, goes_on):
+                if activity.stop_because is None:
+                    self.stop(_DOES_NOT_REST)
+                raise Stopped(activity.stop_because or _DOES_NOT_REST)
+        if self.present.state.state == "pausing":
+            self.present.happened(happenings.Halted())
+            self._tell(activity, "state")
+
+    def _holds(self, activity: _Activity) -> None:
+        """The program waits again after a step, between two calls."""
+        if self.present.state.state == "running":
+            self.present.happened(happenings.PauseAsked())
+            self.present.happened(happenings.Halted())
+            self._tell(activity, "state")
+
+    def _pauses(self, activity: _Activity) -> bool:
+        now = self.present.state
+        return now.run == activity.run and now.state in ("pausing", "paused")
+
+    def _was_broken_off(self, activity: _Activity) -> bool:
+        return (
+            activity.broken_off and activity.stop_because is None and activity.lost_because is None
+        )
+
+    def _where(self, robot: Robot) -> Mapping[str, Any] | None:
+        """None if the robot does not know."""
+        if not self._knows_where:
+            return None
+        with contextlib.suppress(RobotError):
+            return pose_of(robot.location())
+        return None
+
+    @property
+    def _knows_where(self) -> bool:
+        has = self.knowledge.capabilities
+        return has is not None and "location" in has.methods
 
     # --- helpers
 
-    def _control(self, state: State, act: Callable[[Execution], None]) -> Status:
+    def _control(
+        self, act: Callable[[Execution], None], happening: happenings.Happening
+    ) -> _Activity:
         activity = self._activity
         with self._lock:
             if activity is None or activity.outcome is not None or activity.execution is None:
                 raise NotPossible("No program is running.")
-            activity.state = state
-        act(activity.execution)
+        with activity.gate:
+            act(activity.execution)
+            self.present.happened(happening)
         self._tell(activity, "state")
-        return activity.status()
+        return activity
+
+    def _status(self, activity: _Activity) -> Status:
+        now = self.present.state.state
+        match now:
+            case "running" | "pausing" | "paused":
+                return activity.status(now)
+        return activity.status("running")  # until it is over, whatever the robot is at
+
+    def _check_free(self) -> None:
+        """Raise `NotPossible` while a program runs."""
+        if self._activity is not None and not self._activity.over.is_set():
+            raise NotPossible(BUSY)
+
+    def _check_stands(self) -> None:
+        """Raise `NotPossible` while the robot is being stopped."""
+        has = self.knowledge.capabilities
+        patience = SECONDS_TO_END + (has.stop_within if has else 0.0)
+        if self.present.state.unconfirmed or not self.present.wait_until(
+            lambda now: not now.stops, patience
+        ):
+            raise NotPossible(UNCONFIRMED)
 
     def _of(self, run: int) -> _Activity:
         activity = self._activity
@@ -428,7 +619,7 @@ class Runner:
         data = {
             "what": what,
             "run": activity.run,
-            "state": activity.state,
+            "state": self._status(activity).state,
             "line": activity.line,
             "message": activity.message,
         }

@@ -13,7 +13,7 @@ import msgspec
 from grammar.planning.planner import Interrupted
 from grammar.samples import samples
 from nl2robot.planners import names
-from nl2robot.runner import Runner
+from nl2robot.runner import GOING, Runner
 from nl2robot.talks import Talks
 from nl2robot.thinking import EVENT, Thought, published
 from nl2robot.translation import Translation, translate
@@ -85,7 +85,7 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
         enough = began + p.get("timeout", math.inf)
         has = runner.knowledge.capabilities
         to_end = SECONDS_TO_END + (has.stop_within if has else 0.0)
-        while status.state in ("running", "paused") and time.monotonic() < enough:
+        while status.state in GOING and time.monotonic() < enough:
             if stop.is_set():
                 enough = min(enough, time.monotonic() + to_end)
             status = runner.wait(p["run"], 0.05)
@@ -155,11 +155,19 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             "Tell how the present or last run stands.",
             observes=True,
         ),
+        "station.state": service(
+            lambda p: runner.present.on_wire(),
+            "Tell how the robot and its program stand, as the event `state` does.",
+            observes=True,
+        ),
         "program.pause": service(
-            lambda p: runner.pause(), "Hold the program before its next robot call."
+            lambda p: runner.pause(),
+            "Halt the robot and the program: pausing, and paused when it has come to rest.",
         ),
         "program.step": service(lambda p: runner.step(), "Do one robot call, then hold again."),
-        "program.resume": service(lambda p: runner.resume(), "Go on after a pause."),
+        "program.resume": service(
+            lambda p: runner.resume(), "Go on after a pause; a movement goes on to its goal."
+        ),
         "program.stop": service(
             lambda p: runner.stop(),
             "Stop the program; `robot.stop` stops the robot as well.",

@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.operator import Operator
 from nl2robot.review import Review
-from nl2robot.runner import Approval, Status
+from nl2robot.runner import GOING, Approval, Status
 from nl2robot.terminal import Decision, Terminal
 from nl2robot.translation import Translation
 from nl2robot.waiting import GivenUp
@@ -267,7 +267,7 @@ class Session:
             self.terminal.show_event(kind, data)
             if data["what"] == "result" and data["method"] == "set_language":
                 self._follow(data)
-            if data["what"] == "state" and data["state"] not in ("running", "paused"):
+            if data["what"] == "state" and data["state"] not in GOING:
                 self._told_end.set()
 
     def _follow(self, result: Mapping[str, Any]) -> None:

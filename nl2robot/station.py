@@ -15,13 +15,15 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from nl2robot import present
 from nl2robot.console.part import STOP, Backstage
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.routines import open_routines
 from nl2robot.runlog import LogError, RunLog
-from nl2robot.runner import Runner
+from nl2robot.runner import GOING, Runner
 from nl2robot.services import EVENTS, services
+from nl2robot.state import Charging, State, on_wire
 from nl2robot.talks import Talks
 from nl2robot.voice_services import Microphones
 from robot_api import limits
@@ -77,7 +79,7 @@ class SimulatedStation(Station):
         now = self.simulation.time
         new = run not in self._spans
         began = now if new else self._spans[run][0]
-        self._spans[run] = (began, math.inf if state in ("running", "paused") else now)
+        self._spans[run] = (began, math.inf if state in GOING else now)
         return new
 
     def record(self, run: int) -> Record:
@@ -165,7 +167,7 @@ def simulated_station(
         if station.note(run, state):
             driver.begin()
             _note_start(station, log, run)
-        if pictures is not None and state not in ("running", "paused"):
+        if pictures is not None and state not in GOING:
             _keep_picture(station, log, run, pictures / f"run-{run}.svg")
 
     with _open(
@@ -322,6 +324,13 @@ def _open(
             backstage.tell(kind, data)
         server.publish(kind, data, to)
 
+    def tell(state: State) -> None:
+        if state.run is not None:
+            with suppress(LogError):  # the next call will find the disk full, too
+                log.state(state.run, state.state, state.because)
+        publish(present.KIND, on_wire(state))
+        backstage.tell(present.KIND, on_wire(state))
+
     runner = Runner(
         knowledge=Knowledge(world, driver.capabilities(), open_routines()),
         connect=lambda: Robot(server.address, token=server.token),
@@ -329,6 +338,7 @@ def _open(
         publish=publish,
         stage=(lambda: stage(runner.knowledge.world)) if world.has_geometry else None,
         seed=seed,
+        present=present.Present(tell),
     )
 
     talks = Talks()
@@ -346,7 +356,10 @@ def _open(
     )
 
     def on_event(kind: str, data: Event) -> None:
-        if kind == STOP:
+        runner.present.on_event(kind, data)
+        if kind == "pose":
+            runner.note_pose(data)
+        elif kind == STOP:
             runner.stop(str(data.get("because", "The robot was stopped.")))
             microphones.give_up()
         elif kind == "link":
@@ -366,13 +379,17 @@ def _open(
         port=port,
         token=token,
         services={**services(runner, talks, microphones), **(added.services if added else {})},
-        events={**EVENTS, **(added.events if added else {})},
+        events={**EVENTS, **present.EVENTS, **(added.events if added else {})},
+        remembered=(present.KIND,),
         pages=added.pages() if added else None,
         on_left=on_left,
     )
     unsubscribe = driver.subscribe(backstage.tell)
+    if simulation is not None:
+        runner.present.happened(Charging(simulation.robot.charging))
     try:
         with server:
+            runner.present.begin()
             try:
                 yield server
             finally:

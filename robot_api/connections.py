@@ -62,7 +62,7 @@ class Client:
                 self.send(last, kind)
 
     def _states_wanted(self) -> set[str]:
-        return {kind for kind in REMEMBERED if self.wire.wants(kind)}
+        return {kind for kind in self._server.remembered if self.wire.wants(kind)}
 
     def _do(self, frame: str | bytes) -> None:
         for action in self.wire.receive(frame):

@@ -12,7 +12,7 @@ import contextlib
 import logging
 import queue
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final, Protocol
 
@@ -126,7 +126,8 @@ class Server:
 
     `port` 0 is any free port. On another host than this machine a `token` is needed; if none is
     given one is made up. `services` are further methods by their names, `events` the kinds of
-    events that they publish, each with what its data says. `pages` is an application whose pages
+    events that they publish, each with what its data says; of those `remembered` the last one is
+    sent to who subscribes later. `pages` is an application whose pages
     are served beside the wire; without one, `status_page` makes the page at `/`. `on_left` is told
     the name of each connection that is gone, in the loop thread.
     The driver stays the caller's: the server stops the robot when it ends, and does not close it.
@@ -140,6 +141,7 @@ class Server:
         *,
         services: Mapping[str, Service] | None = None,
         events: Mapping[str, str] | None = None,
+        remembered: Iterable[str] = (),
         token: str | None = None,
         pages: ASGIApp | None = None,
         on_left: Callable[[str], None] | None = None,
@@ -153,6 +155,8 @@ class Server:
         self.driver = driver
         self.services = dict(services or {})
         self.events = {**EVENTS, **(events or {})}
+        self.remembered = frozenset((*REMEMBERED, *remembered))
+        """Kinds of events that tell how it is from then on."""
         self.dispatcher = Dispatcher(driver)
         self.clients: set[Client] = set()
         self.methods = self._readers()
@@ -255,7 +259,7 @@ class Server:
         except (msgspec.MsgspecError, TypeError, ValueError):
             _log.exception("an event of the kind %s cannot be sent", kind)
             return
-        if kind in REMEMBERED:
+        if kind in self.remembered:
             self._last[kind] = frame
         self.in_loop(self._send_event, kind, frame, to)
 
@@ -283,7 +287,7 @@ class Server:
                 self._loop.call_soon_threadsafe(task, *arguments)
 
     def last(self, kind: str) -> str | None:
-        """The frame of the last event of that kind, one of `REMEMBERED`, if it still holds."""
+        """The frame of the last event of that kind, one of `remembered`, if it still holds."""
         return self._last.get(kind)
 
     def _send_event(self, kind: str, frame: str, to: str | None) -> None:

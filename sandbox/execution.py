@@ -95,10 +95,12 @@ class Execution:
         on_line: Callable[[int], None] | None = None,
         on_print: Callable[[str], None] | None = None,
         on_call: Callable[[CallRecord], None] | None = None,
+        on_hold: Callable[[], None] | None = None,
     ) -> None:
         """`on_line(line)` is called before each robot call and before a pause at it, `on_call`
-        after it, `on_print` with what the program prints; all on the thread of `run`. With a
-        `stub`, a program that does not pass `sandbox.check` against it fails before it begins.
+        after it, `on_hold()` when the program waits again after a step, `on_print` with what the
+        program prints; all on the thread of `run`. With a `stub`, a program that does not pass
+        `sandbox.check` against it fails before it begins.
         With a `seed`, `random` gives the same numbers in every run.
         """
         self._program = program
@@ -107,11 +109,13 @@ class Execution:
         self._stub = stub
         self._on_line = on_line
         self._on_call = on_call
+        self._on_hold = on_hold
         self._interpreter = Interpreter(self._limits, on_print or _ignore, seed)
         self._changed = threading.Condition()
         self._started = False
         self._paused = False
         self._steps = 0
+        self._stepped = False
         self._stopped: str | None = None
         self._calls = 0
         self._line: int | None = None
@@ -125,6 +129,11 @@ class Execution:
             self._paused = True
             self._changed.notify_all()
 
+    def hold(self) -> None:
+        """Wait as long as the program is paused, but for a step; for whoever makes a robot call
+        and was asked to break it off. Raises `Stopped`."""
+        self._wait_while_paused()
+
     def step(self) -> None:
         """Make one robot call, then hold again."""
         with self._changed:
@@ -135,7 +144,7 @@ class Execution:
     def resume(self) -> None:
         """Go on after a pause."""
         with self._changed:
-            self._paused = False
+            self._paused = self._stepped = False
             self._steps = 0
             self._changed.notify_all()
 
@@ -243,11 +252,16 @@ class Execution:
 
     def _wait_while_paused(self) -> None:
         with self._changed:
+            if self._stepped and self._paused and not self._steps:
+                self._stepped = False
+                if self._on_hold is not None:
+                    self._on_hold()
             self._changed.wait_for(
                 lambda: not self._paused or self._steps > 0 or self._stopped is not None
             )
             if self._paused and self._steps > 0:
                 self._steps -= 1
+                self._stepped = True
         self._check_stopped()
 
     def _check_stopped(self) -> None:

@@ -18,6 +18,7 @@ import msgspec
 from nl2robot.archive import state_of
 from nl2robot.console.dialogue import Dialogue, Draft, Line
 from nl2robot.console.part import STOP, Backstage
+from nl2robot.runner import GOING
 from nl2robot.translation import Translation
 
 IN_MEMORY: Final = 50
@@ -81,7 +82,7 @@ class Dialogues:
         thought about, lest it moves on."""
         if kind == STOP:
             self._cancel_all()
-        if kind != "program" or data["what"] != "state" or data["state"] in ("running", "paused"):
+        if kind != "program" or data["what"] != "state" or data["state"] in GOING:
             return
         for name, dialogue in tuple(self._dialogues.items()):
             language = self._languages.get(name, "en")

@@ -115,8 +115,7 @@ class Controls:
         return {**_plain(state), "me": context.connection, "role": context.role}
 
     def _check_no_program(self) -> None:
-        status = self._runner.state()
-        if status is not None and status.state in ("running", "paused"):
+        if self._runner.present.state.run is not None:
             raise NotPossible("A program is running, and drives the robot. Stop it first.")
 
     def _on_event(self, kind: str, data: Event) -> None:
@@ -127,7 +126,7 @@ class Controls:
                 self._seen[kind] = data
             case "stop":
                 self.helm.stopped()
-            case "program" if data["what"] == "state" and data["state"] == "running":
+            case "state" if data["run"] is not None:
                 self.helm.yield_to_program()
 
     def _keep(self, line: Event) -> None:

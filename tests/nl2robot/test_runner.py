@@ -170,7 +170,9 @@ def test_pause_step_and_resume(slow_operator) -> None:
     watch.until(what("result", number=1))
     request("program.step")
     watch.until(what("result", number=2))
+    watch.until(what("state", state="paused"))
     assert request("program.state")["state"] == "paused"
+    assert request("station.state")["state"] == "paused"
     request("program.resume")
     watch.until(what("state", state="done", run=run))
     assert [d["number"] for k, d in watch.seen if what("call")(k, d)] == [1, 2, 3, 4]

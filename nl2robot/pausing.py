@@ -1,0 +1,110 @@
+"""A pause halts the wheels: a movement is broken off, and what is left of it is made later.
+
+A way to a place is simply asked for again. Of a `move`, a `turn` and a `drive` only the rest is
+made, which an `Odometer` tells from the robot's poses.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Mapping
+from typing import Any, Final
+
+from robot_api.client import Robot
+from robot_api.values import Location
+
+DRIVING: Final = frozenset(
+    (
+        *("goto", "move", "turn", "drive", "dock", "find"),
+        *("grab", "put", "give", "follow", "guide", "do"),
+    )
+)
+"""The methods that turn the wheels. They are broken off by a pause; all others end by themselves
+while the robot stands."""
+MEASURED: Final = frozenset({"move", "turn", "drive"})
+"""Those of which only the rest is made after a pause."""
+PAUSED: Final = "Paused"
+"""What the log calls the end of a call that a pause broke off."""
+
+_LOOKS: Final = 0.1
+"""Seconds between two looks whether the robot stands."""
+_SAME_SPOT: Final = 0.008
+"""Metres that the poses of a robot that stands may differ by."""
+_SAME_HEADING: Final = 0.6
+"""The same in degrees."""
+_NOTHING_LEFT: Final = {"move": 0.03, "turn": 2.0, "drive": 0.05}
+"""Metres, degrees and seconds that are not worth making."""
+
+
+class Odometer:
+    """Adds up what a movement has made: metres along the robot's own heading, forwards positive,
+    and degrees, to the left positive."""
+
+    def __init__(self, start: Mapping[str, Any] | None) -> None:
+        """`start` is a pose: x, y (metres), theta (degrees)."""
+        self.metres = 0.0
+        self.degrees = 0.0
+        self._last = start
+
+    def at(self, pose: Mapping[str, Any]) -> None:
+        """The robot is here now."""
+        last, self._last = self._last, pose
+        if last is None:
+            return
+        turned = (pose["theta"] - last["theta"] + 180.0) % 360.0 - 180.0
+        heading = math.radians(last["theta"] + turned / 2)
+        east, north = pose["x"] - last["x"], pose["y"] - last["y"]
+        self.degrees += turned
+        self.metres += east * math.cos(heading) + north * math.sin(heading)
+
+
+def rest_of(method: str, arguments: dict[str, Any], made: Odometer) -> dict[str, Any] | None:
+    """The arguments of the call that makes what is left; None if nothing is."""
+    match method:
+        case "move":
+            name, whole, done = "metres", arguments["metres"], made.metres
+        case "turn":
+            name, whole, done = "degrees", arguments["degrees"], made.degrees
+        case "drive":
+            name, whole, done = "seconds", arguments["seconds"], _seconds(arguments, made)
+        case _:
+            return arguments
+    left = whole - done
+    if left * whole <= 0 or abs(left) < _NOTHING_LEFT[method]:
+        return None
+    return {**arguments, name: round(left, 3)}
+
+
+def _seconds(arguments: Mapping[str, Any], made: Odometer) -> float:
+    """How much of a `drive` was made."""
+    linear, angular = float(arguments["linear"]), float(arguments["angular"])
+    if abs(linear) >= 0.02:
+        return max(0.0, made.metres / linear)
+    return max(0.0, made.degrees / angular) if angular else 0.0
+
+
+def comes_to_rest(robot: Robot, within: float, goes_on: Callable[[], bool]) -> bool:
+    """Look at the robot until it stands, at most `within` seconds; raises as `Robot.location`."""
+    ends = time.monotonic() + within
+    last = robot.location()
+    while goes_on():
+        time.sleep(_LOOKS)
+        now = robot.location()
+        if _same(last, now):
+            return True
+        if time.monotonic() > ends:
+            return False
+        last = now
+    return False
+
+
+def pose_of(location: Location) -> dict[str, Any]:
+    """As the event `pose` has it."""
+    return {"x": location.x, "y": location.y, "theta": location.theta}
+
+
+def _same(one: Location, other: Location) -> bool:
+    turned = (one.theta - other.theta + 180.0) % 360.0 - 180.0
+    apart = math.hypot(one.x - other.x, one.y - other.y)
+    return apart <= _SAME_SPOT and abs(turned) <= _SAME_HEADING
