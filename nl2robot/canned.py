@@ -45,12 +45,12 @@ import yaml
 from grammar.plan import calls, from_data
 from nl2robot.errors import UserError
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
-from nl2robot.rehearsal import EventKind, rehearse
+from nl2robot.rehearsal import Budget, EventKind, rehearse
 from nl2robot.translation import Translation, translate
 from sim.world import World, load_world
 
-PATIENCE = 60.0
-"""Real seconds that a run may take here: nobody waits at a prompt, and a busy machine is slow."""
+PATIENCE = Budget(seconds=7200.0, real_seconds=1800.0)
+"""How far a run is followed here: nobody waits at a prompt."""
 
 
 STATUSES = ("ok", "clarify", "rejected")

@@ -1,9 +1,15 @@
-"""The dry run: the program in a copy of the simulated world, as fast as the machine allows."""
+"""The dry run: the program in a copy of the simulated world, as fast as the machine allows.
+
+How far a program is followed is counted in what happens in it (steps of the simulation, calls,
+rounds of its loops), never in the seconds that the machine takes: the same program in the same
+world has the same dry run on a fast and on a busy machine.
+"""
 
 from __future__ import annotations
 
 import math
 import threading
+from collections import Counter
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal
@@ -12,24 +18,46 @@ import msgspec
 
 from robot_api.driver import StopFlag
 from robot_api.errors import Stopped
+from sandbox.limits import Limits
 
 if TYPE_CHECKING:
     from sim.record import Record, Sample
     from sim.simulation import Simulation
 
-REAL_SECONDS = 3.0
-"""How long a person waits for a dry run before it is cut short."""
-MANY_CALLS = 1000
-"""A program that calls more often is not followed to its end."""
+
+@dataclass(frozen=True)
+class Budget:
+    """How far a program is followed before its dry run breaks off."""
+
+    seconds: float = 900.0
+    """Of simulated time, without what is leapt over of long waits: about three seconds
+    of a quiet machine, as long as a person likes to wait for a review."""
+    calls: int = 1000
+    """Of robot methods, without those by which a program looks at the clock and waits on,"""
+    waits: int = 20_000
+    """and with them: more than a day of looking every ten seconds whether it is time."""
+    rounds: int = 2_000_000
+    """Of loops, and calls of functions."""
+    real_seconds: float = 180.0
+    """The one limit by the clock on the wall, far above what the others allow: a machine that is
+    still not through by then is in trouble, and the dry run says so (`BreakOff` "machine")."""
+
+
+BUDGET: Final = Budget()
+_WAITS: Final = ("wait", "clock")
 MANY_POINTS = 200
 """Of the path, for who draws it on a map."""
+
+
+BreakOff = Literal["time", "calls", "computing", "machine"]
+"""Which part of the budget was used up; "machine" is the clock on the wall."""
 
 
 class DryRun(msgspec.Struct, frozen=True, kw_only=True):
     """What the program would do; people's answers are those of the simulated people."""
 
     status: Literal["done", "failed", "stopped", "limit", "unfinished"]
-    """As an outcome of `sandbox.execution`, or "unfinished" if it was cut short."""
+    """As an outcome of `sandbox.execution`, or "unfinished" if it broke off."""
     message: str | None
     """Why it would not be done."""
     line: int | None
@@ -52,6 +80,13 @@ class DryRun(msgspec.Struct, frozen=True, kw_only=True):
     """All of it in the order in which it would happen."""
     error: str | None = None
     """The name of the error it would end with: a robot's ("NotFound") or Python's ("NameError")."""
+    broke_off: BreakOff | None = None
+    """Why it is unfinished."""
+
+    @property
+    def complete(self) -> bool:
+        """Whether it came to the end that the program has, and nothing failed on the way."""
+        return self.status in ("done", "stopped")
 
 
 class Event(msgspec.Struct, frozen=True):
@@ -93,20 +128,40 @@ _KIND_OF_HAPPENING: Final[dict[str, EventKind]] = {
 def rehearse(
     program: str,
     simulation: Simulation,
-    real_seconds: float = REAL_SECONDS,
+    budget: Budget = BUDGET,
     seed: int | None = None,
     skills: Collection[str] = (),
 ) -> DryRun:
     """Run the program in a simulation of its own, whose time is free to run; its `random` begins
-    with `seed`. `skills`: what the robot can do that the simulated one cannot; nothing is known of
-    how long it takes or what comes of it, so it passes at once."""
-    return watched(program, simulation, real_seconds, seed, skills)[0]
+    with `seed`, or with the same number every time. `skills`: what the robot can do that the
+    simulated one cannot; nothing is known of how long it takes or what comes of it, so it passes at
+    once."""
+    return watched(program, simulation, budget, seed, skills)[0]
+
+
+class _Patience(StopFlag):
+    """A stop flag that sets itself when the budget's simulated time is used up."""
+
+    def __init__(self, simulation: Simulation, budget: Budget) -> None:
+        super().__init__()
+        self._simulation = simulation
+        self._until = simulation.stepped + budget.seconds
+        self.broke_off: BreakOff | None = None
+
+    def break_off(self, why: BreakOff) -> None:
+        self.broke_off = self.broke_off or why
+        self.set("The dry run broke off.")
+
+    def is_set(self) -> bool:
+        if self._simulation.stepped >= self._until:
+            self.break_off("time")
+        return super().is_set()
 
 
 def watched(
     program: str,
     simulation: Simulation,
-    real_seconds: float = REAL_SECONDS,
+    budget: Budget = BUDGET,
     seed: int | None = None,
     skills: Collection[str] = (),
 ) -> tuple[DryRun, Course]:
@@ -118,41 +173,45 @@ def watched(
     driver = simulated(simulation)
     own = set(skills) - set(driver.capabilities().skills)
     began = simulation.time
-    stop = StopFlag()
+    patience = _Patience(simulation, budget)
     asks: list[tuple[float, Event]] = []
-    cut_short = threading.Event()
     calls: list[Call] = []
+    counts: Counter[str] = Counter()
 
     def call(method: str, arguments: dict[str, Any], line: int) -> Any:
         at = simulation.time
         try:
             return do(method, arguments)
         finally:
+            counts[method] += 1
             calls.append(Call(line, method, arguments, at, simulation.time))
 
     def do(method: str, arguments: dict[str, Any]) -> Any:
-        if len(calls) >= MANY_CALLS:
-            cut()
-        stop.check()
+        done = len(calls)
+        waits = sum(counts[each] for each in _WAITS)
+        if done >= budget.waits or done - waits >= budget.calls:
+            patience.break_off("calls")
+        patience.check()
         if method == "ask":
             asks.append((simulation.time, Event("asked", arguments["question"])))
         if method == "stop":
             raise Stopped  # as the real robot's stop ends every program
         if method == "do" and one_of(arguments["skill"], own):
             return None
-        return driver.call(method, arguments, stop)
-
-    def cut() -> None:
-        cut_short.set()
-        stop.set("The dry run was cut short.")
-        driver.stop("The dry run was cut short.")
+        return driver.call(method, arguments, patience)
 
     def give_up() -> None:
-        cut()
+        patience.break_off("machine")
+        driver.stop("The dry run broke off.")
         execution.stop()
 
-    execution = Execution(program, call, seed=seed)
-    watchdog = threading.Timer(real_seconds, give_up)
+    limits = Limits(
+        computing=budget.real_seconds,
+        total_computing=budget.real_seconds,
+        rounds=budget.rounds,
+    )
+    execution = Execution(program, call, seed=seed or 0, limits=limits)
+    watchdog = threading.Timer(budget.real_seconds, give_up)
     watchdog.daemon = True
     watchdog.start()
     try:
@@ -161,6 +220,11 @@ def watched(
         watchdog.cancel()
         driver.close()
 
+    broke_off = patience.broke_off
+    if outcome.error == "rounds":
+        broke_off = "computing"
+    elif outcome.error == "computing":
+        broke_off = "machine"
     record = simulation.record.between(began)
     way = _thinned(record.samples)
     course = [*_visited(simulation, way), *asks]
@@ -172,8 +236,8 @@ def watched(
             course.append((happening.time, Event(kind, told)))
     events = tuple(event for _, event in sorted(course, key=lambda timed: timed[0]))
     dry_run = DryRun(
-        status="unfinished" if cut_short.is_set() else outcome.status,
-        message=None if cut_short.is_set() or outcome.status == "done" else outcome.message,
+        status="unfinished" if broke_off else outcome.status,
+        message=None if broke_off or outcome.status == "done" else outcome.message,
         line=outcome.line,
         seconds=round(simulation.time - began, 1),
         metres=round(record.distance, 1),
@@ -185,7 +249,8 @@ def watched(
         path=_path(way),
         calls=len(calls),
         course=events,
-        error=None if cut_short.is_set() else outcome.error,
+        error=None if broke_off else outcome.error,
+        broke_off=broke_off,
     )
     return dry_run, Course(tuple(calls), record)
 

@@ -52,7 +52,7 @@ class Outcome:
     """The line that the program was at; None if it came to its end, or before it began."""
     error: str | None = None
     """Of a failure its name: of a robot's error ("Blocked") or of Python's ("NameError"); of a
-    limit which one: "computing", "memory", "calls", "output"."""
+    limit which one: "computing", "rounds", "memory", "calls", "output"."""
     calls: int = 0
     """How many robot calls were made."""
 
@@ -75,6 +75,8 @@ class CallRecord:
 _LIMITS: Final = {
     "computing": "The program computed for longer than a robot should wait. "
     "Put a robot call, such as robot.wait(1), into its loops.",
+    "rounds": "The program computed more than it may without coming to its end. "
+    "Let its loops go round less often.",
     "memory": "The program needs more memory than it may use. Let it keep fewer or shorter things.",
     "calls": "The program made more robot calls than it may. Put robot.wait(1) into its loops.",
     "output": "The program printed more than it may. Let it print less.",

@@ -30,6 +30,7 @@ import pydantic_monty as monty
 
 from robot_api.values import Clock, Location
 from sandbox.limits import Limits
+from sandbox.rounds import counted
 from sandbox.source import unix_newlines, with_values
 
 # --- what comes out ------------------------------------------------------------------------------
@@ -73,9 +74,9 @@ class ProgramError(Exception):
 
 
 class LimitReached(Exception):
-    """The program used up what it may use: "computing", "memory", "calls" or "output"."""
+    """The program used up what it may use: "computing", "rounds", "memory", "calls" or "output"."""
 
-    def __init__(self, what: Literal["computing", "memory", "calls", "output"]) -> None:
+    def __init__(self, what: Literal["computing", "rounds", "memory", "calls", "output"]) -> None:
         super().__init__(what)
         self.what = what
 
@@ -136,12 +137,30 @@ def _robot_clock(given, make=Clock):
     return make(given.time, given.weekday, given.date)
 """
 
+# What `rounds.counted` puts into a program.
+_COUNTING: Final = """
+_robot_rounds = 0
+
+def _robot_tick(limit=limit):
+    global _robot_rounds
+    _robot_rounds += 1
+    if _robot_rounds > {rounds}:
+        limit.reached()
+"""
+
 
 class _Robot:
     """Stands for the robot inside; its methods are answered here, none is called."""
 
 
 _Robot.__name__ = "Robot"
+
+
+class _Limit:
+    """Stands inside for whoever counts the rounds; a call ends the program."""
+
+    def reached(self) -> None:
+        """Answered here, as all calls are."""
 
 
 def _inward(value: Any) -> Any:
@@ -202,7 +221,10 @@ class Interpreter:
         self._killed = False
         self._snapshot: Any = None
         self._robot = monty.ClassInstance(_Robot(), allowed_methods="all")
+        self._limit = monty.ClassInstance(_Limit(), allowed_methods="all")
         self._line_starts: list[int] = []
+        self._file = ""
+        """What Monty calls the program."""
         self._line = 1
 
     def __enter__(self) -> Self:
@@ -265,6 +287,9 @@ class Interpreter:
     def start(self, program: str) -> Event:
         """Run the program to its first event. Raises as `answer` does, and `SyntaxError`."""
         source = with_values(unix_newlines(program))
+        rounds = self._limits.rounds
+        if rounds is not None:
+            source = counted(source)
         encoded = source.encode()
         self._line_starts = [0, *(place + 1 for place, byte in enumerate(encoded) if byte == 10)]
         session = self._session
@@ -272,6 +297,11 @@ class Interpreter:
 
         def start() -> Any:
             session.feed_run(_PRELUDE, print_callback=self._printed_text)
+            self._file = "<python-input-1>"
+            if rounds is not None:
+                counting = _COUNTING.format(rounds=rounds)
+                session.feed_run(counting, inputs={"limit": self._limit})
+                self._file = "<python-input-2>"
             return session.feed_start(
                 source, inputs={"robot": self._robot}, print_callback=self._printed_text
             )
@@ -313,6 +343,8 @@ class Interpreter:
                 self._snapshot = asked.resume_not_handled()
                 return None
             case monty.FunctionSnapshot() as asked:
+                if asked.object_id == self._limit.id:
+                    raise LimitReached("rounds")
                 self._line = self._line_of(asked.position)
                 known = asked.object_id == self._robot.id
                 try:
@@ -329,7 +361,7 @@ class Interpreter:
                 return None
 
     def _line_of(self, position: monty.SourceRange) -> int:
-        if position.filename == "<python-input-1>":
+        if position.filename == self._file:
             return bisect.bisect_right(self._line_starts, position.start)
         return self._line  # within an eval()
 
@@ -364,16 +396,15 @@ class Interpreter:
         if text.startswith("suspension limit "):
             return LimitReached("calls")
         if isinstance(error, monty.MontySyntaxError):
-            return ProgramError("SyntaxError", text, _last_line(error.traceback()))
+            return ProgramError("SyntaxError", text, self._last_line(error.traceback()))
         frames = error.traceback() if isinstance(error, monty.MontyRuntimeError) else []
         # "KeyError: 'x'" is how Monty shows it; only the name of the class is needed of that.
         kind = str(error).partition(":")[0]
-        return ProgramError(kind, text, _last_line(frames))
+        return ProgramError(kind, text, self._last_line(frames))
 
-
-def _last_line(frames: list[monty.Frame]) -> int | None:
-    lines = [frame.line for frame in frames if frame.filename == "<python-input-1>"]
-    return lines[-1] if lines else None
+    def _last_line(self, frames: list[monty.Frame]) -> int | None:
+        lines = [frame.line for frame in frames if frame.filename == self._file]
+        return lines[-1] if lines else None
 
 
 class _Process:
@@ -401,9 +432,10 @@ class _Process:
 # --- checking ------------------------------------------------------------------------------------
 
 
-def diagnose(program: str, stub: str, seconds: float = 5.0) -> list[Diagnostic]:
-    """What Monty's parser and type checker say of a program; nothing of it is run. Raises
-    `Unavailable`."""
+def diagnose(program: str, stub: str, seconds: float = 60.0) -> list[Diagnostic]:
+    """What Monty's parser and type checker say of a program; nothing of it is run. A check takes
+    milliseconds; after so many `seconds` by the clock on the wall it is given up, far above what a
+    busy machine needs. Raises `Unavailable`."""
     with CHECKER as kept:
         try:
             return _diagnosed(program, stub, kept.pool(seconds))

@@ -14,6 +14,9 @@ class Limits:
     """Seconds of computing between one robot call and the next."""
     total_computing: float = 60.0
     """Seconds of computing in the whole run."""
+    rounds: int | None = None
+    """Rounds of loops and calls of functions in the whole run: unlike seconds the same on every
+    machine. None: they are not counted."""
     memory: int = 64_000_000
     """Bytes of the program's own data."""
     calls: int = 100_000

@@ -67,6 +67,8 @@ class Hospital:
         self.start = start or OPENING
         self.random = random.Random(seed)
         self.steps = 0
+        self.leapt = 0
+        """How many of the steps were leapt over."""
         self.chart: Chart = chart_of(world)
         """Another one when the zones are drawn anew."""
         if not self.chart.is_floor(pose.x, pose.y):
@@ -118,8 +120,8 @@ class Hospital:
         self._told_moving = False
         self._sampled: object = None
         self.record = Record(self.world.name, tuple(human.name for human in self.people))
-        self.lidar: list[float] = []
-        self._scan()
+        self._scan: list[float] = []
+        self._scanned = -1
         self._sample()
 
     def copy(self) -> Hospital:
@@ -131,6 +133,7 @@ class Hospital:
             self.steps,
             self.chart,
         )
+        twin.leapt = 0
         twin.random = random.Random()
         twin.random.setstate(self.random.getstate())
         twin.open_doors = list(self.open_doors)
@@ -178,7 +181,6 @@ class Hospital:
         if self._in_zones:
             self._keep_out()
         if steps % _SCAN_EVERY == 0:
-            self._scan()
             self._tell_pose()
         robot.use_energy(self._on_charger())
         if steps % _SAMPLE_EVERY == 0:
@@ -194,18 +196,30 @@ class Hospital:
         while self.time < end - STEP / 2:
             yield
 
+    def leap(self, seconds: float) -> None:
+        """Let time pass at once: nobody moves meanwhile, the battery does its part."""
+        steps = round(seconds / STEP)
+        self.steps += steps
+        self.leapt += steps
+        self.robot.use_energy(self._on_charger(), steps)
+
     def _on_charger(self) -> bool:
         charger = self.world.charger
         if charger is None or charger.pose is None:
             return False
         return math.dist(self.robot.position, (charger.pose.x, charger.pose.y)) < 0.3
 
-    def _scan(self) -> None:
-        robot = self.robot
-        x, y = robot.position
-        self.lidar = self.physics.lidar(
-            x, y, math.radians(robot.theta), RAYS, REACH, robot.body.radius
-        )
+    @property
+    def lidar(self) -> list[float]:
+        """What the laser scanner sees, ten times a second; looked for when somebody asks."""
+        number = self.steps // _SCAN_EVERY
+        if number != self._scanned:
+            robot, self._scanned = self.robot, number
+            x, y = robot.position
+            self._scan = self.physics.lidar(
+                x, y, math.radians(robot.theta), RAYS, REACH, robot.body.radius
+            )
+        return self._scan
 
     # --- what is told and written down -----------------------------------------------------------
 
@@ -368,7 +382,7 @@ class Hospital:
         self.robot.theta = theta
         self.physics.lift_borders()
         self._keep_out()
-        self._scan()
+        self._scanned = -1
         self._told_moving = True
 
     def set_zones(self, zones: tuple[Zone, ...], chart: Chart) -> None:

@@ -136,11 +136,11 @@ class Robot:
         heading = math.radians(self.theta)
         self.body.drive(self.speed * math.cos(heading), self.speed * math.sin(heading))
 
-    def use_energy(self, on_charger: bool) -> None:
-        """A step's worth."""
+    def use_energy(self, on_charger: bool, steps: int = 1) -> None:
+        """So many steps' worth."""
         self.charging = on_charger and not self.moving
         rate = _CHARGE if self.charging else -_DRIVE_DRAIN if self.moving else -_IDLE_DRAIN
-        self.battery = min(100.0, max(0.0, self.battery + rate * STEP))
+        self.battery = min(100.0, max(0.0, self.battery + rate * STEP * steps))
 
 
 def wrap(degrees: float) -> float:

@@ -33,6 +33,9 @@ __all__ = ["Behaviour", "Reply", "RobotState", "Seen", "Simulation", "Stop", "Vi
 
 T = TypeVar("T")
 
+LEAPS_AFTER = 60.0
+"""Of a time in which the robot only waits, a copy leaps over what is beyond so many seconds."""
+
 
 class Simulation:
     """A hospital floor with a robot in it.
@@ -50,6 +53,11 @@ class Simulation:
 
     def _open(self, hospital: Hospital, speed: float | None) -> None:
         self._hospital = hospital
+        self._leaps = False
+        self._waiting: Behaviour[None] | None = None
+        """The latest wait of a simulation that leaps."""
+        self._waited = 0.0
+        """How long its robot has done nothing but wait."""
         self._listeners: dict[int, Listener] = {}
         self._runner = Runner(hospital.step, hospital.rest, self._deliver, STEP, speed)
 
@@ -58,6 +66,8 @@ class Simulation:
     def run(self, behaviour: Behaviour[T], stop: Stop) -> T:
         """Run a behaviour to its end and return its result. Raises the kinds of
         `sim.errors.SimError`, or `Interrupted` once `stop` is set or somebody halts."""
+        if behaviour is not self._waiting:
+            self._waited = 0.0
         return self._runner.run(behaviour, stop)
 
     def halt(self) -> None:
@@ -66,11 +76,13 @@ class Simulation:
         self._runner.halt()
 
     def copy(self) -> Simulation:
-        """The present state as a simulation of its own, without a clock, for trying things out."""
+        """The present state as a simulation of its own, without a clock, for trying things out:
+        in it long waits are leapt over."""
         twin = Simulation.__new__(Simulation)
         with self._runner.turn:
             hospital = self._hospital.copy()
         twin._open(hospital, None)
+        twin._leaps = True
         return twin
 
     def close(self) -> None:
@@ -98,6 +110,11 @@ class Simulation:
     def time(self) -> float:
         """Simulated seconds since the start."""
         return self._hospital.time
+
+    @property
+    def stepped(self) -> float:
+        """As `time`, without what was leapt over."""
+        return (self._hospital.steps - self._hospital.leapt) * STEP
 
     def clock(self) -> datetime:
         """The simulated date and time."""
@@ -242,7 +259,16 @@ class Simulation:
     # --- behaviours: driving ---------------------------------------------------------------------
 
     def wait(self, seconds: float) -> Behaviour[None]:
-        return self._hospital.wait(seconds)
+        if not self._leaps:
+            return self._hospital.wait(seconds)
+        self._waiting = self._wait_or_leap(seconds)
+        return self._waiting
+
+    def _wait_or_leap(self, seconds: float) -> Behaviour[None]:
+        stepped = min(seconds, max(0.0, LEAPS_AFTER - self._waited))
+        self._waited += seconds
+        yield from self._hospital.wait(stepped)
+        self._hospital.leap(seconds - stepped)
 
     def drive_to(self, x: float, y: float, theta: float | None = None) -> Behaviour[None]:
         """Raises `Blocked`; `NotPossible` if nobody could stand there, or the battery is empty."""

@@ -10,7 +10,8 @@ from sandbox.execution import Execution
 from sandbox.limits import Limits
 
 SEED: Final = 0
-LIMITS: Final = Limits(computing=0.5, total_computing=1.0, calls=1000)
+LIMITS: Final = Limits(rounds=200_000, computing=30.0, calls=1000)
+"""Counted in rounds, so that votes do not depend on how busy the machine is."""
 
 End = Literal["done", "over", "failed"]
 """How a program ends: by itself, never (it waits or goes on for ever), or with an error."""

@@ -1,10 +1,23 @@
 """The dry run: what a program would do, found out before it may."""
 
-import pytest
+import threading
+import time
+from collections.abc import Callable
 
-from nl2robot.rehearsal import rehearse
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grammar.language import languages
+from grammar.program import write_program
+from grammar.sampler import sensible
+from nl2robot import rehearsal
+from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
+from nl2robot.rehearsal import Budget, rehearse, watched
 from sim.simulation import Simulation
 from sim.world import load_world
+
+WORLD = load_world(DEFAULT_WORLD)
 
 
 @pytest.fixture
@@ -47,19 +60,120 @@ def test_a_program_that_stops_the_robot_ends_there(ward) -> None:
 
 
 @pytest.mark.parametrize(
-    "program",
+    ("program", "why"),
     [
-        'while True:\n    robot.goto("ward a")\n    robot.goto("ward b")\n',
-        "while True:\n    robot.battery()\n",
-        "robot.wait(86400)\nrobot.wait(86400)\nrobot.wait(86400)\n",
-        'while True:\n    try:\n        robot.goto("ward b")\n        robot.goto("ward a")\n'
-        "    except Exception:\n        pass\n",
-        "while True:\n    pass\n",
+        ('while True:\n    robot.goto("ward a")\n    robot.goto("ward b")\n', "time"),
+        ("while True:\n    robot.battery()\n", "calls"),
+        ('while True:\n    robot.wait_for("unicorn")\n', "time"),
+        (
+            'while True:\n    try:\n        robot.goto("ward b")\n        robot.goto("ward a")\n'
+            "    except Exception:\n        pass\n",
+            "time",
+        ),
+        ("while True:\n    pass\n", "computing"),
+        (
+            "def again(n):\n    return 1 if n < 2 else again(n - 1) + again(n - 2)\nagain(90)",
+            "computing",
+        ),
+        ("sum(1 for a in range(10**6) for b in range(10**6) if a > b)", "computing"),
     ],
 )
-def test_what_takes_too_long_is_cut_short(ward, program) -> None:
-    told = rehearse(program, ward, real_seconds=0.5)
-    assert (told.status, told.message) == ("unfinished", None)
+def test_what_takes_too_long_breaks_off_and_says_at_what(ward, program, why) -> None:
+    told = rehearse(program, ward, Budget(seconds=60, calls=50, rounds=5_000))
+    assert (told.status, told.message, told.broke_off) == ("unfinished", None, why)
+    assert not told.complete
+
+
+def test_waiting_for_the_evening_is_leapt_over(ward) -> None:
+    told = rehearse(
+        'while robot.clock().time < "20:00":\n    robot.wait(10)\nrobot.goto("ward a")\n',
+        ward.copy(),
+    )
+    assert (told.status, told.broke_off) == ("done", None)
+    assert told.seconds > 12 * 3600
+    assert told.places[-1] == "ward a"
+
+
+def test_waiting_without_end_breaks_off(ward) -> None:
+    told = rehearse("while True:\n    robot.wait(1)\n", ward.copy(), Budget(waits=500))
+    assert (told.status, told.broke_off) == ("unfinished", "calls")
+
+
+def test_a_long_wait_is_leapt_over(ward) -> None:
+    told = rehearse(
+        'robot.goto("ward a")\nrobot.wait(3 * 3600)\n'
+        'robot.ask("Tea?", ["yes", "no"], person="Alice")\n',
+        ward.copy(),
+    )
+    assert (told.status, told.broke_off) == ("done", None)
+    assert told.seconds > 3 * 3600
+    assert told.asks == ("Tea?",)
+
+
+def of_a_ward(seed: int) -> Simulation:
+    return Simulation(load_world("ward"), seed=seed).copy()
+
+
+class Slow(Simulation):
+    """A simulation on a machine that has much else to do."""
+
+    def _deliver(self) -> None:
+        began = time.perf_counter()
+        while time.perf_counter() - began < 1e-3:
+            pass
+        super()._deliver()
+
+
+ROUND = """
+import random
+while True:
+    robot.goto(random.choice(["ward a", "ward b", "corridor"]))
+    robot.wait_for("person", timeout=5)
+    robot.say("Hello.")
+"""
+
+
+def test_a_busy_machine_gives_the_same_dry_run(monkeypatch) -> None:
+    """It would have broken off elsewhere while seconds on the wall were counted."""
+    budget = Budget(seconds=60)
+    quick = watched(ROUND, of_a_ward(3), budget)
+    monkeypatch.setattr(rehearsal.threading, "Timer", _NeverDue)
+    slow = Slow(load_world("ward"), seed=3)
+    twin = slow.copy()
+    twin.__class__ = Slow
+    assert watched(ROUND, twin, budget) == quick
+    assert quick[0].broke_off == "time"
+
+
+class _NeverDue(threading.Timer):
+    """Who would measure seconds: it is to be far away."""
+
+    def __init__(self, interval: float, act: Callable[[], None]) -> None:
+        assert interval >= 120
+        super().__init__(interval, act)
+
+
+@pytest.mark.parametrize("program", [ROUND, "print(list({'a', 'bc', 'd', 'e'}))\n" + ROUND])
+def test_the_budget_alone_decides_where_it_breaks_off(program) -> None:
+    short = rehearse(program, of_a_ward(1), Budget(seconds=30))
+    assert 30 <= short.seconds < 31
+    long = rehearse(program, of_a_ward(1), Budget(seconds=50))
+    assert long.course[: len(short.course) - 1] == short.course[:-1]
+
+
+@pytest.mark.parametrize("language", languages())
+@settings(max_examples=15, deadline=None)
+@given(seed=st.integers(0, 10**9))
+def test_what_can_be_said_is_tried_twice_alike(language: str, seed: int) -> None:
+    program = write_program(sensible(Knowledge(WORLD).lexicon(language), language, seed).plan)
+    stage = Simulation(WORLD, seed=seed)
+    budget = Budget(seconds=40, calls=100)
+    assert watched(program, stage.copy(), budget) == watched(program, stage.copy(), budget)
+
+
+def test_a_machine_in_trouble_says_so(ward) -> None:
+    told = rehearse("sum(range(10**12))", ward, Budget(real_seconds=0.2))
+    assert (told.status, told.broke_off) == ("unfinished", "machine")
 
 
 def test_what_computes_too_much_is_foreseen(ward) -> None:

@@ -50,7 +50,7 @@ def found(program: str, **more) -> list[tuple[int, str]]:
 def patiently(program: str, clock: datetime = MORNING) -> tuple[Risk, ...]:
     """The risks of what takes long, however busy this machine is."""
     simulation = Simulation(DESERTED, start=clock)
-    tried = Tried(Situation.of(simulation), *watched(program, simulation, real_seconds=60))
+    tried = Tried(Situation.of(simulation), *watched(program, simulation))
     return risks(program, Knowledge(DESERTED), tried=tried)
 
 
@@ -246,7 +246,7 @@ def test_the_terminal_shows_them_on_their_lines(capsys) -> None:
 
 def test_a_long_way_has_a_path_that_can_be_drawn() -> None:
     program = "for i in range(4):\n    robot.goto('pharmacy')\n    robot.goto('kitchen')\n"
-    run = rehearse(program, Simulation(DESERTED), real_seconds=60)
+    run = rehearse(program, Simulation(DESERTED))
     assert run.metres > 200
     assert 100 < len(run.path) <= MANY_POINTS
     assert all(len(point) == 2 for point in run.path)

@@ -16,7 +16,7 @@ from grammar.naming import naming
 from grammar.program import write_program
 from grammar.sampler import sensible
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
-from nl2robot.rehearsal import rehearse
+from nl2robot.rehearsal import Budget, rehearse
 from robot_api import errors
 from robot_api.stub import stub
 from sandbox.check import check
@@ -26,7 +26,7 @@ from tests.grammar.told import untold
 
 STUB = stub()
 WORLD = load_world(DEFAULT_WORLD)
-REAL_SECONDS = 0.2
+BUDGET = Budget(seconds=120, calls=100, rounds=10_000)
 """A loop without an end is cut short."""
 FAULTS = {"InvalidCall", "InternalError"}
 """Errors of a robot that a program of ours never leads to; what is not there or cannot be done is
@@ -47,7 +47,7 @@ def check_round_trip(language: str, seed: int) -> None:
     told = explain(sampled.plan, language, called)
     left_out = untold(program, told, language, called)
     assert not left_out, f"{sampled.sentence}\n{program}\n{told}\nwithout {left_out}"
-    run = rehearse(program, Simulation(WORLD, seed=seed), REAL_SECONDS, seed)
+    run = rehearse(program, Simulation(WORLD, seed=seed), BUDGET, seed)
     known = run.error is None or hasattr(errors, run.error)
     assert run.status in ("done", "unfinished", "stopped") or (
         run.status == "failed" and known and run.error not in FAULTS
