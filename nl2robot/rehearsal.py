@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 class Budget:
     """How far a program is followed before its dry run breaks off."""
 
-    seconds: float = 900.0
+    seconds: float = 600.0
     """Of simulated time, without what is leapt over of long waits: about three seconds
     of a quiet machine, as long as a person likes to wait for a review."""
     calls: int = 1000

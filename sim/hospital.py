@@ -347,23 +347,12 @@ class Hospital:
         """Whether a spot is where the robot is: in the same room, or, where the map knows no
         rooms, in sight within the lidar's reach."""
         robot = self.robot.position
-        mine, theirs = self._areas_at(*robot), self._areas_at(x, y)
+        mine, theirs = self.world.areas_at(*robot), self.world.areas_at(x, y)
         if mine and theirs and mine[0] == theirs[0]:
             return True
         if (mine or theirs) and not set(mine) & set(theirs):
             return False
         return math.dist(robot, (x, y)) <= REACH and self.physics.sees(robot, (x, y))
-
-    def _areas_at(self, x: float, y: float) -> list[str]:
-        """The places with an area that the spot is in, the innermost first."""
-        inner = self.world.place_at(x, y)
-        names = [
-            place.name for place in self.world.places if place.area and contains(place.area, x, y)
-        ]
-        if inner is not None and inner.name in names:
-            names.remove(inner.name)
-            names.insert(0, inner.name)
-        return names
 
     def name_of_spot(self, x: float, y: float) -> str:
         """How to speak of a spot."""

@@ -34,6 +34,8 @@ OCCUPIED_THRESH, FREE_THRESH = 0.65, 0.196
 """What map_server takes where a map's file does not say."""
 WITHIN_REACH = 1.0
 """A place without an area is where its pose is and this many metres around."""
+MOST_REMEMBERED = 10_000
+"""Spots whose areas a world remembers."""
 
 
 class WorldError(FileProblems):
@@ -315,6 +317,24 @@ class World(msgspec.Struct, frozen=True, kw_only=True, dict=True):
                 if distance <= WITHIN_REACH and math.pi * distance**2 < best_size:
                     best, best_size = place, math.pi * distance**2
         return best
+
+    @functools.cached_property
+    def _areas(self) -> dict[tuple[float, float], tuple[str, ...]]:
+        """What `areas_at` has found: most people and things stay where they are."""
+        return {}
+
+    def areas_at(self, x: float, y: float) -> tuple[str, ...]:
+        """The names of the places with an area that the point is in, the innermost first."""
+        found = self._areas.get((x, y))
+        if found is None:
+            inner = self.place_at(x, y)
+            around = [each for each in self.places if each.area and contains(each.area, x, y)]
+            around.sort(key=lambda place: place is not inner)
+            found = tuple(place.name for place in around)
+            if len(self._areas) >= MOST_REMEMBERED:
+                self._areas.clear()
+            self._areas[x, y] = found
+        return found
 
     def zone_at(self, x: float, y: float) -> Zone | None:
         """The zone that the point is in; None if it is in none."""
