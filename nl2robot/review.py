@@ -48,6 +48,12 @@ class Review(msgspec.Struct, frozen=True, kw_only=True):
     def acceptable(self) -> bool:
         return not any(finding.severity == "error" for finding in self.findings)
 
+    @property
+    def came_through(self) -> bool:
+        """Whether its dry run, where there was one, came to the program's end: not failed, not
+        broken off. Else whoever runs it does so all the same."""
+        return self.dry_run is None or self.dry_run.complete
+
 
 def digest(program: str) -> str:
     """The hash that an approval is bound to."""

@@ -59,7 +59,7 @@ _TO_PEOPLE: Final = frozenset({"give", "guide", "follow", "ask"})
 _STEERED_BY_HAND: Final = frozenset({"drive", "move"})
 _SPEECH: Final = frozenset({"say", "ask", "listen", "answer"})
 
-Kind = Literal["leaves", "zone", "speed", "volume", "person", "long", "endless"]
+Kind = Literal["leaves", "zone", "speed", "volume", "person", "long", "endless", "unproven"]
 _Found = Iterator[tuple[int, Kind, str, dict[str, str]]]
 """Line, kind, which text, and what to fill in."""
 
@@ -123,7 +123,11 @@ def risks(
             for name, value in values.items()
         }
         found.setdefault((line, kind), texts[text].format(**named))
-    return tuple(Risk(*place, text) for place, text in sorted(found.items()))
+    return tuple(Risk(*place, text) for place, text in sorted(found.items(), key=_line))
+
+
+def _line(risk: tuple[tuple[int, Kind], str]) -> int:
+    return risk[0][0]
 
 
 class _Looking:
@@ -151,6 +155,7 @@ class _Looking:
             yield from self.near_people(self.tried)
             yield from self.loud(self.tried)
             yield from self.long(self.tried)
+            yield from self.unproven(self.tried.dry_run)
         else:
             yield from self.long_waits()
 
@@ -299,11 +304,17 @@ class _Looking:
         for call in self.done:
             spent[call.line] += round(1000 * (call.ended - call.began))
         line = spent.most_common(1)[0][0] if spent else 1
-        minutes = {"minutes": f"{round(dry_run.seconds / 60)}"}
         if dry_run.status != "unfinished":
+            minutes = {"minutes": f"{round(dry_run.seconds / 60)}"}
             yield line, "long", "long", minutes
-        elif not any(self.endless()):
-            yield line, "long", "goes_on", minutes
+
+    def unproven(self, dry_run: DryRun) -> _Found:
+        """Where the dry run did not come to the program's end, nobody has seen what comes."""
+        if dry_run.complete:
+            return
+        values = {"minutes": f"{round(dry_run.seconds / 60)}", "calls": str(dry_run.calls)}
+        text = f"broke_off_{dry_run.broke_off}" if dry_run.broke_off else "did_not_go"
+        yield dry_run.line or 1, "unproven", text, values
 
     def long_waits(self) -> _Found:
         for line, method, arguments in self.written:

@@ -14,7 +14,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 from rich.console import Console
 from rich.markup import escape
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from nl2robot.operator import Operator
 
 Decision = Literal["approve", "edit", "reject"]
+_ELSE: Final[tuple[Decision, ...]] = ("edit", "reject")
 
 __all__ = ["Decision", "Terminal", "answers", "duration", "words_in"]
 
@@ -158,15 +159,23 @@ class Terminal:
     def decide(self, review: Review) -> tuple[Decision | None, str]:
         """Ask whether the program may run; returns the decision and the words of the answer. What
         is none of the answers is left to the caller: a correction, maybe. What cannot be approved
-        is not offered for it."""
-        question = "approve_edit_reject" if review.acceptable else "edit_reject"
+        is not offered for it; what did not come to its end in the dry run is only run if they
+        insist, and no answer is a refusal."""
+        insisting = review.acceptable and not review.came_through
+        approving = "insist" if insisting else "approve"
+        question = f"{approving}_edit_reject" if review.acceptable else "edit_reject"
         while True:
             answer = self.ask(self.words[question]).strip()
             said = answer.lower().strip(" .!,")
-            for decision, ways in self.words["answers"].items():
-                if said in ways and (review.acceptable or decision != "approve"):
+            if insisting and not said:
+                return "reject", answer
+            means = next((way for way, words in self.words["answers"].items() if said in words), "")
+            for decision in _ELSE:
+                if means == decision:
                     return decision, answer
-            if said:
+            if means == approving and review.acceptable:
+                return "approve", answer
+            if said and not (insisting and means == "approve"):  # a "yes" is not enough
                 return None, answer
 
     def next_line(self) -> str | None:

@@ -23,7 +23,7 @@ from sim.physics import BORDER_WIDTH, STEP, Physics
 from sim.placing import Item, free_spot, people_at_start, things_at_start
 from sim.record import Happening, Record, Sample
 from sim.robot import Robot, RobotState
-from sim.world import GridMap, Person, Place, Segment, World, Zone, contains, map_corners
+from sim.world import GridMap, Person, Place, Segment, World, Zone, map_corners
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry

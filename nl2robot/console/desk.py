@@ -280,7 +280,9 @@ class _Desk:
             await self._do(dialogue.propose, program, language, who, at_once)
 
         async def approve(event: GenericEventArguments) -> None:
-            await self._do(dialogue.approve, str(event.args["program"]), who, language)
+            program, shown = str(event.args["program"]), str(event.args["sha256"])
+            insists = bool(event.args["all_the_same"])
+            await self._do(dialogue.approve, program, who, language, shown, insists)
 
         async def reject(event: GenericEventArguments) -> None:
             await self._do(dialogue.reject, language)

@@ -281,7 +281,7 @@ class Dialogue:
             self._review(Draft(program), language)
             draft = self.draft
             if at_once and draft and draft.review and draft.may_run and not draft.review.risks:
-                self.approve(draft.program, who, language)
+                self.approve(draft.program, who, language, draft.review.sha256)
 
     def touch(self, program: str) -> None:
         """Somebody is changing the program: from now on there is nothing that could be approved."""
@@ -318,16 +318,27 @@ class Dialogue:
     def _let_through(self, language: str, who: str, harmless: bool) -> None:
         draft = self.draft
         if harmless and draft and draft.review and is_harmless(draft.review):
-            self.approve(draft.program, who, language)
+            self.approve(draft.program, who, language, draft.review.sha256)
 
-    def approve(self, program: str, who: str, language: str) -> None:
-        """Approve exactly this program and start it."""
+    def approve(
+        self, program: str, who: str, language: str, shown: str, insists: bool = False
+    ) -> None:
+        """Approve exactly this program and start it. `shown`: the digest of the program whose
+        review they saw. `insists`: though it did not come to its end when it was tried."""
         with self._turn:
             draft, runner = self.draft, self._backstage.runner
             if draft is None:
                 return
-            if draft.program != program or draft.review is None or not draft.may_run:
+            review = draft.review
+            if (
+                review is None
+                or not draft.may_run
+                or not (digest(program) == review.sha256 == shown)
+            ):
                 self._tell(Line("robot", _said("changed_meanwhile", language), "trouble"))
+                return
+            if not (review.came_through or insists):
+                self._tell(Line("robot", _said("must_insist", language), "trouble"))
                 return
             translation = draft.translation
             plan = None if draft.edited or translation is None else translation.plan

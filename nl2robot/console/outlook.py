@@ -91,7 +91,7 @@ def outlook(
     ]
     return Outlook(
         sentence=" ".join(filter(None, (sentence, why))),
-        good=dry_run.status in ("done", "unfinished"),
+        good=dry_run.complete,
         facts=tuple((heading, items) for heading, items in facts if items),
         marks=tuple(marks),
         path=dry_run.path,

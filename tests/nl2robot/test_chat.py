@@ -63,6 +63,26 @@ def test_a_nurse_talks_with_the_robot(start, log_of) -> None:
     assert log_of() == [("go to ward a", "done"), ("no, ward b", "done")]
 
 
+def test_what_did_not_come_to_its_end_needs_more_than_a_yes(start, log_of) -> None:
+    chat = start(*CHAT, at_terminal=True)
+    chat.until("you: ")
+    for answer in ("", "reject"):
+        chat.type("grab the unicorn\n")
+        assert "Risk, line 1: When it was tried" in chat.until("(Enter rejects) ")
+        chat.type("yes\n")
+        chat.until("(Enter rejects) ")
+        chat.type(f"{answer}\n")
+        assert "Nothing was run" in chat.until("you: ")
+    chat.type("grab the unicorn\n")
+    chat.until("(Enter rejects) ")
+    chat.type("run it all the same\n")
+    assert "unicorn" in chat.until("could not finish")
+    chat.until("you: ")
+    chat.type("bye\n")
+    assert chat.end() == ExitStatus.OK
+    assert log_of() == [("grab the unicorn", "failed")]
+
+
 def test_whoever_asks_for_german_is_spoken_to_in_german(start, log_of) -> None:
     chat = start(*CHAT, at_terminal=True)
     chat.until("you: ")

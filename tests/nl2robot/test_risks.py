@@ -50,7 +50,7 @@ def found(program: str, **more) -> list[tuple[int, str]]:
 def patiently(program: str, clock: datetime = MORNING) -> tuple[Risk, ...]:
     """The risks of what takes long, however busy this machine is."""
     simulation = Simulation(DESERTED, start=clock)
-    tried = Tried(Situation.of(simulation), *watched(program, simulation))
+    tried = Tried(Situation.of(simulation), *watched(program, simulation.copy()))
     return risks(program, Knowledge(DESERTED), tried=tried)
 
 
@@ -96,9 +96,9 @@ CORRIDOR = Zone("works", ((5, 6.6), (6, 6.6), (6, 8.9), (5, 8.9)))
 
 def test_a_goal_in_a_keep_out_zone_is_marked() -> None:
     told = reviewed('robot.say("Off!")\nrobot.goto("drugstore")', zones=(PHARMACY,)).risks
-    assert [(risk.line, risk.kind) for risk in told] == [(2, "zone")]
+    assert [(risk.line, risk.kind) for risk in told] == [(2, "zone"), (2, "unproven")]
     assert "pharmacy lies in the keep-out zone “spilled milk”" in told[0].text
-    assert found("robot.goto(3, 4)", zones=(PHARMACY,)) == [(1, "zone")]
+    assert found("robot.goto(3, 4)", zones=(PHARMACY,)) == [(1, "zone"), (1, "unproven")]
     assert found("robot.goto(20, 4)", zones=(PHARMACY,)) == []
 
 
@@ -112,7 +112,7 @@ def test_a_zone_that_is_in_the_way_is_marked(program) -> None:
         told = reviewed(program, place="lobby", zones=(zone,)).risks
     else:
         told = reviewed(program, zones=(CORRIDOR,)).risks
-    assert [risk.kind for risk in told] == ["zone"]
+    assert [risk.kind for risk in told] == ["zone", "unproven"]
     assert "is in the way" in told[0].text
 
 
@@ -208,7 +208,29 @@ def test_a_loop_that_nothing_ends_is_endless(loop, ends) -> None:
 
 
 def test_an_endless_loop_is_not_called_long_as_well() -> None:
-    assert found("while True:\n    robot.wait(60)") == [(1, "endless")]
+    told = found('while True:\n    robot.goto("lobby")\n    robot.goto("pharmacy")')
+    assert [kind for _, kind in told] == ["endless", "unproven"]
+
+
+@pytest.mark.parametrize(
+    ("program", "words"),
+    [
+        ('robot.say("A")\nrobot.grab("unicorn")', "went no further than this line"),
+        ('robot.say("A")\nwhile True:\n    robot.wait_for("unicorn")', "after 10 minutes"),
+        ('print("A")\nwhile True:\n    robot.battery()', "after 1001 commands"),
+        ("print(1)\nwhile True:\n    pass", "computed on and on"),
+    ],
+)
+def test_where_nobody_has_seen_how_it_ends_is_a_risk_in_itself(program, words) -> None:
+    told = reviewed(program)
+    assert not told.came_through
+    assert [words in risk.text for risk in told.risks if risk.kind == "unproven"] == [True]
+
+
+def test_a_program_that_comes_to_its_end_has_no_such_risk() -> None:
+    for program in ('robot.say("A")', 'robot.say("A")\nrobot.stop()\nrobot.grab("unicorn")'):
+        told = reviewed(program)
+        assert told.came_through and told.risks == ()
 
 
 def test_what_the_robot_lacks_is_an_error_and_no_risk() -> None:

@@ -2,6 +2,7 @@
 
 import {appears, pageData} from '/static/page.js';
 import {wire} from '/static/wire.js';
+import {ReviewSeen} from '/static/desk/review_seen.js';
 import {RunPanel} from '/static/desk/run_panel.js';
 
 const {words, role, language} = pageData;
@@ -105,10 +106,10 @@ async function openMicrophone(form, think) {
   });
 }
 
-/** The text in the editor, which is NiceGUI's. */
-function editedProgram() {
+/** The editor, which is NiceGUI's; undefined until it stands there. */
+function editorView() {
   const editor = document.querySelector('.desk-editor .nicegui-codemirror');
-  return window.getElement(Number(editor.id.slice(1))).editor.state.doc.toString();
+  return editor && window.getElement?.(Number(editor.id.slice(1)))?.editor;
 }
 
 /** The editor has no name of its own for who does not see it. In it, Tab leads on to the decision, as everywhere: it would indent, and hold who has no
@@ -128,11 +129,29 @@ function openEditor(editor) {
   );
 }
 
+/** Back to the words, to say it otherwise; to the program, if it has none that it is made of. */
+function changeIt(said) {
+  const line = document.getElementById('words');
+  if (!said) return editorView().focus();
+  line.value = said;
+  line.dispatchEvent(new Event('input'));
+  line.focus();
+}
+
 function openDecisions() {
-  document.addEventListener('click', (event) => {
+  const approve = (allTheSame) =>
     // What is approved is what stands before one's eyes, whatever of it has reached the server.
-    if (event.target.closest('#approve')) tell('desk-approve', {program: editedProgram()});
+    tell('desk-approve', {
+      program: editorView().state.doc.toString(),
+      sha256: document.getElementById('decide').dataset.review,
+      all_the_same: allTheSame,
+    });
+  document.addEventListener('click', (event) => {
+    if (event.target.closest('#approve')) approve(false);
+    if (event.target.closest('#run-anyway')) approve(true);
     if (event.target.closest('#reject')) tell('desk-reject');
+    const change = event.target.closest('#change');
+    if (change) changeIt(change.dataset.words);
   });
   if (new URLSearchParams(location.search).has('program')) history.replaceState(null, '', '/');
 }
@@ -173,9 +192,11 @@ document.addEventListener('dry-run', (event) => (waitingPath = event.detail));
 
 document.cookie = `desk=${pageData.desk}; path=/; max-age=2592000; SameSite=Lax`;
 appears('#conversation').then(keepNewestInView);
-appears('#run-panel').then(
-  (element) => new RunPanel(element, {wire, words, language, operator: role === 'operator'}),
-);
+appears('#run-panel').then((element) => {
+  const panel = new RunPanel(element, {wire, words, language, operator: role === 'operator'});
+  const review = document.querySelector('.desk-review');
+  new MutationObserver(() => panel.fold()).observe(review, {childList: true, subtree: true});
+});
 appears('#desk-map').then(openMap);
 if (role === 'operator') {
   appears('#composer').then(openComposer);
@@ -183,6 +204,7 @@ if (role === 'operator') {
   const tellShade = () => tell('desk-shade', {dark: document.documentElement.dataset.look === 'dark'});
   appears('.desk-editor').then((editor) => {
     openEditor(editor);
+    new ReviewSeen(editor.closest('.desk-review'), {words, view: editorView});
     tellShade();
     new MutationObserver(tellShade).observe(document.documentElement, {attributeFilter: ['data-look']});
   });

@@ -89,6 +89,12 @@ export class RunPanel {
     this._line(view.line);
   }
 
+  /** A run that is over makes room for what is to be decided now; its page has all of it. */
+  fold() {
+    const over = this.run != null && !['running', 'paused'].includes(this.state);
+    this.root.classList.toggle('folded', over && document.getElementById('decide') != null);
+  }
+
   _button(text, act) {
     const made = element('button', {type: 'button', class: 'button small'}, text);
     made.addEventListener('click', act);
@@ -181,6 +187,7 @@ export class RunPanel {
     if (!going) this._line(state === 'done' ? null : Number(this.list.querySelector('.current')?.dataset.line));
     this._showFinishing();
     this._tell(message);
+    this.fold();
   }
 
   /** A program pauses between two calls: until then, the robot may still drive. */
