@@ -88,10 +88,10 @@ def told_of(request: Request, record: Record | None, lexicon: Lexicon, pack: Lan
     """The answer to a question about what was done."""
     if record is None:
         return pack.phrase("nothing_done")
-    return _Witness(record, lexicon, pack).told(request)
+    return Witness(record, lexicon, pack).told(request)
 
 
-class _Witness:
+class Witness:
     """Tells what happened in one run."""
 
     def __init__(self, record: Record, lexicon: Lexicon, pack: Language) -> None:

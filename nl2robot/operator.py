@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 import msgspec
 
+from nl2robot.answers import Sentence
 from nl2robot.review import Review
 from nl2robot.runner import Approval, Status
 from nl2robot.thinking import EVENT, OnProgress, Progress
@@ -19,7 +20,7 @@ T = TypeVar("T")
 
 
 # Learned before there are threads, see `robot_api.schema`.
-msgspec.json.Decoder(tuple[Translation, Review, Approval, Status])
+msgspec.json.Decoder(tuple[Translation, Review, Approval, Status, Sentence])
 
 
 class Operator:
@@ -110,6 +111,15 @@ class Operator:
         except Stopped:
             # A stop of the robot breaks off every call, this one too; the run is about to be over.
             return self._request("program.wait", {"run": run}, Status)
+
+    def answer(self, run: int, language: str = "en") -> list[Sentence]:
+        """What came of a run, for whoever asked for it; nothing from a server that cannot say."""
+        try:
+            return self._request(
+                "program.answer", {"run": run, "language": language}, list[Sentence]
+            )
+        except InvalidCall:
+            return []
 
     def stop(self) -> None:
         """Stop the robot and the program."""

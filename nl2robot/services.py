@@ -12,6 +12,7 @@ import msgspec
 
 from grammar.planning.planner import Interrupted
 from grammar.samples import samples
+from nl2robot.answers import answer
 from nl2robot.planners import names
 from nl2robot.runner import GOING, Runner
 from nl2robot.talks import Talks
@@ -148,6 +149,14 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             handler=lambda p, context: msgspec.to_builtins(waited(p, context.stop)),
             params=an_object({"run": _RUN, "timeout": {"type": "number", "minimum": 0}}, "run"),
             doc="Wait until a run is over and tell how it ended.",
+            observes=True,
+        ),
+        "program.answer": service(
+            lambda p: answer(runner.log, runner.knowledge, p["run"], p.get("language", "en")),
+            "Tell what came of a run, in sentences for whoever asked for it; each says whether the"
+            " robot has spoken it there.",
+            {"run": _RUN, "language": _LANGUAGE},
+            "run",
             observes=True,
         ),
         "program.state": service(

@@ -13,6 +13,7 @@ import threading
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
+from nl2robot.answers import Sentence
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.operator import Operator
 from nl2robot.review import Review
@@ -20,7 +21,7 @@ from nl2robot.runner import GOING, Approval, Status
 from nl2robot.terminal import Decision, Terminal
 from nl2robot.translation import Translation
 from nl2robot.waiting import GivenUp
-from robot_api.errors import InvalidCall, LostConnection, StopNotConfirmed, Stopped
+from robot_api.errors import InvalidCall, LostConnection, RobotError, StopNotConfirmed, Stopped
 from sandbox.limits import MAX_PROGRAM
 
 T = TypeVar("T")
@@ -180,12 +181,19 @@ class Session:
             ) from error
         finally:
             self._watching.clear()
-        self.terminal.show_end(status.state, status.message)
+        self.terminal.show_answer(self._answer(status), status.state, status.message)
         if interrupted:
             return ExitStatus.INTERRUPTED
         if status.error in (LostConnection.__name__, StopNotConfirmed.__name__):
             return ExitStatus.NO_ROBOT
         return ExitStatus.OK if status.state == "done" else ExitStatus.FAILED
+
+    def _answer(self, status: Status) -> list[Sentence]:
+        """What came of a run; nothing where the robot can no longer be asked."""
+        try:
+            return self.operator.answer(status.run, self.language)
+        except RobotError:
+            return []
 
     def _finish(self, approval: Approval) -> tuple[Status, bool]:
         """Start the run and wait for its end; tells whether Ctrl-C ended it."""

@@ -32,6 +32,7 @@ from nl2robot.waiting import Waiting
 from nl2robot.words import authorship, words_in
 
 if TYPE_CHECKING:
+    from nl2robot.answers import Sentence
     from nl2robot.operator import Operator
 
 Decision = Literal["approve", "edit", "reject"]
@@ -270,6 +271,14 @@ class Terminal:
             self.console.print(f"[bold red]{_plain(told.rstrip())}[/]")
         else:
             self.console.print(_plain(self.words["robot_found"]))
+
+    def show_answer(self, answer: Sequence[Sentence], state: str, message: str | None) -> None:
+        """What came of a run; how it ended only where that was not as it should, or nothing did."""
+        with contextlib.suppress(BrokenPipeError):
+            for sentence in answer:
+                self.console.print(f"[bold green]{_plain(sentence.text)}[/]")
+        if state != "done" or not answer:
+            self.show_end(state, message)
 
     def show_end(self, state: str, message: str | None) -> None:
         style = {"done": "green", "stopped": "yellow"}.get(state, "red")

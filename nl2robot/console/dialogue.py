@@ -16,15 +16,16 @@ from typing import Final, Literal
 import msgspec
 
 from grammar.planning.planner import Interrupted
+from nl2robot.answers import answer
 from nl2robot.console.harmless import is_harmless
 from nl2robot.console.part import Backstage
 from nl2robot.console.thought import Thought
-from nl2robot.console.trouble import told
 from nl2robot.console.visitor import texts
 from nl2robot.errors import UserError
 from nl2robot.review import Review, digest
 from nl2robot.session import STOP
 from nl2robot.translation import Translation, translate
+from nl2robot.trouble import told
 from robot_api.errors import RobotError
 
 LINES_KEPT: Final = 200
@@ -375,7 +376,10 @@ class Dialogue:
             status = self._backstage.runner.state()
             error = status.error if status and status.run == run else None
             why = told(error, message, language) if message else None
-            text = " ".join(filter(None, (_said(f"ended_{state}", language), why)))
+            end = " ".join(filter(None, (_said(f"ended_{state}", language), why)))
+            runner = self._backstage.runner
+            came = [each.text for each in answer(runner.log, runner.knowledge, run, language)]
+            text = "\n".join([*came, end] if state != "done" or not came else came)
             self._tell(Line("robot", text, "done" if state == "done" else "trouble", run=run))
 
     def _tell(self, line: Line) -> None:

@@ -8,10 +8,10 @@ from typing import Any, Final, Literal
 
 from grammar.language import load_language
 from grammar.naming import naming
-from nl2robot.console.trouble import told
 from nl2robot.knowledge import Knowledge
 from nl2robot.review import Review
 from nl2robot.terminal import duration, words_in
+from nl2robot.trouble import told
 
 MOST_PLACES: Final = 12
 

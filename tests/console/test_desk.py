@@ -43,7 +43,7 @@ def test_say_hello_from_end_to_end(page: Page, served: Served, picture: Picture)
         approve(page)
         expect(page.locator("#run-panel .chip[role=status]")).to_have_text("Done")
         assert spoken == ["Hello!"]
-    expect(page.locator(".said.by-robot").last).to_have_text(re.compile(r"Done\. See run \d+"))
+    expect(page.locator(".said.by-robot").last).to_have_text(re.compile(r"Hello! See run \d+"))
 
 
 def test_a_program_is_reviewed_refused_and_nothing_was_done(page: Page, served: Served) -> None:

@@ -167,7 +167,7 @@ def test_meanwhile_all_else_goes_on(page: Page, look: Look, served: Served, writ
     expect(page.get_by_role("button", name="Approve and run")).to_be_enabled()
     thinks(page)
     approve(page)  # the program from before
-    expect(last_said(page)).to_contain_text("Done.")
+    expect(last_said(page)).to_contain_text("One. See run")
     colleague = look()
     say(colleague, "go to the pharmacy")
     expect(colleague.get_by_role("button", name="Approve and run")).to_be_enabled()

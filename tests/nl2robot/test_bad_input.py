@@ -267,8 +267,8 @@ def test_a_full_disk_stops_the_run_and_loses_nothing(start, home, tmp_path) -> N
 def test_a_program_file_is_listed_whatever_is_in_it(nl2robot, here) -> None:
     (here / "empty.py").touch()
     (here / "marked.py").write_text('robot.say("[/red] [bold]")\n')
-    for file in ("empty.py", "marked.py"):
-        check(nl2robot("run", *WARD, "-y", "--program", file), ExitStatus.OK, "Done.")
+    for file, end in (("empty.py", "Done."), ("marked.py", "\n[/red] [bold]\n")):
+        check(nl2robot("run", *WARD, "-y", "--program", file), ExitStatus.OK, end)
     check(nl2robot("log"), ExitStatus.OK, "[/red] [bold]")
     check(nl2robot("log", "2"), ExitStatus.OK, "say(text='[/red] [bold]')")
     assert json.loads(nl2robot("log", "1", "--json")[1])["program"] == ""

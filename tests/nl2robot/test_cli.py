@@ -55,7 +55,7 @@ def test_a_sentence_is_shown_tried_and_run(nl2robot, last_run, home, tmp_path) -
         "2 say(text='Hello!')",
     ):
         assert part in out
-    assert out.rstrip().endswith(f"Done.\nPicture: {picture}")
+    assert out.rstrip().endswith(f"I said “Hello!” here: ward a.\nPicture: {picture}")
     assert picture.read_text().startswith("<svg")
     row, calls = last_run()
     assert (row.approved_by, row.status, row.message) == ("Nurse Kim", "done", None)
