@@ -13,6 +13,7 @@ import msgspec
 
 from nl2robot.canned import Result, difference
 from nl2robot.errors import UserError
+from robot_api.errors import cause
 
 
 class Kept(msgspec.Struct, frozen=True):
@@ -41,7 +42,8 @@ def read(file: Path) -> Baseline:
         return msgspec.json.decode(file.read_bytes(), type=Baseline)
     except (OSError, msgspec.DecodeError) as error:
         raise UserError(
-            f"{file}: this is no baseline ({error}). Delete it, and the next run writes a new one."
+            f"{file}: this is no baseline ({cause(error)})."
+            " Delete it, and the next run writes a new one."
         ) from error
 
 

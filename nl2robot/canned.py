@@ -47,6 +47,7 @@ from nl2robot.errors import UserError
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.rehearsal import Budget, EventKind, rehearse
 from nl2robot.translation import Translation, translate
+from robot_api.errors import cause
 from sim.world import World, load_world
 
 PATIENCE = Budget(seconds=7200.0, real_seconds=1800.0)
@@ -107,7 +108,10 @@ def load(file: Path) -> Suite:
     try:
         text = file.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise UserError(f"{file}: cannot be read ({error}).") from error
+        raise UserError(
+            f"{file}: cannot be read ({cause(error)})."
+            " Check its name and rights, and that it is UTF-8."
+        ) from error
     if file.suffix.lower() in (".yaml", ".yml"):
         return _from_yaml(text, file)
     return Suite(tests=tuple(_from_lines(text)))

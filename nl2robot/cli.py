@@ -39,6 +39,7 @@ COMMANDS = {
     "paraphrases": "measure how well commands with logical forms are understood",
     "bench": "measure how fast everything is on this machine",
     "demo": "a typed and a spoken command in the simulated hospital, with pictures",
+    "completion": "completion by Tab in your shell: bash, zsh or fish",
 }
 
 
@@ -47,6 +48,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = list(sys.argv[1:] if arguments is None else arguments)
     _prepare()
     try:
+        if "_ARGCOMPLETE" in os.environ:
+            _complete(os.environ.get("COMP_LINE", ""))
+        if not given:
+            print(_start(), flush=True)
+            return ExitStatus.OK
         options = _parser(given).parse_args(given)
         command = importlib.import_module(f"nl2robot.commands.{options.command}")
         status = int(command.run(options))
@@ -64,6 +70,28 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(sentence, file=sys.stderr)
     _let_go_of_output()
     return status
+
+
+def _start() -> str:
+    """What it is, and what to try first, in the language of the terminal."""
+    import locale
+
+    from nl2robot.words import words_in
+
+    for name in ("LC_ALL", "LC_MESSAGES", "LANG"):  # the first that is set counts
+        if setting := os.environ.get(name):
+            break
+    else:
+        setting = ""
+    language = locale.normalize(setting).partition("_")[0]
+    return str(words_in(language)["start"]).format(version=__version__)
+
+
+def _complete(line: str) -> None:
+    """Tell a shell what the line that somebody types may become; does not return."""
+    import argcomplete
+
+    argcomplete.autocomplete(_parser(line.split()[1:]), always_complete_options=False)
 
 
 def _prepare() -> None:
@@ -95,7 +123,7 @@ def _parser(given: Sequence[str]) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="nl2robot",
         description="Tell a social robot what to do in your own words.",
-        epilog="nl2robot COMMAND --help says more about a command. Start with: nl2robot demo",
+        epilog="nl2robot COMMAND --help says more about a command. Start with: nl2robot",
     )
     parser.add_argument("--version", action="version", version=f"nl2robot {__version__}")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)

@@ -17,6 +17,7 @@ import msgspec
 
 from nl2robot.errors import UserError
 from nl2robot.paths import made
+from robot_api.errors import cause
 from sim.world import BUILTIN, World
 
 T = TypeVar("T")
@@ -66,7 +67,7 @@ class Drawn(Generic[T]):
         except FileNotFoundError:
             return {}
         except (OSError, ValueError) as error:
-            raise self._damaged(" ".join(str(error).split())) from error
+            raise self._damaged(cause(error)) from error
         import yaml
 
         try:
@@ -75,7 +76,7 @@ class Drawn(Generic[T]):
             if unknown is not None:
                 raise ValueError(f'it has no field "{unknown}"')
         except (ValueError, RecursionError, yaml.YAMLError) as error:
-            raise self._damaged(" ".join(str(error).split())) from error
+            raise self._damaged(cause(error)) from error
         worlds: dict[str, tuple[T, ...]] = file.get("worlds", {})
         for entry in (entry for entries in worlds.values() for entry in entries):
             trouble = self._trouble(entry)

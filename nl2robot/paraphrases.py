@@ -22,6 +22,7 @@ from nl2robot.errors import UserError
 from nl2robot.frames import UNKNOWN, Frame, frames_of_form, frames_of_plan, parsed
 from nl2robot.knowledge import Knowledge
 from nl2robot.translation import translate
+from robot_api.errors import cause
 
 DEFAULT_WORLD: Final = "household"
 FILLED: Final = {
@@ -72,7 +73,7 @@ def load(file: Path) -> list[Row]:
     try:
         lines = file.read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError) as problem:
-        raise UserError(f"{file} cannot be read: {problem}.") from None
+        raise UserError(f"{file} cannot be read: {cause(problem)}.") from None
     rows: list[Row] = []
     for number, line in enumerate(lines, start=1):
         words, tab, form = line.partition("\t")

@@ -25,6 +25,7 @@ import msgspec
 from grammar.language import load_language
 from nl2robot.errors import UserError
 from nl2robot.paths import data_file, made
+from robot_api.errors import cause
 
 
 class Routine(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -111,7 +112,7 @@ class Routines:
             self._known, self._seen = (), None
         except (OSError, UnicodeDecodeError) as error:
             raise UserError(
-                f"The file of the routines, {self.file}, cannot be read ({error})."
+                f"The file of the routines, {self.file}, cannot be read ({cause(error)})."
                 " Mend it, or move it away to begin anew."
             ) from error
         return self._known

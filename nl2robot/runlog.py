@@ -21,6 +21,7 @@ from typing import Any
 import msgspec
 
 from nl2robot.errors import UserError
+from robot_api.errors import cause
 
 _SCHEMA = """
 CREATE TABLE IF NOT EXISTS runs (
@@ -324,6 +325,6 @@ class RunLog:
             yield
         except (sqlite3.Error, OSError) as error:
             raise LogError(
-                f"The run log {self.path} cannot be used ({error})."
+                f"The run log {self.path} cannot be used ({cause(error)})."
                 " Free some disk space or check the folder's rights, then try again."
             ) from error

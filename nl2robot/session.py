@@ -11,7 +11,7 @@ import contextlib
 import secrets
 import threading
 from collections.abc import Callable, Mapping
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from nl2robot.answers import Sentence
 from nl2robot.errors import ExitStatus, UserError
@@ -23,6 +23,9 @@ from nl2robot.translation import Translation
 from nl2robot.waiting import GivenUp
 from robot_api.errors import InvalidCall, LostConnection, RobotError, StopNotConfirmed, Stopped
 from sandbox.limits import MAX_PROGRAM
+
+if TYPE_CHECKING:
+    from sim.world import World
 
 T = TypeVar("T")
 
@@ -46,7 +49,9 @@ class Session:
         language: str = "en",
         planner: str = "auto",
         approve_all: bool = False,
+        world: World | None = None,
     ) -> None:
+        """`world` is where the robot drives, for the names of places."""
         self.operator = operator
         self.terminal = terminal
         self.language = language
@@ -67,7 +72,7 @@ class Session:
         operator.watch(self._show, "program")
         with contextlib.suppress(InvalidCall):  # a server that tells nothing of it
             operator.watch(self._show_link, "link")
-        terminal.accompany(operator)
+        terminal.accompany(operator, world)
 
     def perform(self, utterance: str, heard: str | None = None) -> ExitStatus:
         """Understand an utterance, have its program approved, run it."""

@@ -24,16 +24,21 @@ from rich.table import Table
 
 from grammar.language import load_language
 from nl2robot.errors import ExitStatus, UserError
+from nl2robot.line_editor import LineEditor
+from nl2robot.live_line import LiveLine
+from nl2robot.on_the_way import OnTheWay
 from nl2robot.plain import visible
 from nl2robot.rehearsal import DryRun
 from nl2robot.review import Review
 from nl2robot.translation import Translation
 from nl2robot.waiting import Waiting
 from nl2robot.words import authorship, words_in
+from robot_api.errors import InvalidCall
 
 if TYPE_CHECKING:
     from nl2robot.answers import Sentence
     from nl2robot.operator import Operator
+    from sim.world import World
 
 Decision = Literal["approve", "edit", "reject"]
 _ELSE: Final[tuple[Decision, ...]] = ("edit", "reject")
@@ -53,10 +58,16 @@ class Terminal:
     """What an operator sees and answers at a terminal."""
 
     def __init__(self, console: Console | None = None, language: str = "en") -> None:
+        self.world: World | None = None
         self.speak(language)
         self.console = console or _Console(highlight=False, emoji=False)
         if self.console.width < NARROWEST:
             self.console.width = 80
+        self._live = LiveLine(self.console)
+        self._way = OnTheWay()
+
+    editor: LineEditor | None = None
+    """Completes and keeps what is typed, where somebody types."""
 
     heard: str | None = None
     """What the last line sounded like, if it was spoken."""
@@ -73,8 +84,20 @@ class Terminal:
         self.language = language
         self.words = words_in(language)
 
-    def accompany(self, operator: Operator) -> None:
-        """Somebody operates a robot from here; what it does may matter to how lines are read."""
+    def accompany(self, operator: Operator, world: World | None = None) -> None:
+        """Somebody operates a robot in a world from here; what it does may matter to how lines are
+        read, and shows where it drives."""
+        self.world = world
+        self._way = OnTheWay(world)
+        if self._live.possible:
+            with contextlib.suppress(InvalidCall):  # a server that tells of no poses
+                operator.watch(self._show_pose, "pose")
+
+    def called(self, place: str) -> str:
+        """A place by the name that it has in the language spoken."""
+        known = self.world.place(place) if self.world is not None else None
+        aliases = known.aliases.get(self.language, ()) if known is not None else ()
+        return aliases[0] if aliases and self.language != "en" else place
 
     # --- before the run
 
@@ -152,8 +175,10 @@ class Terminal:
         text = self.words[ends].format(time=time, metres=metres, line=dry_run.line)
         heading = self.words["dry_run"]
         self.console.print(f"[bold]{heading}[/] {text} {_plain(dry_run.message or '')}".rstrip())
+        self._way.plan(dry_run.path)
         if dry_run.places:
-            self.console.print(f"  {self.words['way']}: {_plain(' → '.join(dry_run.places))}")
+            way = " → ".join(self.called(place) for place in dry_run.places)
+            self.console.print(f"  {self.words['way']}: {_plain(way)}")
         for words in dict.fromkeys(dry_run.says):
             self.console.print(f"  {self.words['says']}: {_plain(words)}")
 
@@ -177,12 +202,15 @@ class Terminal:
             if means == approving and review.acceptable:
                 return "approve", answer
             if said and not (insisting and means == "approve"):  # a "yes" is not enough
+                if self.editor is not None:
+                    self.editor.remember(answer)  # a correction is a command
                 return None, answer
 
     def next_line(self) -> str | None:
         """The next thing that somebody says or types on their own; None at the end of the input."""
+        prompt = f"\n{self.words['you']}"
         try:
-            return input(f"\n{self.words['you']}")
+            return self.editor.command(prompt) if self.editor is not None else input(prompt)
         except EOFError:
             return None
 
@@ -199,6 +227,7 @@ class Terminal:
         if not self.keyboard_ready(seconds):
             return None
         line = sys.stdin.readline()
+        self._live.leave()  # the key that ended the line began another
         if not line:  # the end of the input: whoever asks next is told
             time.sleep(seconds)
         return line.strip() or None
@@ -225,24 +254,22 @@ class Terminal:
                     subprocess.run([*shlex.split(editor), str(file)], check=True)
                 return file.read_text(encoding="utf-8-sig")
             except UnicodeDecodeError:
-                reason = "it did not save text in UTF-8"
+                reason = self.words["editor_no_text"]
             except subprocess.CalledProcessError as error:
-                reason = f"it ended with status {error.returncode}"
+                reason = self.words["editor_status"].format(status=error.returncode)
             except OSError as error:
                 reason = str(error.strerror)
             except ValueError as error:  # a quotation mark that is not closed
                 reason = str(error)
-        self.console.print(
-            f"The editor {editor!r} did not work: {reason}. The program stays as it was."
-            " Set $EDITOR to an editor that is installed.",
-            markup=False,
-        )
+        told = self.words["editor_failed"].format(editor=repr(editor), reason=reason)
+        self.console.print(told, markup=False)
         return program
 
     # --- during the run
 
     def show_event(self, kind: str, data: Mapping[str, Any]) -> None:
         """Show an event of the wire as it comes."""
+        self._live.leave()
         if kind == "program" and data["what"] == "call":
             arguments = ", ".join(
                 f"{name}={_short(value)}"
@@ -251,7 +278,9 @@ class Terminal:
             )
             call = f"{data['method']}({arguments})"
             self.console.print(f"[dim]{data['line']:>4}[/] {_plain(call)}")
+            self._way.begin(data["method"], data["arguments"])
         elif kind == "program" and data["what"] == "result":
+            self._way.end()
             if data.get("error"):
                 self.console.print(f"     [red]{_plain(str(data['error']))}[/]")
             elif data.get("result") is not None:
@@ -259,12 +288,23 @@ class Terminal:
         elif kind == "program" and data["what"] == "print":
             self.console.print(f"     {_plain(data['text'].rstrip())}")
 
+    def _show_pose(self, kind: str, pose: Mapping[str, Any]) -> None:
+        """Where it is by now, in a line that is written again and again while it drives."""
+        if self._way.place is None:
+            return
+        left = self._way.at(pose["x"], pose["y"])
+        words = self.words["driving_there" if left is None else "driving"]
+        place = visible(self.called(self._way.place))
+        self._live.show(f"     {words.format(place=place, metres=round(left or 0))}")
+
     def show_unconfirmed(self) -> None:
         """The robot was told to stop and has not said that it stands."""
+        self._live.leave()
         self.console.print(f"[bold red]{_plain(self.words['unconfirmed'])}[/]")
 
     def show_link(self, data: Mapping[str, Any]) -> None:
         """The robot was lost, or found again."""
+        self._live.leave()
         if data["state"] == "lost":
             time = datetime.fromtimestamp(data["since"])
             told = self.words["robot_lost"].format(time=f"{time:%H:%M}", because=data["because"])
@@ -281,6 +321,8 @@ class Terminal:
             self.show_end(state, message)
 
     def show_end(self, state: str, message: str | None) -> None:
+        self._live.leave()
+        self._way.end()
         style = {"done": "green", "stopped": "yellow"}.get(state, "red")
         told = f"[{style}]{self.words.get(state, state)}[/]"
         # The reader of a pipe may have left; how it ended is in the exit status, too.

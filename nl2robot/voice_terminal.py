@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 
@@ -24,6 +25,9 @@ from nl2robot.voice import (
     VoiceInput,
     Woke,
 )
+
+if TYPE_CHECKING:
+    from sim.world import World
 
 LOOK_EVERY = 0.05
 """Seconds between two looks at the keyboard."""
@@ -72,7 +76,8 @@ class VoiceTerminal(Terminal):
         except UserError as error:  # it can still be typed in
             self.console.print(str(error), markup=False)
 
-    def accompany(self, operator: Operator) -> None:
+    def accompany(self, operator: Operator, world: World | None = None) -> None:
+        super().accompany(operator, world)
         operator.watch(self._own_voice.note, "speech", "program")
 
     def close(self) -> None:

@@ -17,6 +17,7 @@ import yaml
 
 from nl2robot.errors import UserError
 from nl2robot.named_places import NamedByHand
+from robot_api.errors import cause
 from sim.map_reader import is_ros_map
 from sim.world import Place, Pose, World, WorldError, Zone, load_world
 from sim.world_checks import kind_of
@@ -86,7 +87,7 @@ def exported(world: World, named: Sequence[NamedByHand], zones: Sequence[Zone] =
         root = yaml.compose(before, Loader=yaml.SafeLoader)
     except (OSError, ValueError, yaml.YAMLError) as error:
         raise UserError(
-            f"The world's file {world.file} cannot be read any more ({error})."
+            f"The world's file {world.file} cannot be read any more ({cause(error)})."
         ) from error
     if not isinstance(root, yaml.MappingNode) or is_ros_map(compose(Path(world.file))):
         raise UserError(

@@ -115,6 +115,13 @@ _BY_NAME: dict[str, type[RobotError] | type[Stopped]] = {
 }
 
 
+def cause(error: BaseException) -> str:
+    """What an error of the system or of a library says, for a sentence in brackets: without the
+    number that systems give their errors, and in one line."""
+    said = getattr(error, "strerror", None) or str(error) or type(error).__name__
+    return " ".join(str(said).split())
+
+
 def error_named(name: str) -> type[RobotError] | type[Stopped]:
     """The class for an error's name on the wire; `RobotError` for a name from a newer server."""
     return _BY_NAME.get(name, RobotError)

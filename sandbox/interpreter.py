@@ -28,6 +28,7 @@ from typing import Any, Final, Literal, Self
 import msgspec
 import pydantic_monty as monty
 
+from robot_api.errors import cause
 from robot_api.values import Clock, Location
 from sandbox.limits import Limits
 from sandbox.rounds import counted
@@ -233,7 +234,7 @@ class Interpreter:
             self._check_out()
         except (monty.MontyError, RuntimeError, OSError) as error:
             self.__exit__(None, None, None)
-            raise Unavailable(str(error)) from error
+            raise Unavailable(cause(error)) from error
         return self
 
     def _check_out(self) -> None:
@@ -442,12 +443,12 @@ def diagnose(program: str, stub: str, seconds: float = 60.0) -> list[Diagnostic]
         except monty.MontyCrashedError as error:
             kept.close()
             if not error.timed_out:
-                raise Unavailable(str(error)) from error
+                raise Unavailable(cause(error)) from error
             message = "CheckError: The program is too involved to be checked. Make it simpler"
             return [Diagnostic(1, 1, "unsupported", message)]
         except (monty.MontyError, RuntimeError, OSError) as error:
             kept.close()
-            raise Unavailable(str(error)) from error
+            raise Unavailable(cause(error)) from error
 
 
 class Checker:

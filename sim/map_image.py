@@ -90,8 +90,9 @@ def read_image(path: Path) -> Picture:
             image.load()
             return _picture(image)
     except (UnidentifiedImageError, OSError, ValueError, SyntaxError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
         raise ImageError(
-            f"The map's image {path.name} is no PGM or PNG that can be read ({error}). "
+            f"The map's image {path.name} is no PGM or PNG that can be read ({reason}). "
             "Save it again as PGM."
         ) from None
     except Image.DecompressionBombError:

@@ -21,10 +21,14 @@ from nl2robot.commands.options import (
     robot_of,
 )
 from nl2robot.commands.run import open_session
+from nl2robot.completing import completions, names_said
 from nl2robot.errors import ExitStatus
+from nl2robot.line_editor import Complete, LineEditor
+from nl2robot.paths import data_file
 from nl2robot.robots import Chosen
 from nl2robot.session import Session
 from nl2robot.terminal import Terminal
+from nl2robot.words import words_in
 from robot_api.errors import LostConnection, RobotError
 
 if TYPE_CHECKING:
@@ -50,8 +54,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    with contextlib.suppress(ImportError):
-        import readline  # noqa: F401  (arrow keys and history in input())
     robot = robot_of(options)
     duplex = _duplex(options, robot)
     with (
@@ -59,6 +61,8 @@ def run(options: argparse.Namespace) -> int:
         open_session(options, robot, terminal=terminal, duplex=duplex) as (session, _),
     ):
         session.listens = session.terminal.somebody_is_there
+        if not options.voice and session.terminal.somebody_is_there:
+            session.terminal.editor = LineEditor(data_file("history"), _completing(session))
         if not robot.is_server and options.planner != "grammar":
             planners.get_ready()
         session.terminal.console.print(session.terminal.words["greeting"], markup=False)
@@ -70,6 +74,25 @@ def run(options: argparse.Namespace) -> int:
                 _answer(session, words)
     session.terminal.console.print(session.terminal.words["goodbye"])
     return ExitStatus.OK
+
+
+def _completing(session: Session) -> Complete:
+    """What a line may become here, in the language that is spoken by then."""
+
+    @functools.cache
+    def sentences(language: str) -> tuple[str, ...]:
+        words = words_in(language)
+        said = session.operator.phrases(language).values()
+        return (*(each for topic in said for each in topic), words["help"], *_endings(language))
+
+    def complete(line: str) -> list[str]:
+        world, language = session.terminal.world, session.language
+        names = names_said(world, language) if world is not None else ()
+        with contextlib.suppress(RobotError):  # at a server that is gone only the names are known
+            return completions(line, sentences(language), names)
+        return completions(line, (), names)
+
+    return complete
 
 
 def _duplex(options: argparse.Namespace, robot: Chosen) -> FullDuplex | None:

@@ -13,7 +13,7 @@ from grammar.language import load_language
 from grammar.readings import Read
 from grammar.understand import understand
 from grammar.understanding import Understanding
-from nl2robot.commands.options import add_language, add_world, names_of, words
+from nl2robot.commands.options import add_language, add_words, add_world, names_of
 from nl2robot.errors import ExitStatus
 from nl2robot.knowledge import Knowledge
 from nl2robot.plain import visible
@@ -30,7 +30,7 @@ VERDICTS = {"ok": "understood", "clarify": "needs an answer", "rejected": "not u
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("words", type=words, help="the sentence")
+    add_words(parser, "the sentence")
     parser.add_argument(
         "--json",
         action="store_true",

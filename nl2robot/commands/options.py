@@ -61,14 +61,49 @@ def add_world(parser: argparse.ArgumentParser) -> None:
         default=DEFAULT_WORLD,
         metavar="W",
         help=f"a built-in world's name or a YAML file (default: {DEFAULT_WORLD})",
-    )
+    ).completer = _worlds  # type: ignore[attr-defined]
+
+
+def _worlds(prefix: str, **_: object) -> list[str]:
+    """For the completion by Tab in a shell: the built-in worlds, and files."""
+    from sim.world import builtin_worlds
+
+    folder = prefix[: prefix.rfind("/") + 1]
+    files = [
+        f"{folder}{path.name}{'/' if path.is_dir() else ''}"
+        for path in Path(folder or ".").glob("*")
+        if path.is_dir() or path.suffix in (".yaml", ".yml")
+    ]
+    return [*builtin_worlds(), *files]
+
+
+def add_words(parser: argparse.ArgumentParser, help: str, nargs: str | None = None) -> None:
+    """A sentence to the robot."""
+    parser.add_argument("words", nargs=nargs, type=words, help=help).completer = _sentences  # type: ignore[attr-defined]
+
+
+def _sentences(prefix: str, parsed_args: argparse.Namespace, **_: object) -> list[str]:
+    """For the completion by Tab in a shell: what can be said in the world named so far."""
+    from grammar.samples import samples
+    from nl2robot.completing import completions, names_said
+    from nl2robot.knowledge import Knowledge
+    from nl2robot.routines import open_routines
+
+    world, language = names_of(parsed_args), parsed_args.lang
+    lexicon = Knowledge(world, routines=open_routines()).lexicon(language)
+    said = (each for topic in samples(lexicon, language).values() for each in topic)
+    return completions(prefix, said, names_said(world, language))
 
 
 def add_language(parser: argparse.ArgumentParser) -> None:
     from grammar.language import languages
 
     parser.add_argument(
-        "--lang", default="en", choices=languages(), help="the language of the words (default: en)"
+        "--lang",
+        "--language",
+        default="en",
+        choices=languages(),
+        help="the language of the words (default: en)",
     )
 
 

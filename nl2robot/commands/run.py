@@ -14,11 +14,11 @@ from nl2robot.commands.options import (
     add_planner,
     add_robot,
     add_sound,
+    add_words,
     open_log,
     robot_of,
     sound_of,
     user_name,
-    words,
     world_of,
 )
 from nl2robot.errors import UserError
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("words", nargs="?", type=words, help="what the robot should do")
+    add_words(parser, "what the robot should do", nargs="?")
     parser.add_argument("--program", metavar="FILE", help="run this program instead of words")
     add_robot(parser)
     add_sound(parser)
@@ -99,6 +99,7 @@ def open_session(
                 language=options.lang,
                 planner=options.planner,
                 approve_all=approve_all,
+                world=world,
             ),
             station,
         )

@@ -7,7 +7,7 @@ import sys
 from functools import partial
 
 from grammar.planning.planner import Watch
-from nl2robot.commands.options import add_language, add_planner, add_world, names_of, words
+from nl2robot.commands.options import add_language, add_planner, add_words, add_world, names_of
 from nl2robot.errors import ExitStatus
 from nl2robot.knowledge import Knowledge
 from nl2robot.routines import open_routines
@@ -16,10 +16,12 @@ from nl2robot.waiting import thought_aloud
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "words", type=words, help="the sentence, or - to read one from each line of the input"
-    )
+    add_words(parser, "the sentence, or - to read one from each line of the input")
     parser.add_argument("--json", action="store_true", help="one JSON object per sentence")
+    parser.epilog = (
+        "The exit status is 0 if there is an answer to every sentence, and 3 if one was not"
+        " understood or has to be asked about; with --json it is 0: the object has the status."
+    )
     add_world(parser)
     add_language(parser)
     add_planner(parser)
@@ -30,13 +32,16 @@ def run(options: argparse.Namespace) -> int:
     lines = (
         (line.rstrip("\n") for line in sys.stdin) if options.words == "-" else iter([options.words])
     )
+    status = ExitStatus.OK
     for line in lines:
         translation = thought_aloud(partial(_translated, line, knowledge, options), options.lang)
         print(
             translation.to_json() if options.json else translation.readable(options.lang),
             flush=True,
         )
-    return ExitStatus.OK
+        if translation.status != "ok" and not options.json:
+            status = ExitStatus.NOT_UNDERSTOOD
+    return status
 
 
 def _translated(

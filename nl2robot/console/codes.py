@@ -18,6 +18,7 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
 from nl2robot.console.part import Backstage, Part
+from robot_api.errors import cause
 
 LARGEST_FILE: Final = 12_000_000
 """Bytes."""
@@ -54,7 +55,7 @@ def _opened(picture: bytes) -> Image.Image:
             raise NoPicture("too many pixels")
         return image.convert("L")
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
-        raise NoPicture(str(error)) from error
+        raise NoPicture(cause(error)) from error
 
 
 async def _answer(request: Request) -> Response:

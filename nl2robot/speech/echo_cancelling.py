@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from nl2robot.errors import UserError
 from nl2robot.speech.audio import RATE, Samples
+from robot_api.errors import cause
 
 STEP: Final = RATE // 100
 """Samples that the canceller takes at a time: 10 ms."""
@@ -115,8 +116,8 @@ class EchoCanceller:
             self._module = AudioProcessingModule(echo_cancellation=True)
         except (ImportError, OSError) as error:
             raise EchoError(
-                f"The robot cannot tell its own voice from yours ({error}), so it goes on when you"
-                " speak. Install what it needs with: pip install 'nl2robot[echo]'"
+                f"The robot cannot tell its own voice from yours ({cause(error)}), so it goes on"
+                " when you speak. Install what it needs with: pip install 'nl2robot[echo]'"
             ) from error
         self._frame = AudioFrame
         self._played = played

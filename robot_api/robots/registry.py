@@ -21,6 +21,7 @@ import msgspec
 from robot_api.capabilities.names import nearest
 from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.driver import Driver
+from robot_api.errors import cause
 from robot_api.robots.address import Address, BadAddress
 from robot_api.robots.places import Places
 from robot_api.robots.robot_file import RobotFile
@@ -160,7 +161,7 @@ def _loaded(point: EntryPoint, kinds: Mapping[str, RobotKind]) -> RobotKind | st
     try:
         kind = point.load()
     except (Exception, SystemExit) as error:  # noqa: BLE001 - others' code may do anything
-        why = " ".join(f"{type(error).__name__}: {error}".split())
+        why = f"{type(error).__name__}: {cause(error)}"
         return f"{whose} cannot be loaded ({why}). {remedy}"
     if not isinstance(kind, RobotKind):
         return f"{whose} is no RobotKind: {point.value} is something else. {remedy}"

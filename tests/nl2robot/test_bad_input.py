@@ -190,7 +190,7 @@ def test_lines_of_junk_are_answered_one_by_one(nl2robot, monkeypatch) -> None:
 
 def test_quoted_junk_does_not_reach_the_terminal(nl2robot) -> None:
     status, out, _ = nl2robot("translate", *WARD, "go to \x1b]0;evil\x07")
-    assert status == ExitStatus.OK
+    assert status == ExitStatus.NOT_UNDERSTOOD
     assert "\x1b" not in out
     assert "\x07" not in out
 
