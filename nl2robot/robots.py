@@ -11,6 +11,7 @@ from typing import IO, TYPE_CHECKING
 
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.paths import data_folder, made
+from nl2robot.speech.text_normalisation import as_spoken
 from robot_api.capabilities.driving import Goal
 from robot_api.capabilities.sound import SILENT, Ears, Microphone, Sound
 from robot_api.driver import Driver
@@ -96,7 +97,7 @@ def opener(
 ) -> Callable[[Address], Driver]:
     """Makes a driver for the robot, wherever it is reached. Raises `RobotError`."""
     known = places or places_of(world, zones_of(world))
-    with_ears = _with_ears(sound, world)
+    own = _of_its_own(sound, world)
 
     def open_at(address: Address) -> Driver:
         return open_robot(
@@ -104,7 +105,7 @@ def opener(
             robot.kind,
             read=robot.read,
             places=known,
-            sound=with_ears,
+            sound=own,
             password=password or os.environ.get(PASSWORD),
         )
 
@@ -122,15 +123,16 @@ def trouble_reaching() -> Iterator[None]:
         raise UserError(str(error), ExitStatus.NO_ROBOT) from error
 
 
-def _with_ears(sound: Sound, world: World) -> Sound:
-    """What a robot's own microphone hears is recognised here."""
+def _of_its_own(sound: Sound, world: World) -> Sound:
+    """What a robot's own microphone hears is recognised here, and what its own voice speaks is made
+    ready to be spoken."""
 
     def ears_at(microphone: Microphone) -> Ears:
         from nl2robot.speech.aloud import ears_at
 
         return ears_at(world)(microphone)
 
-    return replace(sound, ears_at=ears_at)
+    return replace(sound, ears_at=ears_at, spoken=as_spoken)
 
 
 def zones_of(world: World) -> tuple[Zone, ...]:

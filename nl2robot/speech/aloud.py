@@ -22,6 +22,7 @@ from nl2robot.speech.full_duplex import FullDuplex, full_duplex
 from nl2robot.speech.kept import KeptSounds, folder
 from nl2robot.speech.loudspeaker import Nowhere, Output, SoundCard, SoundError, WavFile
 from nl2robot.speech.speaking import Speaker, Utterance
+from nl2robot.speech.text_normalisation import as_spoken
 from nl2robot.speech.voices import Voice, espeak, voice
 from robot_api.capabilities.sound import Ears, Sound, Voices
 from robot_api.capabilities.sound import Microphone as RobotsMicrophone
@@ -112,6 +113,7 @@ def aloud(
                 voices=people,
                 subscribe=played,
                 give_way=speaker.interrupt,
+                spoken=as_spoken,
             )
 
         yield sound_for

@@ -74,6 +74,10 @@ class Voices(Protocol):
 def _nothing() -> None: ...
 
 
+def _as_written(text: str, language: str) -> str:
+    return text
+
+
 @dataclass(frozen=True)
 class Sound:
     """What there is of it."""
@@ -89,6 +93,9 @@ class Sound:
     """Where clients play what is said: subscribes to the events `sound` and `silence`."""
     give_way: Callable[[], None] = _nothing
     """Ends what the robot is saying, for somebody speaks to it; its program goes on."""
+    spoken: Callable[[str, str], str] = _as_written
+    """A text, and its language, in the words in which any voice is to speak it: the server's, or
+    the robot's own. What is shown and logged stays as it is written."""
 
     def publish_to(self, listener: Listener) -> None:
         """Let it hear what clients are to play, if there is any."""
@@ -101,7 +108,7 @@ class Sound:
         if self.loudspeaker is None:
             yield
             return
-        with self.loudspeaker.speaking(stop, text, language, volume):
+        with self.loudspeaker.speaking(stop, self.spoken(text, language), language, volume):
             yield
 
 

@@ -39,9 +39,7 @@ def _shown_as_they_are(source: str) -> Iterator[int]:
     for handler in ast.walk(ast.parse(source)):
         if not isinstance(handler, ast.ExceptHandler) or not handler.name or not handler.type:
             continue
-        caught = {
-            getattr(each, "id", getattr(each, "attr", "")) for each in ast.walk(handler.type)
-        }
+        caught = {getattr(each, "id", getattr(each, "attr", "")) for each in ast.walk(handler.type)}
         if not caught & OF_THE_SYSTEM:
             continue
         for node in ast.walk(handler):

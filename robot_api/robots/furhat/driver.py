@@ -9,6 +9,7 @@ from typing import Any
 from robot_api.capabilities.base import Capability, Hub
 from robot_api.capabilities.core import Core, LogBook
 from robot_api.capabilities.screen import TabletScreen
+from robot_api.capabilities.sound import Sound
 from robot_api.driver import StopFlag
 from robot_api.drivers import ComposedDriver
 from robot_api.errors import NotSupported
@@ -69,7 +70,7 @@ class FurhatDriver(ComposedDriver):
             kind="furhat",
             parts=[
                 FurhatCore(book, furhat, setup.places),
-                *_talking(furhat, hub, settings),
+                *_talking(furhat, hub, settings, setup.sound),
                 *_moving(furhat, hub, file),
                 self._vision,
                 FurhatSkills(furhat),
@@ -120,9 +121,9 @@ def _check(file: RobotFile) -> None:
             raise NotSupported(f"A Furhat {what} itself. Write 'robot' for it in the robot file.")
 
 
-def _talking(furhat: Furhat, hub: Hub, settings: FurhatSettings) -> list[Capability]:
+def _talking(furhat: Furhat, hub: Hub, settings: FurhatSettings, sound: Sound) -> list[Capability]:
     voice = Voice(furhat, settings)
-    speech = FurhatSpeech(furhat, hub, voice)
+    speech = FurhatSpeech(furhat, hub, voice, sound)
     screen = TabletScreen(hub, speech)
     return [speech, screen, FurhatHearing(furhat, hub, voice, speech, screen, settings)]
 

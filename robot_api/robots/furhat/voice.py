@@ -10,6 +10,7 @@ from typing import Any, Final
 from robot_api.capabilities.base import Hub, Turns
 from robot_api.capabilities.hearing import Hearing
 from robot_api.capabilities.screen import Screen
+from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.capabilities.speech import LANGUAGES, Speech
 from robot_api.driver import StopFlag
 from robot_api.errors import LostConnection, NotSupported
@@ -88,8 +89,10 @@ def _language_of(voice: Any) -> str | None:
 class FurhatSpeech(Speech):
     """Its own voice. How loud that is, its interface does not let us say."""
 
-    def __init__(self, furhat: Furhat, hub: Hub, voice: Voice) -> None:
+    def __init__(self, furhat: Furhat, hub: Hub, voice: Voice, sound: Sound = SILENT) -> None:
+        """What it says goes through `sound.spoken`."""
         super().__init__()
+        self._spoken = sound.spoken
         self._furhat = furhat
         self._hub = hub
         self._voice = voice
@@ -114,12 +117,13 @@ class FurhatSpeech(Speech):
 
     def speak(self, stop: StopFlag, text: str, language: str) -> None:
         self._voice.take(stop, language)
-        lasts = _STARTS_WITHIN + _SECONDS_A_LETTER * len(text)
+        aloud = self._spoken(text, language)
+        lasts = _STARTS_WITHIN + _SECONDS_A_LETTER * len(aloud)
         start, end = "response.speak.start", "response.speak.end"
         with self._furhat.motion(stop, speech=True, lasts=_STARTS_WITHIN + lasts) as said:
             self._furhat.send(
                 "request.speak.text",
-                text=text,
+                text=aloud,
                 abort=False,
                 monitor_words=False,
                 request_id=said.number,

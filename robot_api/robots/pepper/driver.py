@@ -125,7 +125,7 @@ def _speech(setup: Setup, wire: Wire, settings: PepperSettings, hub: Hub) -> Spe
     own = wire.has("ALTextToSpeech", "ALAudioDevice")
     if setup.file.speech in (None, "robot") and own:
         animated = settings.animated_speech and wire.has("ALAnimatedSpeech")
-        return PepperSpeech(wire, hub, animated=animated)
+        return PepperSpeech(wire, hub, setup.sound, animated=animated)
     return LoudspeakerSpeech(hub, setup.sound)
 
 

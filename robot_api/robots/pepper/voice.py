@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, Final
 
 from robot_api.capabilities.base import Hub
+from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.capabilities.speech import LANGUAGES, Speech
 from robot_api.driver import StopFlag
 from robot_api.errors import NotSupported
@@ -18,10 +19,12 @@ _MARKUP: Final = str.maketrans({"\\": " ", "^": " "})
 
 
 class PepperSpeech(Speech):
-    def __init__(self, wire: Wire, hub: Hub, *, animated: bool) -> None:
-        """Raises `NotSupported` if it speaks none of our languages."""
+    def __init__(self, wire: Wire, hub: Hub, sound: Sound = SILENT, *, animated: bool) -> None:
+        """What it says goes through `sound.spoken`. Raises `NotSupported` if it speaks none of
+        our languages."""
         super().__init__()
         self._wire = wire
+        self._spoken = sound.spoken
         self._hub = hub
         self._service = "ALAnimatedSpeech" if animated else "ALTextToSpeech"
         installed = wire.call("ALTextToSpeech", "getAvailableLanguages")
@@ -48,7 +51,7 @@ class PepperSpeech(Speech):
         if self._wire.call("ALTextToSpeech", "getLanguage") != name:
             self._wire.call("ALTextToSpeech", "setLanguage", name, within=_SET_WITHIN)
         self._hub.publish("speech", text=text, language=language)
-        plain = text.translate(_MARKUP)
+        plain = self._spoken(text, language).translate(_MARKUP)
         if self._service == "ALAnimatedSpeech":
             how: dict[str, Any] = {"bodyLanguageMode": "contextual"}
             ending = (STOP_SPEAKING, STOP_LIMBS)

@@ -383,10 +383,10 @@ class _Assembly:
                         " speech. Correct the file, or start it."
                     )
                 say = by_service(self._connection.work, service)
-                return RosSpeech(self._hub, say, self._settings.languages)
+                return RosSpeech(self._hub, say, self._settings.languages, self._setup.sound)
             if found.speech is not None:
                 say = by_topic(self._connection.work, *found.speech)
-                return RosSpeech(self._hub, say, self._settings.languages)
+                return RosSpeech(self._hub, say, self._settings.languages, self._setup.sound)
             if wish == "robot":
                 raise NotSupported(
                     "The robot is to speak itself, but its file names neither a topic nor a"

@@ -10,6 +10,7 @@ from robot_api.capabilities.arms import Gesture
 from robot_api.capabilities.base import Hub
 from robot_api.capabilities.face import Face
 from robot_api.capabilities.skills import Skills
+from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.capabilities.speech import Speech
 from robot_api.driver import StopFlag
 from robot_api.errors import InvalidCall, NotPossible, NotSupported
@@ -60,10 +61,12 @@ def by_service(line: Line, service: SpeechService) -> Say:
 class RosSpeech(Speech):
     """Its volume is its own."""
 
-    def __init__(self, hub: Hub, say: Say, languages: Sequence[str]) -> None:
+    def __init__(self, hub: Hub, say: Say, languages: Sequence[str], sound: Sound = SILENT) -> None:
+        """What it says goes through `sound.spoken`."""
         super().__init__()
         self._hub = hub
         self._say = say
+        self._spoken = sound.spoken
         self._languages = tuple(languages)
         self._language = self._languages[0]
 
@@ -79,7 +82,7 @@ class RosSpeech(Speech):
 
     def speak(self, stop: StopFlag, text: str, language: str) -> None:
         self._hub.publish("speech", text=text, language=language)
-        self._say(stop, text, language)
+        self._say(stop, self._spoken(text, language), language)
 
     def set_volume(self, stop: StopFlag, percent: int) -> None:
         raise NotSupported("I cannot speak louder or more softly. Turn my loudspeaker up or down.")

@@ -13,9 +13,10 @@ from typing import Any
 
 import pytest
 
+from nl2robot.speech.text_normalisation import as_spoken
 from robot_api import Robot, Server
 from robot_api.capabilities import screen
-from robot_api.capabilities.sound import Asked
+from robot_api.capabilities.sound import SILENT, Asked, Sound
 from robot_api.capabilities.tablet import NO_TABLET
 from robot_api.checker import check_robot
 from robot_api.driver import Event, StopFlag
@@ -68,6 +69,7 @@ def connected(
     key: str | None = None,
     file: RobotFile | None = None,
     settings: FurhatSettings | None = None,
+    sound: Sound = SILENT,
 ) -> Iterator[ComposedDriver]:
     setup = Setup(
         address=Address("furhat", "127.0.0.1", port),
@@ -75,6 +77,7 @@ def connected(
         places=PLACES,
         settings=settings,
         password=key,
+        sound=sound,
     )
     driver = FURHAT.connect(setup)
     assert isinstance(driver, ComposedDriver)
@@ -158,6 +161,14 @@ def test_a_visitor_is_welcomed_and_shown_the_way(
     assert gestures == ["Nod", "BigSmile"]
     config = furhat.asked("request.listen.config")[-1]
     assert config["phrases"] == ["pharmacy", "radiology"]
+
+
+def test_it_speaks_as_people_do_and_shows_what_is_written(furhat: FurhatStandIn) -> None:
+    with connected(furhat.port, sound=Sound(spoken=as_spoken)) as driver:
+        bystander = Bystander(driver)
+        do(driver, "say", text="Dr. Kim comes at 13:00.")
+        assert furhat.said == ["Doctor Kim comes at one p.m."]
+        bystander.sees("speech", text="Dr. Kim comes at 13:00.")
 
 
 def test_somebody_stops_it_in_the_middle_of_a_sentence(
