@@ -82,9 +82,16 @@ def _filled(example: str, lexicon: Lexicon, language: Language, shift: int = 0) 
         return None
 
 
+def _chargers(lexicon: Lexicon) -> set[str]:
+    return {place.name for place in lexicon.places if place.kind == "charger"}
+
+
 def names_for(slot: str, lexicon: Lexicon) -> list[str]:
     return {
-        "place": [place.name for place in lexicon.places],
+        # Nobody is led to a charging station, and no crowd is counted there.
+        "place": sorted(
+            (place.name for place in lexicon.places), key=_chargers(lexicon).__contains__
+        ),
         "person": [person.name for person in lexicon.people],
         "object": list(dict.fromkeys(thing.name for thing in lexicon.objects)),
         "contact": list(lexicon.contacts),

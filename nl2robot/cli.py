@@ -130,7 +130,7 @@ def _parser(given: Sequence[str]) -> argparse.ArgumentParser:
     named = next((word for word in given if word in COMMANDS), None)
     for name, help_line in COMMANDS.items():
         command = commands.add_parser(
-            name, help=help_line, description=f"{help_line}.".capitalize()
+            name, help=help_line, description=f"{help_line[:1].upper()}{help_line[1:]}."
         )
         command.add_argument(
             "--debug", action="store_true", help="show the traceback when something goes wrong"

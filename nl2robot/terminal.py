@@ -126,9 +126,10 @@ class Terminal:
 
         found = topic_of(about, list(phrases)) if about else None
         for topic, sentences in {found: phrases[found]}.items() if found else phrases.items():
-            self.console.print(f"[bold]{_plain(topic.capitalize())}[/]")
+            # Only the first letter: "Gesten und Bildschirm".
+            self.console.print(f"[bold]{_plain(topic[:1].upper() + topic[1:])}[/]")
             for sentence in sentences:
-                self.console.print(f"  {_plain(sentence)}")
+                self.console.print(f"  {_plain(sentence)}", soft_wrap=True)
 
     def show_program(self, program: str) -> None:
         self.console.print(

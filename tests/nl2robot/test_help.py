@@ -95,3 +95,18 @@ def test_in_chat_help_is_shown_in_full(monkeypatch, capsys) -> None:
     shown = capsys.readouterr().out
     assert shown.count("Speaking\n") == 2
     assert shown.count("Driving\n") == 3
+
+
+@pytest.mark.parametrize("world", builtin_worlds())
+def test_german_phrases_have_capitals_and_the_right_gender(phrases, world, capsys) -> None:
+    assert main(["phrases", "--lang", "de", "--world", world]) == 0
+    shown = capsys.readouterr().out
+    assert "Gesten und Bildschirm\n" in shown and "Abläufe und Bedingungen\n" in shown
+    assert "stell es" not in shown
+    assert "Ladestation" not in shown  # nobody is led there, and no crowd is counted there
+
+
+def test_a_long_phrase_stays_on_a_line(capsys) -> None:
+    assert main(["phrases", "--lang", "fr"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert all(line.startswith("  ") or line[:1].isupper() for line in lines)
