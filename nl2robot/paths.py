@@ -20,6 +20,12 @@ def data_file(name: str) -> Path:
     return _data_folder() / name
 
 
+def authority_file() -> Path:
+    """The certificate of the authority that a server on this machine is certified by
+    (`nl2robot.certificates`); need not be there."""
+    return data_file("certificates") / "authority.crt"
+
+
 def pictures_folder() -> Path:
     """Where a picture of every run is kept; made if missing. Raises `UserError`."""
     return made(data_folder() / "pictures")

@@ -75,8 +75,9 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
         remembered.adopt(mine)
         return translation
 
-    def approved(p: Mapping[str, Any]) -> Any:
-        return runner.approve(p["program"], p["sha256"], p["by"], **_rest(p, "program sha256 by"))
+    def approved(p: Mapping[str, Any], context: Context) -> Any:
+        by = context.who or p["by"]  # who has signed in need not be believed
+        return runner.approve(p["program"], p["sha256"], by, **_rest(p, "program sha256 by"))
 
     def waited(p: Mapping[str, Any], stop: StopFlag) -> Any:
         """Until the run is over, the time is up or the call is cancelled. A stop of the robot sets
@@ -125,7 +126,7 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             {"program": _PROGRAM, "language": _LANGUAGE},
             "program",
         ),
-        "program.approve": service(
+        "program.approve": service_of_call(
             approved,
             "Approve exactly the program with this SHA-256 for one run.",
             {
@@ -180,7 +181,7 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
         "program.stop": service(
             lambda p: runner.stop(),
             "Stop the program; `robot.stop` stops the robot as well.",
-            observes=True,
+            right="know",
         ),
         "program.list": service(
             listed,

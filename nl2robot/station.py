@@ -31,7 +31,7 @@ from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.client import Robot
 from robot_api.composed import ComposedDriver
 from robot_api.driver import Driver, Event
-from robot_api.errors import AccessDenied, RobotError
+from robot_api.errors import AccessDenied, NotTrusted, RobotError
 from robot_api.robots.opening import hold
 from robot_api.robots.places import Places
 from robot_api.robots.reading import Read
@@ -42,6 +42,7 @@ from sim.world import World, Zone
 
 if TYPE_CHECKING:
     from nl2robot.console.app import Console
+    from nl2robot.entrance import Entrance
     from nl2robot.speech.aloud import SoundFor
 
 ANSWERS_WITHIN = 5.0
@@ -139,6 +140,7 @@ def simulated_station(
     host: str = "127.0.0.1",
     port: int = 0,
     token: str | None = None,
+    entrance: Entrance | None = None,
     pictures: Path | None = None,
     sound: SoundFor | None = None,
     console: Callable[[Backstage], Console] | None = None,
@@ -181,6 +183,7 @@ def simulated_station(
         host=host,
         port=port,
         token=token,
+        entrance=entrance,
         simulation=simulation,
         console=console,
     ) as server:
@@ -213,6 +216,8 @@ def remote_station(
 
     try:
         robot = Robot(address, token=token)
+    except NotTrusted as error:
+        raise UserError(str(error), ExitStatus.NO_ROBOT) from error
     except AccessDenied as error:
         raise UserError(f"{error} Give the token with --token.", ExitStatus.NO_ROBOT) from error
     with robot:
@@ -241,6 +246,7 @@ def robot_station(
     host: str = "127.0.0.1",
     port: int = 0,
     token: str | None = None,
+    entrance: Entrance | None = None,
     console: Callable[[Backstage], Console] | None = None,
 ) -> Iterator[tuple[Station, Server]]:
     """A station with a robot that is not simulated. Its places are those of `world`, in which dry
@@ -267,6 +273,7 @@ def robot_station(
         host=host,
         port=port,
         token=token,
+        entrance=entrance,
         console=console,
     ) as server:
         yield Station(server.address, server.token), server
@@ -312,6 +319,7 @@ def _open(
     host: str = "127.0.0.1",
     port: int = 0,
     token: str | None = None,
+    entrance: Entrance | None = None,
     simulation: Simulation | None = None,
     console: Callable[[Backstage], Console] | None = None,
 ) -> Iterator[Server]:
@@ -348,6 +356,7 @@ def _open(
         runner=runner,
         talks=talks,
         simulation=simulation,
+        entrance=entrance,
         places=places,
         camera=driver.camera if isinstance(driver, ComposedDriver) else None,
         publish=publish,
@@ -383,7 +392,11 @@ def _open(
         remembered=(present.KIND,),
         pages=added.pages() if added else None,
         on_left=on_left,
+        encryption=entrance.certificate.context if entrance and entrance.certificate else None,
+        doors=added.doors if added else None,
     )
+    if entrance:
+        entrance.accounts.on_change(server.check_guests)
     unsubscribe = driver.subscribe(backstage.tell)
     if simulation is not None:
         runner.present.happened(Charging(simulation.robot.charging))

@@ -10,6 +10,7 @@ import msgspec
 from grammar.language import UnknownLanguage
 from nl2robot.errors import UserError
 from robot_api.errors import InvalidCall
+from robot_api.roles import Right
 from robot_api.server import Context as CallContext
 from robot_api.server import Service
 
@@ -20,10 +21,13 @@ def service(
     properties: dict[str, Any] | None = None,
     required: str = "",
     observes: bool = False,
+    right: Right | None = None,
 ) -> Service:
     """A method whose params are an object of these properties; a `UserError` is the caller's.
-    One that `observes` only looks."""
-    return service_of_call(lambda p, context: handler(p), doc, properties, required, observes)
+    One that `observes` only looks; it may need another `right`."""
+    return service_of_call(
+        lambda p, context: handler(p), doc, properties, required, observes, right=right
+    )
 
 
 def service_of_call(
@@ -33,6 +37,7 @@ def service_of_call(
     required: str = "",
     observes: bool = False,
     for_caller: bool = False,
+    right: Right | None = None,
 ) -> Service:
     """The same for a handler that wants to know who called, or whether they still wait: one
     `for_caller` ends with their connection."""
@@ -49,6 +54,7 @@ def service_of_call(
         doc=doc,
         observes=observes,
         for_caller=for_caller,
+        right=right,
     )
 
 

@@ -18,9 +18,11 @@ import logging
 import math
 import queue
 import socket
+import ssl
 import threading
 import time
 from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
 from typing import Any, Final
 
 import msgspec
@@ -29,7 +31,14 @@ import websocket
 from robot_api import protocol
 from robot_api.calls import Calls
 from robot_api.driver import Capabilities, StopFlag
-from robot_api.errors import AccessDenied, InternalError, InvalidCall, LostConnection, RobotError
+from robot_api.errors import (
+    AccessDenied,
+    InternalError,
+    InvalidCall,
+    LostConnection,
+    NotTrusted,
+    RobotError,
+)
 from robot_api.methods import METHODS
 from robot_api.schema import bind, read_result
 
@@ -61,9 +70,12 @@ class Robot(Calls):
     """A connection to a robot's server.
 
     `address` is "host:port", "host" or a "ws://" or "wss://" address; `token` what a server that
-    asks for one was started with. `timeout` is how many seconds a connection may take to be made,
-    and how long the server may be silent (while a call is in flight too) before it counts as lost.
-    Raises LostConnection if there is no robot at the address, AccessDenied for a wrong token.
+    asks for one was started with; `ca` a file with the certificate of the authority that a "wss://"
+    server's own is from, if this machine does not trust it anyway. `timeout` is how many seconds a
+    connection may take to be made, and how long the server may be silent (while a call is in flight
+    too) before it counts as lost.
+    Raises LostConnection if there is no robot at the address, AccessDenied for a wrong token or a
+    certificate that is not to be trusted.
 
     A connection that is lost between calls is made again by the next call. A call that is in flight
     when it is lost raises LostConnection and is never repeated: the robot may have done it.
@@ -75,6 +87,7 @@ class Robot(Calls):
         address: str = f"127.0.0.1:{DEFAULT_PORT}",
         *,
         token: str | None = None,
+        ca: str | Path | None = None,
         timeout: float = 10.0,
         on_lost: Callable[[], None] | None = None,
     ) -> None:
@@ -82,6 +95,7 @@ class Robot(Calls):
         self._on_lost = on_lost
         self._url = websocket_url(address)
         self._token = token
+        self._trust = _trust(ca) if self._url.startswith("wss://") else None
         self._timeout = timeout
         self._ids = itertools.count(1)
         # Guards the listeners; `_connecting` is held while a lost connection is made again, which
@@ -230,7 +244,8 @@ class Robot(Calls):
             pause = min(2 * pause, LONGEST_PAUSE)
 
     def _connect(self) -> _Link:
-        link = _Link(_open(self._url, self._token, self._timeout, self.address), self._link_said)
+        opened = _open(self._url, self._token, self._timeout, self.address, self._trust)
+        link = _Link(opened, self._link_said)
         with self._lock:
             kinds: set[str] = set().union(*(kinds for kinds, _ in self._listeners))
         threading.Thread(
@@ -397,11 +412,38 @@ def _cancel(id: int | protocol.Id) -> str:
     return protocol.notification(protocol.CANCEL, {"id": id})
 
 
-def _open(url: str, token: str | None, timeout: float, address: str) -> websocket.WebSocket:
+_trusted: list[Path] = []
+
+
+def trust_also(authority: str | Path) -> None:
+    """Trust this authority as well, in all connections that this process makes from now on. Raises
+    `InvalidCall` if the file has no certificate (PEM)."""
+    _trust(authority)
+    _trusted.append(Path(authority))
+
+
+def _trust(ca: str | Path | None) -> ssl.SSLContext:
+    """Whom a client trusts: the authorities of this system, and those in these files."""
+    trust = ssl.create_default_context()
+    for file in (*_trusted, *([ca] if ca is not None else [])):
+        try:
+            trust.load_verify_locations(file)
+        except (OSError, ValueError):  # an SSLError is an OSError
+            raise InvalidCall(
+                f"{file} is no file with an authority's certificate (PEM). The server's page /trust"
+                " has it."
+            ) from None
+    return trust
+
+
+def _open(
+    url: str, token: str | None, timeout: float, address: str, trust: ssl.SSLContext | None
+) -> websocket.WebSocket:
     try:
         opened = websocket.create_connection(
             url,
             timeout=timeout,
+            sslopt={"context": trust} if trust else None,
             header={"Authorization": f"Bearer {token}"} if token else None,
             suppress_origin=True,
             enable_multithread=True,
@@ -414,6 +456,13 @@ def _open(url: str, token: str | None, timeout: float, address: str) -> websocke
         raise LostConnection(f"What answers at {address} is no robot.") from None
     except websocket.WebSocketTimeoutException:
         raise LostConnection(f"The robot at {address} does not answer.") from None
+    except ssl.SSLCertVerificationError as error:
+        why = error.verify_message.rstrip(".")
+        raise NotTrusted(
+            f"The certificate of {address} is not to be trusted ({why})."
+            " Give the certificate of its authority, which the server's page /trust has, with --ca"
+            " (in Python: ca=...)."
+        ) from None
     except (websocket.WebSocketException, OSError, ValueError):
         raise LostConnection(
             f"There is no robot at {address}. Is its server running, and the address right?"

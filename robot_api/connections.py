@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from starlette.websockets import WebSocket
 
-from robot_api import access, protocol
+from robot_api import protocol, roles
+from robot_api.access import Guest
 from robot_api.dispatch import Job
 from robot_api.errors import RobotError, Stopped
 
@@ -26,10 +27,14 @@ A stop is not confirmed until the next one."""
 class Client:
     """One connection. Only the loop thread touches it."""
 
-    def __init__(self, server: Server, name: str, role: access.Role) -> None:
+    def __init__(self, server: Server, name: str, guest: Guest) -> None:
         self.name = name
-        self.role = role
-        self.wire = protocol.Connection(server.methods, server.events)
+        self.guest = guest
+        self.wire = protocol.Connection(
+            server.methods,
+            [kind for kind in server.events if roles.may_hear(guest.role, kind)],
+            lambda method: roles.may(guest.role, server.needs(method)),
+        )
         self._server = server
         # The job of each call in flight, for a cancel.
         self._jobs: dict[protocol.Call, Job] = {}

@@ -10,6 +10,7 @@
     ├── NotSupported           this robot cannot do that at all
     ├── InvalidCall            no such method, or parameters of the wrong kind
     ├── AccessDenied           not allowed: not approved, a wrong token, another operator drives
+    │   └── NotTrusted         the certificate of the server is from nobody that is trusted here
     ├── InternalError          a fault of the robot's own software; the log has the details
     ├── StopNotConfirmed       it was told to stop and has not said that it stands
     └── LostConnection         the robot cannot be reached any more
@@ -62,6 +63,10 @@ class InvalidCall(RobotError):
 
 class AccessDenied(RobotError):
     code = -32008
+
+
+class NotTrusted(AccessDenied):
+    """The server's certificate is not to be trusted; raised by a client, never sent."""
 
 
 class LostConnection(RobotError):

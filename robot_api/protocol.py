@@ -35,6 +35,7 @@ from typing import Any, Final
 import msgspec
 
 from robot_api.errors import (
+    AccessDenied,
     InternalError,
     InvalidCall,
     NotPossible,
@@ -54,6 +55,10 @@ MAX_ID: Final = 200
 """Longest id, in characters."""
 EVERY_EVENT: Final = "*"
 
+NOT_ALLOWED: Final = (
+    "Your role does not allow this: you may look on, or answer. Sign in as somebody who may, or ask"
+    " for the operators' link."
+)
 PARSE_ERROR: Final = -32700
 INVALID_REQUEST: Final = -32600
 METHOD_NOT_FOUND: Final = -32601
@@ -125,9 +130,16 @@ class _Refused(Exception):
 class Connection:
     """The server's side of one connection."""
 
-    def __init__(self, methods: Mapping[str, Reader], events: Collection[str]) -> None:
+    def __init__(
+        self,
+        methods: Mapping[str, Reader],
+        events: Collection[str],
+        may_call: Callable[[str], bool] = lambda method: True,
+    ) -> None:
         # What can be called, with what checks its params.
         self._methods = methods
+        # Whether this client may call a method: asked before its params are looked at.
+        self._may_call = may_call
         # The kinds of events that can be subscribed to.
         self._events = events
         # Calls in flight under their ids.
@@ -144,7 +156,9 @@ class Connection:
 
     def wants(self, kind: str) -> bool:
         """Whether the client subscribed to this kind of event."""
-        return kind in self._subscribed or EVERY_EVENT in self._subscribed
+        return kind in self._subscribed or (
+            EVERY_EVENT in self._subscribed and kind in self._events
+        )
 
     def receive(self, frame: str | bytes) -> list[Action]:
         """What a frame from the client asks for, in its order."""
@@ -220,6 +234,8 @@ class Connection:
         if read is None:
             known = [*self._methods, *OWN_METHODS]
             raise _Refused(METHOD_NOT_FOUND, no_such_method(method, known), id)
+        if not self._may_call(method):
+            raise _Refused(AccessDenied.code, NOT_ALLOWED, id)
         try:
             return read(params)
         except InvalidCall as error:
@@ -349,8 +365,11 @@ def event_frame(kind: str, data: Mapping[str, Any]) -> str:
     return _write({"jsonrpc": "2.0", "method": f"event.{kind}", "params": data})
 
 
+_NAMES: Final = {kind.code: kind.__name__ for kind in (NotPossible, AccessDenied)}
+
+
 def _refusal(refused: _Refused) -> str:
-    name = "NotPossible" if refused.code == NotPossible.code else "InvalidCall"
+    name = _NAMES.get(refused.code, "InvalidCall")
     return _error(refused.id, refused.code, str(refused), name)
 
 

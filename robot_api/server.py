@@ -11,6 +11,7 @@ import asyncio
 import contextlib
 import logging
 import queue
+import ssl
 import threading
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -29,25 +30,25 @@ from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
-from robot_api import access, protocol
+from robot_api import access, protocol, roles
 from robot_api.connections import REMEMBERED, UNCONFIRMED, Client
 from robot_api.dispatch import Dispatcher, Job
 from robot_api.driver import EVENTS, Driver, Event, StopFlag
 from robot_api.errors import (
-    AccessDenied,
     InternalError,
     InvalidCall,
     RobotError,
     StopNotConfirmed,
     Stopped,
 )
-from robot_api.guard import OPEN_TO_ALL, Guard
+from robot_api.guard import OPEN_TO_ALL, Doors, Guard
 from robot_api.methods import METHODS
 from robot_api.openrpc import openrpc
 from robot_api.port import CannotListen as CannotListen
 from robot_api.port import listen, on_signals
 from robot_api.schema import read_arguments
 from robot_api.status import HEADERS, Status, status_page
+from robot_api.two_way_port import TwoWayServer
 
 DEFAULT_PORT: Final = 9090
 PING_SECONDS: Final = 1.25
@@ -92,8 +93,10 @@ class Context:
     """Set when the call is cancelled or the robot is stopped."""
     publish: Publish
     """`Server.publish`."""
-    role: access.Role = "operator"
-    """What the caller may do; an observer gets no further than services that `observes`."""
+    role: roles.Role = "operator"
+    """What the caller may do; they have the right that the service needs."""
+    who: str | None = None
+    """The caller's name, if they have signed in."""
 
 
 @dataclass(frozen=True)
@@ -113,9 +116,16 @@ class Service:
     result: Mapping[str, Any] = field(default_factory=dict)
     """The JSON Schema of its result."""
     observes: bool = False
-    """Whether it only looks, so that observers may call it."""
+    """Whether it only looks, so that the right to look is enough."""
     for_caller: bool = False
     """Whether it does nothing but make its result, and need not go on without the caller."""
+    right: roles.Right | None = None
+    """Another right that its callers need than to look or to operate."""
+
+    @property
+    def needs(self) -> roles.Right:
+        """The right that its callers need."""
+        return self.right or ("look" if self.observes else "operate")
 
 
 class Server:
@@ -129,7 +139,8 @@ class Server:
     events that they publish, each with what its data says; of those `remembered` the last one is
     sent to who subscribes later. `pages` is an application whose pages
     are served beside the wire; without one, `status_page` makes the page at `/`. `on_left` is told
-    the name of each connection that is gone, in the loop thread.
+    the name of each connection that is gone, in the loop thread. `encryption`: the port also speaks
+    TLS, with this context, and plainly with this machine alone. `doors` let in who has an account.
     The driver stays the caller's: the server stops the robot when it ends, and does not close it.
     """
 
@@ -147,6 +158,8 @@ class Server:
         on_left: Callable[[str], None] | None = None,
         status_page: Callable[[Status], str] = status_page,
         ping_seconds: float = PING_SECONDS,
+        encryption: ssl.SSLContext | None = None,
+        doors: Doors | None = None,
     ) -> None:
         self.token = token if token or access.is_loopback(host) else access.new_token()
         """What a client must bring, or None."""
@@ -165,6 +178,8 @@ class Server:
         self._status_page = status_page
         self._pages = pages
         self._on_left = on_left or _ignore
+        self._encrypted = encryption is not None
+        self._doors = doors
         self._pose: Event | None = None
         # The frames of events that tell how it is, for who subscribes later.
         self._last: dict[str, str] = {}
@@ -172,20 +187,20 @@ class Server:
         self._loop: asyncio.AbstractEventLoop | None = None
         self._unsubscribe: Callable[[], None] = _nothing
         self._started = threading.Event()
-        self._uvicorn = uvicorn.Server(
-            uvicorn.Config(
-                self._app(),
-                log_config=None,
-                access_log=False,
-                proxy_headers=False,
-                timeout_graceful_shutdown=1,
-                ws="websockets-sansio",
-                ws_max_size=protocol.MAX_FRAME,
-                ws_per_message_deflate=False,
-                ws_ping_interval=ping_seconds,
-                ws_ping_timeout=ping_seconds,
-            )
+        self._guard = self._app()
+        config = uvicorn.Config(
+            self._guard,
+            log_config=None,
+            access_log=False,
+            proxy_headers=False,
+            timeout_graceful_shutdown=1,
+            ws="websockets-sansio",
+            ws_max_size=protocol.MAX_FRAME,
+            ws_per_message_deflate=False,
+            ws_ping_interval=ping_seconds,
+            ws_ping_timeout=ping_seconds,
         )
+        self._uvicorn = TwoWayServer(config, encryption) if encryption else uvicorn.Server(config)
         self._thread: threading.Thread | None = None
 
     @property
@@ -280,6 +295,11 @@ class Server:
         if error is not None:
             raise error
 
+    def check_guests(self) -> None:
+        """Close the connections of those whom `doors` know no more. From any thread; returns at
+        once."""
+        self.in_loop(self._guard.check_guests)
+
     def in_loop(self, task: Callable[..., None], *arguments: Any) -> None:
         """Do it in the loop thread, which alone touches connections; not at all after the end."""
         if self._loop is not None:
@@ -323,8 +343,6 @@ class Server:
             )
             self.in_loop(client.finish, call, reply)
 
-        if not self.may_call(client.role, call.method):
-            return Job(call.method, _for_operators, done, client, robot=False)
         name = call.method.removeprefix("robot.")
         method = METHODS.get(name) if name != call.method else None
         if method is None:
@@ -345,19 +363,21 @@ class Server:
             return lambda stop: openrpc(self.driver.capabilities(), self.services, self.events)
         handler = self.services[call.method].handler
         return lambda stop: handler(
-            call.arguments, Context(client.name, stop, self.publish, client.role)
+            call.arguments,
+            Context(client.name, stop, self.publish, client.guest.role, client.guest.name),
         )
 
-    def may_call(self, role: access.Role, method: str) -> bool:
-        """Whether the role allows it. Anybody may stop the robot."""
-        if role == "operator" or method in (protocol.STOP, "robot.capabilities", "rpc.discover"):
-            return True
+    def needs(self, method: str) -> roles.Right:
+        """The right that a method on the wire needs; all but services and a few of the protocol's
+        own are the robot's."""
+        if method in roles.OF_THE_PROTOCOL:
+            return "know"
         service = self.services.get(method)
-        return service is not None and service.observes
+        return service.needs if service else "drive"
 
     # --- web pages and the wire
 
-    def _app(self) -> ASGIApp:
+    def _app(self) -> Guard:
         routes: list[BaseRoute] = [
             Route(OPEN_TO_ALL, self._health),
             WebSocketRoute("/", self._serve_client),
@@ -368,6 +388,8 @@ class Server:
             tokens=self._tokens,
             local=access.is_loopback(self._host),
             pages=self._pages is not None,
+            encrypted=self._encrypted,
+            doors=self._doors,
         )
 
     @contextlib.asynccontextmanager
@@ -381,7 +403,10 @@ class Server:
 
     def _tokens(self) -> access.Tokens:
         # Cookies know no ports: another robot's server on this machine has its own.
-        return access.Tokens(self.token, self.observer_token, f"robot-{self._port}")
+        cookie = f"robot-{self._port}"
+        if self._doors is None:
+            return access.Tokens(self.token, self.observer_token, cookie)
+        return access.Tokens(self.token, self.observer_token, cookie, self._doors.known)
 
     async def _health(self, request: Request) -> JSONResponse:
         return JSONResponse({"status": "ok"})
@@ -399,7 +424,7 @@ class Server:
 
     async def _serve_client(self, socket: WebSocket) -> None:
         self._clients_met += 1
-        client = Client(self, f"{self._clients_met}", socket.scope["state"]["role"])
+        client = Client(self, f"{self._clients_met}", socket.scope["state"]["guest"])
         self.clients.add(client)
         try:
             await client.serve(socket)
@@ -442,12 +467,6 @@ def _in_words(pose: Event | None) -> str:
     if pose is None:
         return "has not moved yet"
     return f"{pose.get('place') or 'on its way'} ({pose.get('x', 0):.1f}, {pose.get('y', 0):.1f})"
-
-
-def _for_operators(stop: StopFlag) -> Any:
-    raise AccessDenied(
-        "Observers look on: they cannot do this. Ask for the operator's link, if you should."
-    )
 
 
 def _nothing() -> None:

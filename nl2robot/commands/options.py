@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from nl2robot.errors import UserError
 from nl2robot.knowledge import DEFAULT_WORLD
-from nl2robot.paths import data_folder
+from nl2robot.paths import authority_file, data_folder
 
 if TYPE_CHECKING:
     from nl2robot.robots import Chosen
@@ -133,7 +133,27 @@ def add_address(parser: argparse.ArgumentParser) -> None:
         help="sim, ws://HOST:PORT (a robot server), ros2://HOST ...; `nl2robot robots` lists them"
         " (default: sim)",
     )
+    add_ca(parser)
     add_robot_file(parser)
+
+
+def add_ca(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--ca",
+        metavar="FILE",
+        help="the certificate of the authority that the server at a wss:// address is certified by",
+    )
+
+
+def trust(options: argparse.Namespace) -> None:
+    """Trust the authority that `--ca` names, and the one that a server on this machine has made.
+    Raises `InvalidCall`."""
+    from robot_api.client import trust_also
+
+    here = authority_file()
+    for file in (options.ca, here if here.exists() else None):
+        if file is not None:
+            trust_also(file)
 
 
 def robot_of(options: argparse.Namespace) -> Chosen:
@@ -142,7 +162,9 @@ def robot_of(options: argparse.Namespace) -> Chosen:
     from nl2robot.robots import chosen
 
     robot = chosen(options.robot, options.robot_file)
-    if not robot.is_server:
+    if robot.is_server:
+        trust(options)
+    else:
         if not options.speak:
             options.speak = {"server": True, "tablet": "browser"}.get(robot.read.file.speech or "")
         if not options.mic and robot.read.file.hearing == "server":

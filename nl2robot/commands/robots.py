@@ -7,7 +7,7 @@ import argparse
 import json
 from importlib import import_module
 
-from nl2robot.commands.options import add_robot_file, add_world, world_of
+from nl2robot.commands.options import add_ca, add_robot_file, add_world, trust, world_of
 from nl2robot.errors import ExitStatus
 from robot_api.robots.registry import RobotKind, known
 
@@ -21,6 +21,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         description="Run the conformance suite. The robot drives: give it room, or use --still.",
     )
     check.add_argument("robot", metavar="ADDRESS", help="such as sim, or ros2://HOST:9090")
+    add_ca(check)
     add_robot_file(check)
     add_world(check)
     check.add_argument("--token", help="of the robot server, if it asks for one")
@@ -78,6 +79,8 @@ def _check(options: argparse.Namespace) -> int:
     from nl2robot.robots import chosen
 
     robot = chosen(options.robot, options.robot_file)
+    if robot.is_server:
+        trust(options)
     report = checked(robot, world_of(options), options.token, move=not options.still)
     if options.json:
         print(json.dumps(report.to_json(), ensure_ascii=False))

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import argparse
-import socket
+import logging
 import time
 import webbrowser
-from contextlib import ExitStack
+from collections.abc import Iterator
+from contextlib import ExitStack, closing, contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
 
 from nl2robot import planners
+from nl2robot.accounts import Accounts
 from nl2robot.commands.options import (
     add_address,
     add_seed,
@@ -21,12 +25,20 @@ from nl2robot.commands.options import (
     whole,
     world_of,
 )
-from nl2robot.errors import ExitStatus
-from nl2robot.paths import pictures_folder
+from nl2robot.entrance import PAGES_AT, Entrance
+from nl2robot.errors import ExitStatus, UserError
+from nl2robot.paths import authority_file, data_folder, pictures_folder
 from nl2robot.robots import places_of, reached, zones_of
 from nl2robot.station import robot_station, simulated_station
+from robot_api.access import is_loopback
 from robot_api.capabilities.sound import SILENT
 from robot_api.server import Server
+
+if TYPE_CHECKING:
+    from nl2robot.certificates import Certificate
+
+FIRST_ACCOUNT_WITHIN: Final = 24 * 3600.0
+"""Seconds in which the first administrator's link is to be opened; the next start gives another."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -34,10 +46,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--host",
         default="127.0.0.1",
         metavar="H",
-        help="the address to listen at; another than this machine's own needs a token",
+        help="the address to listen at; 0.0.0.0 for everybody, encrypted, who signs in",
     )
     parser.add_argument("--port", type=whole(0, 65_535), default=9090, help="(default: 9090)")
-    parser.add_argument("--token", help="what clients must show; made up if others are served")
+    parser.add_argument("--token", help="what programs may show instead of signing in")
+    encryption = parser.add_argument_group("encryption, where others are served")
+    encryption.add_argument(
+        "--certificate",
+        metavar="FILE",
+        help="a certificate of your own with its chain (PEM); default: one of a local authority",
+    )
+    encryption.add_argument("--key", metavar="FILE", help="its key (PEM, without a password)")
+    encryption.add_argument(
+        "--plain-http",
+        action="store_true",
+        help="none, because a proxy before this server encrypts",
+    )
     parser.add_argument("--open", action="store_true", help="open the console in a browser here")
     parser.add_argument(
         "--speed", type=speed, default=1.0, metavar="X", help="simulated seconds a second"
@@ -54,6 +78,7 @@ def run(options: argparse.Namespace) -> int:
     robot = robot_of(options)
     world, log = world_of(options), open_log(options.debug)
     with ExitStack() as stack:
+        entrance = stack.enter_context(_entrance(options))
         sound = stack.enter_context(sound_of(options, world, "en"))
         if robot.simulated:
             simulated = simulated_station(
@@ -64,6 +89,7 @@ def run(options: argparse.Namespace) -> int:
                 host=options.host,
                 port=options.port,
                 token=options.token,
+                entrance=entrance,
                 pictures=pictures_folder(),
                 sound=sound,
                 console=Console,
@@ -84,30 +110,75 @@ def run(options: argparse.Namespace) -> int:
                 host=options.host,
                 port=options.port,
                 token=options.token,
+                entrance=entrance,
                 console=Console,
             )
             _, server = stack.enter_context(station)
         planners.get_ready()
-        server.serve_forever(_open_page if options.open else _say_where)
+        server.serve_forever(lambda server: _say_where(server, entrance, options))
     return ExitStatus.OK
 
 
-def _open_page(server: Server) -> None:
-    _say_where(server)
-    port = server.address.rpartition(":")[2]
+@contextmanager
+def _entrance(options: argparse.Namespace) -> Iterator[Entrance]:
+    """Who may come in, and how it is encrypted. Raises `UserError`."""
+    if bool(options.certificate) != bool(options.key):
+        raise UserError("A certificate and its key belong together: give --certificate and --key.")
+    accounts = Accounts(data_folder() / "accounts.sqlite")
+    with closing(accounts), ExitStack() as stack:
+        certificate = _certificate(options)
+        if certificate is not None:
+            from nl2robot.certificates import looked_after
+
+            warn = logging.getLogger(__name__).warning
+            stack.enter_context(looked_after(certificate, lambda sentence: warn("%s", sentence)))
+        accounts.watch()
+        yield Entrance(accounts, certificate, options.host)
+
+
+def _certificate(options: argparse.Namespace) -> Certificate | None:
+    """None for this machine alone, which nobody can listen in on, unless one was given."""
+    if options.plain_http or (is_loopback(options.host) and not options.certificate):
+        return None
+    # Not before it is needed: it takes its time.
+    from nl2robot.certificates import LocalCertificate, given
+
+    if options.certificate:
+        return given(Path(options.certificate), Path(options.key))
+    return LocalCertificate(authority_file().parent)
+
+
+def _say_where(server: Server, entrance: Entrance, options: argparse.Namespace) -> None:
+    port = int(server.address.rpartition(":")[2])
+    accounts, page = entrance.accounts, entrance.url(port)
+    accounts.note(PAGES_AT, page)
+    wire = page.replace("http", "ws", 1).rstrip("/")
+    print(f"The robot is at {wire} (page: {page}).")
+    if not entrance.local:
+        _say_who(entrance, page, options.token)
+    print(f"Who only looks on opens {page}?token={accounts.link('observer')}")
+    if options.open:
+        _open_page(server, port)
+    print("Ctrl-C stops the robot and ends the server.", flush=True)
+
+
+def _say_who(entrance: Entrance, page: str, token: str | None) -> None:
+    """How people, tablets and programs come in from elsewhere."""
+    accounts, certificate = entrance.accounts, entrance.certificate
+    if not any(each.role == "administrator" for each in accounts.accounts()):
+        code = accounts.invite("administrator", "first account", None, FIRST_ACCOUNT_WITHIN)
+        print(f"Its first administrator opens, within a day, {page}join/{code}")
+    if certificate is not None and certificate.fingerprint:
+        print(f"Devices come to trust it at {page}trust, by the fingerprint")
+        print(f"  {certificate.fingerprint}")
+    print("A tablet is paired with: nl2robot accounts pair face")
+    token = token or accounts.link("operator")
+    print(f"Programs must show this token: {token}")
+    print(f"Operators open {page}?token={token}")
+
+
+def _open_page(server: Server, port: int) -> None:
+    # From here, so without encryption.
     page = f"http://127.0.0.1:{port}/" + (f"?token={server.token}" if server.token else "")
     if not webbrowser.open(page):
         print("There is no browser to open here. Open the page by its address.", flush=True)
-
-
-def _say_where(server: Server) -> None:
-    host, _, port = server.address.rpartition(":")
-    if host in ("0.0.0.0", "[::]"):  # every address of this machine, and none that clients can use
-        host = socket.gethostname()
-    page = f"http://{host}:{port}/"
-    print(f"The robot is at ws://{host}:{port} (page: {page}).")
-    if server.token:
-        print(f"Clients must show this token: {server.token}")
-        print(f"Operators open {page}?token={server.token}")
-    print(f"Who only looks on opens {page}?token={server.observer_token}")
-    print("Ctrl-C stops the robot and ends the server.", flush=True)

@@ -8,29 +8,30 @@ from pathlib import Path
 from typing import Any, Final
 
 from fastapi import FastAPI
+from starlette.requests import Request
+from starlette.responses import Response
 from starlette.staticfiles import StaticFiles
-from starlette.types import Scope
 
+from nl2robot.console.door import Doors
 from nl2robot.console.part import Backstage, Part
+from nl2robot.console.plain import Caught, failed, missing
 from nl2robot.paths import data_folder
 from robot_api.server import Service
 
 STATIC: Final = Path(__file__).parent / "static"
 PARTS: Final = (
-    *(
-        "desk",
-        "scene",
-        "zones",
-        "places",
-        "helm_services",
-        "codes",
-        "camera",
-        "drive",
-        "face",
-        "runs",
-    ),
+    *("desk", "scene", "zones", "places", "helm_services", "codes", "camera", "drive", "face"),
+    *("runs", "door"),
 )
 """The modules of the parts; each has `part(backstage) -> Part`."""
+
+
+async def _missing(request: Request, error: Exception) -> Response:
+    return missing(request)
+
+
+async def _failed(request: Request, error: Exception) -> Response:
+    return failed(request)
 
 
 class _Files(StaticFiles):
@@ -41,11 +42,6 @@ class _Files(StaticFiles):
         response.headers["Cache-Control"] = "no-cache"
         return response
 
-    async def get_response(self, path: str, scope: Scope) -> Any:
-        response = await super().get_response(path, scope)
-        response.headers["X-Content-Type-Options"] = "nosniff"
-        return response
-
 
 class Console:
     """All that the console adds to a server."""
@@ -54,6 +50,7 @@ class Console:
         self.parts: list[Part] = [
             import_module(f"nl2robot.console.{name}").part(backstage) for name in PARTS
         ]
+        self.doors = Doors(backstage.entrance) if backstage.entrance else None
         self.services: dict[str, Service] = {}
         self.events: dict[str, str] = {}
         for part in self.parts:
@@ -64,9 +61,14 @@ class Console:
         """The application with its pages; once in a process, for NiceGUI has but one."""
         # NiceGUI makes this folder where it is started, unless it is told of another.
         os.environ.setdefault("NICEGUI_STORAGE_PATH", str(data_folder() / "console"))
+        from nicegui import app as nicegui_app
         from nicegui import ui
 
-        app = FastAPI(openapi_url=None)
+        app = FastAPI(openapi_url=None, docs_url=None, redoc_url=None)
+        app.add_middleware(Caught)
+        for each in (app, nicegui_app):
+            each.add_exception_handler(404, _missing)
+            each.add_exception_handler(Exception, _failed)
         app.mount("/static", _Files(directory=STATIC))
         for part in self.parts:
             app.router.routes.extend(part.routes)

@@ -22,7 +22,7 @@ from starlette.routing import Route
 from nl2robot.console import video
 from nl2robot.console.part import Backstage, Part
 from nl2robot.console.tablet import FaceTablet
-from nl2robot.console.visitor import LANGUAGES, texts
+from nl2robot.console.visitor import LANGUAGES, texts, visitor_of
 from nl2robot.wire import an_object
 from robot_api.driver import Event
 from robot_api.drivers import ComposedDriver
@@ -136,8 +136,8 @@ def part(backstage: Backstage) -> Part:
         calls.close()
 
     async def page(request: Request) -> HTMLResponse:
-        role = getattr(request.state, "role", "observer")
-        return HTMLResponse(_page(face.state, role, languages), headers=HEADERS)
+        seat = visitor_of(request).seat
+        return HTMLResponse(_page(face.state, seat, languages), headers=HEADERS)
 
     return Part(
         services={**_services(backstage, face, tablet), **calls.services()},
@@ -164,12 +164,13 @@ def _services(backstage: Backstage, face: Face, tablet: FaceTablet) -> dict[str,
             lambda p, context: face.state,
             an_object({}, ""),
             "Tell what the robot's face shows.",
-            observes=True,
+            right="know",
         ),
         "face.here": Service(
             here,
             an_object({"visible": {"type": "boolean"}}, "visible"),
             "Be a face of the robot: people may touch it. Tells what to show, and its own name.",
+            right="face",
         ),
         "face.touch": Service(
             lambda p, context: tablet.touched(context.connection, p["number"], p["answer"]),
@@ -181,6 +182,7 @@ def _services(backstage: Backstage, face: Face, tablet: FaceTablet) -> dict[str,
                 "number answer",
             ),
             "Answer what is asked on the screen; the result says whether nobody was faster.",
+            right="face",
         ),
         "face.page": Service(
             lambda p, context: tablet.told(context.connection, p["page"], p["html"]),
@@ -188,23 +190,26 @@ def _services(backstage: Backstage, face: Face, tablet: FaceTablet) -> dict[str,
                 {"page": {"type": "integer"}, "html": {**html, "type": "string"}}, "page html"
             ),
             "Tell what people have made of the page of HTML that is shown.",
+            right="face",
         ),
         "face.did": Service(
             lambda p, context: tablet.did(context.connection, p["number"], p["html"]),
             an_object({"number": number, "html": html}, "number html"),
             'Tell how the page is after a "face.act"; null if it could not be done.',
+            right="face",
         ),
         "face.language": Service(
             language,
             an_object({"code": {"enum": list(LANGUAGES)}}, "code"),
             "Let the robot speak and hear this language from now on.",
+            right="face",
         ),
         "face.site": Service(
             lambda p, context: _shows_in_frames(face.state["screen"].get("url")),
             an_object({}, ""),
             "Tell whether the web page at the address that is shown lets itself be shown here:"
             " yes, refuses or away.",
-            observes=True,
+            right="know",
         ),
     }
 

@@ -18,8 +18,7 @@ import msgspec
 from nicegui import ui
 
 from nl2robot.console.part import Backstage
-from nl2robot.console.visitor import LANGUAGES, LONGEST_NAME, Visitor, texts, visitor_of
-from robot_api.access import Role
+from nl2robot.console.visitor import LANGUAGES, LONGEST_NAME, Seat, Visitor, texts, visitor_of
 
 PAGES: Final = {
     "desk": ("/", "M4 5h16v11H9l-5 4z"),
@@ -44,8 +43,8 @@ class Visit:
         return self.visitor.language
 
     @property
-    def role(self) -> Role:
-        return self.visitor.role
+    def role(self) -> Seat:
+        return self.visitor.seat
 
     @property
     def who(self) -> str:
@@ -90,7 +89,7 @@ def _head(visitor: Visitor, words: Mapping[str, str]) -> str:
         "look": visitor.look,
         "language": visitor.language,
         "words": words,
-        "role": visitor.role,
+        "role": visitor.seat,
         "who": visitor.name or words["somebody"],
         "call": texts("call", visitor.language),
         "microphone": texts("microphone", visitor.language),

@@ -112,7 +112,7 @@ class Controls:
 
     def _told(self, state: State, context: Context) -> dict[str, Any]:
         """The state, and which of the connections is the asker's own."""
-        return {**_plain(state), "me": context.connection, "role": context.role}
+        return {**_plain(state), "me": context.connection}
 
     def _check_no_program(self) -> None:
         if self._runner.present.state.run is not None:

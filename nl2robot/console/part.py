@@ -13,6 +13,7 @@ from robot_api.driver import Driver, Event
 from robot_api.server import Publish, Service
 
 if TYPE_CHECKING:
+    from nl2robot.entrance import Entrance
     from nl2robot.runner import Runner
     from nl2robot.talks import Talks
     from robot_api.capabilities.camera import Camera
@@ -43,6 +44,8 @@ class Backstage:
     stop: Callable[[str], None]
     """Stop the robot and its program, saying why; returns when the robot has confirmed that it
     stands. Raises `StopNotConfirmed`."""
+    entrance: Entrance | None = None
+    """How others come in; None where nobody but this program does."""
     places: Places | None = None
     """What the driver of a real robot is sent by, if it is: told of places as people name them."""
     camera: Camera | None = None

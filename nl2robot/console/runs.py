@@ -99,7 +99,7 @@ def _run_page(backstage: Backstage, archive: Archive, request: Request, number: 
                 backstage.runner.knowledge,
                 visitor.language,
                 words,
-                visitor.role,
+                visitor.seat,
                 archive.neighbours(number),
             )
     except UserError as error:

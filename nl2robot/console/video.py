@@ -110,12 +110,15 @@ class Calls:
         number = {"type": "integer", "minimum": 1}
         return {
             "call.ready": Service(
-                lambda p, context: self._came(context.connection, p["side"]),
+                lambda p, context: self._came(
+                    context.connection, "face" if context.role == "face" else p["side"]
+                ),
                 an_object({"side": {"enum": ["face", "operator"]}}, "side"),
                 "Let this page be rung up, as the robot's face or as an operator's.",
+                right="face",
             ),
             "call.start": Service(
-                lambda p, context: self._start(context.connection, p["who"]),
+                lambda p, context: self._start(context.connection, context.who or p["who"]),
                 an_object({"who": {"type": "string", "minLength": 1, "maxLength": 200}}, "who"),
                 "Call the robot: its faces ring.",
             ),
@@ -123,6 +126,7 @@ class Calls:
                 lambda p, context: self._answer(context.connection, p["call"]),
                 an_object({"call": number}, "call"),
                 "Take the call that rings here; the result says whether it still rang.",
+                right="face",
             ),
             "call.end": Service(
                 self._left_off,
@@ -130,11 +134,13 @@ class Calls:
                     {"call": number, "because": {"enum": ["hung_up", "lost", "no_way"]}}, "call"
                 ),
                 "End the call, or decline the one that rings here.",
+                right="face",
             ),
             "call.signal": Service(
                 self._passed_on,
                 an_object({"call": number, "signal": {"type": "object"}}, "call signal"),
                 "Tell the other side's WebRTC connection something.",
+                right="face",
             ),
         }
 

@@ -12,13 +12,15 @@ from urllib.parse import unquote
 import yaml
 from starlette.requests import HTTPConnection
 
-from robot_api.access import Role
+from robot_api.access import Guest
 
 LANGUAGES: Final = {"en": "English", "de": "Deutsch", "fr": "Français"}
 TEXTS: Final = Path(__file__).parent / "texts"
 LONGEST_NAME: Final = 60
 
 Look = Literal["auto", "light", "dark"]
+Seat = Literal["face", "observer", "operator"]
+"""As what somebody sits before a page: an administrator does there what operators do."""
 
 
 @dataclass(frozen=True)
@@ -27,24 +29,37 @@ class Visitor:
 
     language: str
     look: Look
-    role: Role
+    guest: Guest | None
+    """As whom they were let in; None on the pages that anybody may see."""
     name: str
-    """What they call themselves; empty if they did not say."""
+    """Who they are, if they have signed in, else what they call themselves; empty if they did not
+    say."""
+
+    @property
+    def seat(self) -> Seat:
+        role = self.guest.role if self.guest else "observer"
+        return "operator" if role == "administrator" else role
 
     @property
     def operates(self) -> bool:
-        return self.role == "operator"
+        return self.seat == "operator"
+
+    @property
+    def signed_in(self) -> bool:
+        return self.guest is not None and self.guest.name is not None
 
 
 def visitor_of(request: HTTPConnection) -> Visitor:
     """Who sent this request; cookies of the page (`static/page.js`) say what was chosen."""
     cookies = request.cookies
     look = cookies.get("look", "auto")
+    guest: Guest | None = getattr(request.state, "guest", None)
+    signed_in = guest.name if guest else None
     return Visitor(
         language=_language(request),
         look=look if look in ("light", "dark") else "auto",  # type: ignore[arg-type]
-        role=getattr(request.state, "role", "observer"),
-        name=unquote(cookies.get("who", ""))[:LONGEST_NAME].strip(),
+        guest=guest,
+        name=signed_in or unquote(cookies.get("who", ""))[:LONGEST_NAME].strip(),
     )
 
 

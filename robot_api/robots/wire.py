@@ -207,8 +207,8 @@ SERVER = RobotKind(
 )
 SECURE_SERVER = RobotKind(
     scheme="wss",
-    title="The same behind a proxy that encrypts",
-    example="wss://HOST:443",
+    title="The same, encrypted",
+    example=f"wss://HOST:{DEFAULT_PORT}",
     connect=_connect,
     shared=True,
 )

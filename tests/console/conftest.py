@@ -98,7 +98,7 @@ def serving(
             if line.startswith("Ctrl-C"):
                 break
         assert said and process.poll() is None, said
-        address = said[0].split("ws://")[1].split()[0]
+        address = said[0].split("://")[1].split()[0]
         yield Served(address, process, home, said)
     finally:
         process.terminate()

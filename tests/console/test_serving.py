@@ -80,7 +80,7 @@ def test_others_need_the_token_that_the_start_up_line_prints(look: Look, tmp_pat
     with serving(tmp_path, "--host", "0.0.0.0") as server:
         here = f"http://127.0.0.1:{server.address.partition(':')[2]}"
         refused = look(url=here)
-        expect(refused.locator("body")).to_contain_text("token is missing or wrong")
+        expect(refused.locator("body")).to_contain_text("Sign in to the robot")
         link = next(word for line in server.said for word in line.split() if "?token=" in word)
         page = look("/?token=" + link.partition("?token=")[2], url=here)
         expect(page.get_by_role("button", name="Send")).to_be_visible()

@@ -209,7 +209,7 @@ def serve(start):
 
     def serve(*arguments: str) -> tuple[Command, str]:
         server = start("serve", "--world", "ward", "--port", "0", *arguments)
-        address = server.until("ends the server").split("ws://")[1].split()[0]
-        return server, f"ws://{address}"
+        address = server.until("ends the server").split("robot is at ")[1].split()[0]
+        return server, address
 
     return serve

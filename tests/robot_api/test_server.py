@@ -512,7 +512,7 @@ def pages() -> Starlette:
     """An application of ones own."""
 
     async def floor(request: Request) -> PlainTextResponse:
-        return PlainTextResponse(f"The floor, for an {request.scope['state']['role']}")
+        return PlainTextResponse(f"The floor, for an {request.scope['state']['guest'].role}")
 
     return Starlette(routes=[Route("/floor", floor)])
 
@@ -521,7 +521,7 @@ def test_pages_of_ones_own_share_the_port_with_the_wire(
     driver: EmulatedDriver, pages: Starlette
 ) -> None:
     with Server(driver, port=0, pages=pages) as server:
-        assert get(server.address, "/floor")[1] == "The floor, for an operator"
+        assert get(server.address, "/floor")[1] == "The floor, for an administrator"
         assert get(server.address, "/floor", Host="evil.example")[0] == 403
         assert get(server.address, "/floor")[2]["X-Frame-Options"] == "SAMEORIGIN"
         assert Wire(server.address).ask("robot.battery")["result"] == 100
@@ -555,7 +555,7 @@ def test_an_observer_looks_on_and_may_stop_the_robot(driver: EmulatedDriver) -> 
         assert looks_on.ask("ward.change")["error"]["data"]["error"] == "AccessDenied"
         assert looks_on.ask("robot.move", {"metres": 1})["error"]["data"]["error"] == "AccessDenied"
         assert "result" in looks_on.ask("robot.stop")
-        assert Wire(server.address).ask("ward.change")["result"] == "operator"
+        assert Wire(server.address).ask("ward.change")["result"] == "administrator"
 
 
 def test_who_left_is_told_and_what_is_wanted_known(driver: EmulatedDriver) -> None:

@@ -20,7 +20,7 @@ const at = Object.fromEntries(
     document.getElementById(id),
   ]),
 );
-const operates = role === 'operator';
+const operates = role !== 'observer'; // the tablet on the robot is a face by its role
 
 let state = pageData.state;
 let early = [];

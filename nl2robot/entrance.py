@@ -1,0 +1,48 @@
+"""How people come to a server's pages: under which address, with which accounts, how encrypted."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from robot_api import access
+
+if TYPE_CHECKING:
+    from nl2robot.accounts import Accounts
+    from nl2robot.certificates import Certificate
+
+PAGES_AT: Final = "pages"
+"""The fact in `Accounts` that says where the pages are."""
+
+
+@dataclass(frozen=True)
+class Entrance:
+    accounts: Accounts
+    certificate: Certificate | None
+    """None where nothing is encrypted here: on this machine alone, or behind a proxy."""
+    host: str
+    """The address that is listened at."""
+
+    @property
+    def local(self) -> bool:
+        """Whether nobody but this machine can come in."""
+        return access.is_loopback(self.host)
+
+    def url(self, port: int) -> str:
+        """Where others find the pages, with a slash at its end."""
+        scheme = "https" if self.certificate else "http"
+        return f"{scheme}://{reachable(self.host)}:{port}/"
+
+
+def reachable(host: str, name: Callable[[], str] = socket.gethostname) -> str:
+    """The host by which clients reach what listens at this one."""
+    if host in (
+        "0.0.0.0",
+        "::",
+        "[::]",
+        "",
+    ):  # every address of this machine, and none of a client's
+        return name()
+    return f"[{host}]" if ":" in host and not host.startswith("[") else host

@@ -1,0 +1,120 @@
+"""A port that takes encrypted and plain connections: what a client sends first says which it is.
+
+So programs on the robot's own computer go on without a certificate, and who comes from elsewhere
+without encryption is not met by silence: the application sees it (`scope["scheme"]`) and says what
+to do. To uvicorn it looks like one of asyncio's servers.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import socket
+import ssl
+from collections.abc import Callable
+from typing import Final
+
+import uvicorn
+
+TLS_RECORD: Final = b"\x16"
+"""With this begins a TLS handshake, and no request of HTTP."""
+BEGINS_WITHIN: Final = 10.0
+"""Seconds that a client has to send its first byte, and as many again for the handshake."""
+MOST_UNDECIDED: Final = 200
+"""Connections that have said nothing yet; the oldest is let go for another."""
+PAUSE: Final = 0.1
+"""Seconds that are waited when this process can open no more connections."""
+
+
+class TwoWayServer(uvicorn.Server):
+    """A uvicorn server whose sockets are such ports."""
+
+    def __init__(self, config: uvicorn.Config, encryption: ssl.SSLContext) -> None:
+        super().__init__(config)
+        self._encryption = encryption
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets=[])
+
+        def protocol() -> asyncio.Protocol:
+            made: asyncio.Protocol = self.config.http_protocol_class(  # type: ignore[call-arg]
+                config=self.config, server_state=self.server_state, app_state=self.lifespan.state
+            )
+            return made
+
+        ports = [_Port(each, protocol, self._encryption) for each in sockets or ()]
+        self.servers.extend(ports)  # type: ignore[arg-type]
+
+
+class _Port:
+    """One listening socket; to be made in the loop thread."""
+
+    def __init__(
+        self,
+        listening: socket.socket,
+        protocol: Callable[[], asyncio.Protocol],
+        encryption: ssl.SSLContext,
+    ) -> None:
+        listening.setblocking(False)
+        self._listening = listening
+        self._protocol = protocol
+        self._encryption = encryption
+        # Those that are not connected yet, the oldest first.
+        self._beginning: dict[asyncio.Task[None], None] = {}
+        self._accepting = asyncio.create_task(self._accept())
+
+    def close(self) -> None:
+        self._accepting.cancel()
+        for each in tuple(self._beginning):
+            each.cancel()
+
+    async def wait_closed(self) -> None:
+        with contextlib.suppress(asyncio.CancelledError):
+            await self._accepting
+
+    async def _accept(self) -> None:
+        loop = asyncio.get_running_loop()
+        while True:
+            try:
+                connection, _ = await loop.sock_accept(self._listening)
+            except OSError:  # such as too many open files
+                await asyncio.sleep(PAUSE)
+                continue
+            if len(self._beginning) >= MOST_UNDECIDED:
+                next(iter(self._beginning)).cancel()
+            task = asyncio.create_task(self._begin(connection))
+            self._beginning[task] = None
+            task.add_done_callback(lambda task: self._beginning.pop(task, None))
+
+    async def _begin(self, connection: socket.socket) -> None:
+        try:
+            async with asyncio.timeout(BEGINS_WITHIN):
+                first = await _peek(connection)
+            encrypted = first == TLS_RECORD
+            if first:
+                await asyncio.get_running_loop().connect_accepted_socket(
+                    self._protocol,
+                    connection,
+                    ssl=self._encryption if encrypted else None,
+                    ssl_handshake_timeout=BEGINS_WITHIN if encrypted else None,
+                )
+                return
+        except (OSError, TimeoutError):
+            pass  # it left, is silent, or does not trust the certificate
+        except asyncio.CancelledError:
+            connection.close()
+            raise
+        connection.close()
+
+
+async def _peek(connection: socket.socket) -> bytes:
+    """The first byte that comes, left where it is; nothing if the other side has closed."""
+    connection.setblocking(False)
+    loop = asyncio.get_running_loop()
+    there = asyncio.Event()
+    loop.add_reader(connection, there.set)
+    try:
+        await there.wait()
+    finally:
+        loop.remove_reader(connection)
+    return connection.recv(1, socket.MSG_PEEK)
