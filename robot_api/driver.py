@@ -106,6 +106,8 @@ EVENTS: Mapping[str, str] = {
     "screen": "text | html | url | options: what the screen shows",
     "emotion": "name",
     "gesture": "name",
+    "volume": "percent: how loud the robot is from now on",
+    "joint": "name, degrees: how a joint stands from now on",
     "call": "contact, state: a video call",
     "battery": "percent, charging",
     "log": "level, message, time",

@@ -210,10 +210,12 @@ class Simulation:
     def set_joint(self, name: str, degrees: float) -> None:
         with self._runner.turn:
             self._hospital.robot.joints[name] = degrees
+        self.emit("joint", {"name": name, "degrees": degrees})
 
     def set_volume(self, percent: int) -> None:
         with self._runner.turn:
             self._hospital.robot.volume = percent
+        self.emit("volume", {"percent": percent})
 
     def set_language(self, code: str) -> None:
         with self._runner.turn:

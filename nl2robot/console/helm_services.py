@@ -42,7 +42,7 @@ class Controls:
         self._simulation = backstage.simulation
         self._has_camera = backstage.camera is not None
         self.helm = Helm(lambda state: backstage.publish("helm", _plain(state)))
-        self._seen: dict[str, Event] = {}
+        self._seen: dict[str, Any] = {}
         self._log: deque[Event] = deque(maxlen=LINES_KEPT)
         self.forget = backstage.subscribe(self._on_event)
 
@@ -124,6 +124,13 @@ class Controls:
                 self._keep(data)
             case "pose" | "battery" | "emotion" | "screen" | "call":
                 self._seen[kind] = data
+            case "volume":
+                self._seen["volume"] = data["percent"]
+            case "language":
+                self._seen["language"] = data["code"]
+            case "joint":
+                joints = self._seen.get("joints", {})
+                self._seen["joints"] = {**joints, data["name"]: data["degrees"]}
             case "stop":
                 self.helm.stopped()
             case "state" if data["run"] is not None:
@@ -157,7 +164,9 @@ class Controls:
                 "emotion": {"name": robot.emotion},
                 "volume": robot.volume,
                 "language": robot.language,
-                "joints": robot.joints,
+                "joints": {
+                    name: robot.joints.get(name, 0.0) for name in self._driver.capabilities().joints
+                },
             }
             return {**self._seen, **now}
         asked = {} if "pose" in self._seen else {"pose": self._asked("location")}

@@ -64,7 +64,8 @@ class Joints(Capability):
 
     @abstractmethod
     def set_joint(self, stop: StopFlag, joint: str, degrees: float) -> None:
-        """Turn it, one of `ranges`, to that angle and hold it there."""
+        """Turn it, one of `ranges`, to that angle and hold it there; tell how it stands then to
+        those who subscribed."""
 
     def joint(self, stop: StopFlag, name: str, degrees: float) -> None:
         known = one_of(name, self.ranges)
@@ -99,6 +100,7 @@ class EmulatedJoints(Joints):
         turn = abs(degrees - self._emulation.joints.get(joint, 0.0))
         self._emulation.pass_time(turn / _JOINT_RATE, stop)
         self._emulation.joints[joint] = degrees
+        self._emulation.publish("joint", name=joint, degrees=degrees)
 
 
 class SimulatedGesture(InSimulation, Gesture):

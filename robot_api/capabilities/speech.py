@@ -39,11 +39,12 @@ class Speech(Capability):
         """Speak aloud; returns when it has been spoken."""
 
     @abstractmethod
-    def set_volume(self, stop: StopFlag, percent: int) -> None: ...
+    def set_volume(self, stop: StopFlag, percent: int) -> None:
+        """Be so loud from now on, and tell it to those who subscribed."""
 
     @abstractmethod
     def choose_language(self, code: str) -> None:
-        """Speak and hear that one from now on."""
+        """Speak and hear that one from now on, and tell it to those who subscribed."""
 
     def languages(self) -> tuple[str, ...]:
         return tuple(LANGUAGES)
@@ -83,6 +84,7 @@ class EmulatedSpeech(Speech):
 
     def set_volume(self, stop: StopFlag, percent: int) -> None:
         self._emulation.volume = percent
+        self._emulation.publish("volume", percent=percent)
 
     def choose_language(self, code: str) -> None:
         self._emulation.language = code
@@ -134,6 +136,7 @@ class LoudspeakerSpeech(Speech):
 
     def set_volume(self, stop: StopFlag, percent: int) -> None:
         self._volume = percent
+        self._hub.publish("volume", percent=percent)
 
     def choose_language(self, code: str) -> None:
         self._language = code

@@ -117,5 +117,10 @@ def test_screen_emotion_and_joints_are_kept_and_told(small_ward, living) -> None
         {"head_yaw": 20},
         30,
     )
-    assert told == [("emotion", {"name": "happy"}), ("screen", {"text": "Welcome"})]
-    assert [h.kind for h in simulation.record.happenings] == ["emotion", "screen"]
+    assert told == [
+        ("emotion", {"name": "happy"}),
+        ("screen", {"text": "Welcome"}),
+        ("joint", {"name": "head_yaw", "degrees": 20}),
+        ("volume", {"percent": 30}),
+    ]
+    assert [h.kind for h in simulation.record.happenings] == [kind for kind, _ in told]

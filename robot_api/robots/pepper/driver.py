@@ -102,7 +102,7 @@ def _parts(
         screen,
         _hearing(setup, wire, speech, screen, hub),
         PepperMotion(wire, body, file.limits),
-        PepperJoints(wire, body, settings.joint_speed),
+        PepperJoints(wire, body, hub, settings.joint_speed),
         _face(setup, wire, screen, hub),
     ]
     if wire.has("ALAnimationPlayer"):

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import Final
 
 from robot_api.capabilities.arms import Gesture, Joints
 from robot_api.capabilities.base import Hub
 from robot_api.capabilities.face import Face
 from robot_api.driver import StopFlag
-from robot_api.errors import NotSupported
+from robot_api.errors import LostConnection, NotSupported, RobotError
 from robot_api.robots.pepper.body import STOP_LIMBS, Body
 from robot_api.robots.pepper.session import Wire
 
@@ -69,10 +70,11 @@ class PepperGesture(Gesture):
 
 
 class PepperJoints(Joints):
-    def __init__(self, wire: Wire, body: Body, speed: float) -> None:
+    def __init__(self, wire: Wire, body: Body, hub: Hub, speed: float) -> None:
         super().__init__()
         self._wire = wire
         self._body = body
+        self._hub = hub
         self._speed = speed
         names = [
             name
@@ -83,15 +85,28 @@ class PepperJoints(Joints):
 
     def set_joint(self, stop: StopFlag, joint: str, degrees: float) -> None:
         self._body.be_ready(stop, to_drive=False)
-        self._wire.run(
-            stop,
-            "ALMotion",
-            "angleInterpolationWithSpeed",
-            joint,
-            math.radians(degrees),
-            self._speed,
-            ending=(STOP_LIMBS,),
-        )
+        try:
+            self._wire.run(
+                stop,
+                "ALMotion",
+                "angleInterpolationWithSpeed",
+                joint,
+                math.radians(degrees),
+                self._speed,
+                ending=(STOP_LIMBS,),
+            )
+        except LostConnection:  # it is asked nothing more
+            raise
+        except BaseException:  # one that was stopped on its way stands somewhere else
+            self._tell(joint)
+            raise
+        self._tell(joint)
+
+    def _tell(self, joint: str) -> None:
+        """How it stands, as its sensor measures it; nothing where the robot does not say."""
+        with suppress(RobotError, ValueError, TypeError):
+            (angle,) = self._wire.call("ALMotion", "getAngles", joint, True)
+            self._hub.publish("joint", name=joint, degrees=round(math.degrees(angle), 1))
 
     def _range(self, joint: str) -> tuple[float, float]:
         least, most, *_ = self._wire.call("ALMotion", "getLimits", joint)[0]

@@ -61,6 +61,7 @@ class PepperSpeech(Speech):
 
     def set_volume(self, stop: StopFlag, percent: int) -> None:
         self._wire.call("ALAudioDevice", "setOutputVolume", percent)
+        self._hub.publish("volume", percent=percent)
 
     def choose_language(self, code: str) -> None:
         self._language = code

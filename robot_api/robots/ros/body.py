@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
@@ -27,6 +27,10 @@ _JOINT_RATE = math.radians(45)
 _JOINT_WITHIN = 3.0
 """Seconds beyond its time in which a joint has to have arrived."""
 _JOINT_NEAR = math.radians(3)
+_JOINT_NEWS = 0.5
+"""Degrees by which a joint has to turn to be told of."""
+_JOINT_AGAIN = 10.0
+"""Seconds after which one that stands still is told of again."""
 
 
 class Battery:
@@ -102,12 +106,20 @@ class RosCore(Core):
         return {"stop_within": self._stop_within}
 
 
-@dataclass
 class JointStates:
-    """The angles of all joints, in radians, as the robot tells them."""
+    """The angles of all joints, in radians, as the robot tells them.
 
-    angles: dict[str, float] = field(default_factory=dict)
-    heard: threading.Event = field(default_factory=threading.Event)
+    Of those in `shown`, the changes are told to whoever listens at the hub; and now and then all,
+    for who came later.
+    """
+
+    def __init__(self, hub: Hub, shown: Collection[str]) -> None:
+        self.angles: dict[str, float] = {}
+        self.heard = threading.Event()
+        self._hub = hub
+        self._shown = shown
+        self._told: dict[str, tuple[float, float]] = {}
+        """Each with the degrees that were told last, and when."""
 
     def hear(self, message: Mapping[str, Any]) -> None:
         """A sensor_msgs/JointState."""
@@ -117,6 +129,18 @@ class JointStates:
             if angle is not None:
                 self.angles[str(name)] = angle
         self.heard.set()
+        self._tell()
+
+    def _tell(self) -> None:
+        now = time.monotonic()
+        for name in self._shown:
+            if name not in self.angles:
+                continue
+            degrees = round(math.degrees(self.angles[name]), 1)
+            told, when = self._told.get(name, (math.inf, -math.inf))
+            if abs(degrees - told) >= _JOINT_NEWS or now - when > _JOINT_AGAIN:
+                self._told[name] = degrees, now
+                self._hub.publish("joint", name=name, degrees=degrees)
 
 
 @dataclass(frozen=True)

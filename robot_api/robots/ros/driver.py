@@ -340,7 +340,7 @@ class _Assembly:
         return parts
 
     def _joints(self, found: Found) -> RosJoints:
-        states = JointStates()
+        states = JointStates(self._hub, self._setup.file.joints)
         name, kind = needed(found.joint_states, "joint_states")
         self._connection.work.subscribe(name, kind, states.hear, 0.1)
         states.heard.wait(_FIRST_WORD)

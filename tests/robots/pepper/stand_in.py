@@ -137,6 +137,9 @@ class ALMotion:
     def getLimits(self, joint: str) -> list[list[float]]:
         return [] if self._robot.nonsense else [[*JOINTS[joint], 7.0, 1.0]]
 
+    def getAngles(self, joint: str, measured: bool) -> list[float]:
+        return [] if self._robot.nonsense else [self._robot.angles[joint]]
+
     def angleInterpolationWithSpeed(self, joint: str, angle: float, fraction: float) -> None:
         if joint not in JOINTS:
             raise RuntimeError(f"ALMotion::angleInterpolationWithSpeed\n\t{joint} is unknown")

@@ -256,7 +256,10 @@ def test_joints_by_the_robots_own_names(
     joints = driver.capabilities().joints
     assert joints["HeadYaw"] == (-119.5, 119.5)
     assert not {"WheelFL", "LHand"} & set(joints)
+    told: list[Any] = []
+    driver.subscribe(lambda kind, data: told.append(data) if kind == "joint" else None)
     call(driver, "joint", name="HeadYaw", degrees=45)
+    assert told == [{"name": "HeadYaw", "degrees": 45.0}]
     assert pepper.angles["HeadYaw"] == pytest.approx(0.785, abs=0.001)
     for name, degrees in (("HeadYaw", 150), ("RElbowRoll", -5)):
         with pytest.raises(InvalidCall):

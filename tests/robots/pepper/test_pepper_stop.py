@@ -53,6 +53,8 @@ def test_arms_and_voice_end_with_a_stop(
 ) -> None:
     pepper = standing_in(hurry=0.3)
     driver = drive(pepper)
+    told: list[Any] = []
+    driver.subscribe(lambda kind, data: told.append(data) if kind == "joint" else None)
     doing = Call(driver, method, **arguments)
     assert until(lambda: begun in f"{pepper.done} {pepper.texts}" or method == "joint")
     assert not doing.over(0.2)
@@ -62,6 +64,8 @@ def test_arms_and_voice_end_with_a_stop(
     assert isinstance(doing.error, Stopped)
     assert {"stopMove", "killAll", "stopAll"} <= set(pepper.done)
     assert pepper.angles["HeadYaw"] == 0
+    where_it_stands = [{"name": "HeadYaw", "degrees": 0.0}] if method == "joint" else []
+    assert told == where_it_stands, "not where it should have gone"
 
 
 def test_a_call_that_alone_is_called_off_stops_what_it_began(

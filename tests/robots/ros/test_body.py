@@ -52,8 +52,11 @@ def test_a_joint_turns_and_the_others_of_its_controller_stay(version, action) ->
         StandIn(version, head_action=action) as robot,
         connected(robot, CONTROLLER, HEAD) as driver,
     ):
+        heard = Heard(driver)
         assert driver.capabilities().joints == {"head_pan": (-60, 60)}
         call(driver, "joint", name="head_pan", degrees=30)
+        heard.wait(lambda: {"name": "head_pan", "degrees": 30.0} in heard.of("joint"))
+        assert {each["name"] for each in heard.of("joint")} == {"head_pan"}
         assert robot.joints == {"head_pan": pytest.approx(0.5236, abs=1e-3), "head_tilt": 0.1}
         with pytest.raises(InvalidCall, match="from -60 to 60"):
             call(driver, "joint", name="head_pan", degrees=80)

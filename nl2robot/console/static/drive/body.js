@@ -5,6 +5,7 @@ import {wire} from '/static/wire.js';
 import {face} from './faces.js';
 import {helm} from './helm.js';
 import {button, controls, doing, labelled, panel, slider} from './panel.js';
+import {robot} from './robot.js';
 import {named, say} from './texts.js';
 
 const MOST_SAID = 30;
@@ -51,20 +52,46 @@ export function sayPanel(body, language) {
   inside.push(
     element('div', {class: 'row say-row'}, labelled(say('language'), spoken), go),
   );
-  if (body.methods.includes('set_volume')) inside.push(volume(body).row);
+  if (body.methods.includes('set_volume')) inside.push(volume());
+  if (body.methods.includes('set_language')) inside.push(ownLanguage(body, names));
   return panel('say', controls(...inside), said(speak));
 }
 
-function volume(body) {
-  return slider({
+function volume() {
+  const made = slider({
     label: say('volume'),
     least: 0,
     most: 100,
     step: 5,
-    value: body.now.volume ?? 70,
     unit: ' %',
-    send: (percent) => helm.call('set_volume', {percent}),
+    send: (wanted) => helm.call('set_volume', {percent: wanted()}),
   });
+  robot.follow('volume', made.tell);
+  return made.row;
+}
+
+/** What the robot speaks and hears where nobody says otherwise. */
+function ownLanguage(body, names) {
+  const chosen = element('select', {class: 'field'});
+  const unknown = element('option', {value: '', disabled: true}, say('unknown'));
+  chosen.append(unknown);
+  for (const code of body.languages) {
+    chosen.append(element('option', {value: code}, names.of(code) ?? code));
+  }
+  let known = null;
+  const show = () => {
+    chosen.value = known ?? '';
+    unknown.hidden = known !== null;
+  };
+  robot.follow('language', (code) => {
+    known = code;
+    show();
+  });
+  chosen.addEventListener('change', async () => {
+    await doing(helm.call('set_language', {code: chosen.value}), chosen);
+    show();
+  });
+  return labelled(say('own_language'), chosen);
 }
 
 /** What the robot said, whoever told it to; a click says it again. */
@@ -89,12 +116,11 @@ export function facePanel(body) {
   const emotions = body.emotions.map((name) => [name, emotionButton(name)]);
   const now = element('div', {class: 'face-now', role: 'status'});
   const show = (shown) => {
-    now.innerHTML = face(shown);
-    now.append(element('span', {}, named('emotion', shown)));
+    now.innerHTML = face(shown ?? '?');
+    now.append(element('span', {}, shown === null ? say('unknown') : named('emotion', shown)));
     for (const [name, made] of emotions) made.setAttribute('aria-pressed', String(name === shown));
   };
-  show(body.now.emotion?.name ?? body.emotions[0]);
-  wire.subscribe('emotion', ({name}) => show(name));
+  robot.follow('emotion', show);
   const grid = element('div', {class: 'faces'}, ...emotions.map(([, made]) => made));
   return panel('face', now, controls(grid));
 }
@@ -126,32 +152,32 @@ export function gesturePanel(body) {
 // --- joints
 
 export function jointPanel(body) {
-  const wanted = new Map();
-  let busy = false;
-  // A body makes one movement at a time: the newest angle of each joint, one joint after the other.
-  const move = async () => {
-    if (busy) return;
-    busy = true;
-    while (wanted.size) {
-      const [name, degrees] = wanted.entries().next().value;
-      wanted.delete(name);
-      await doing(helm.call('joint', {name, degrees}));
-    }
-    busy = false;
+  // A body makes one movement at a time: one joint after the other, each to its newest angle.
+  let last = Promise.resolve();
+  const move = (name, wanted) => {
+    const moved = last.then(() => helm.call('joint', {name, degrees: wanted()}));
+    last = moved.catch(() => {});
+    return moved;
   };
-  const sliders = Object.entries(body.joints).map(([name, [least, most]]) =>
+  const joints = Object.entries(body.joints).map(([name, [least, most]]) => [
+    name,
     slider({
       label: named('joint', name),
       least,
       most,
-      value: body.now.joints?.[name] ?? Math.max(least, Math.min(most, 0)),
       unit: '°',
-      send: (degrees) => {
-        wanted.set(name, degrees);
-        return move();
-      },
+      send: (wanted) => move(name, wanted),
     }),
-  );
+  ]);
+  const told = {};
+  robot.follow('joints', (known) => {
+    for (const [name, made] of joints) {
+      const degrees = known?.[name] ?? null;
+      if (degrees !== told[name]) made.tell(degrees);
+      told[name] = degrees;
+    }
+  });
+  const sliders = joints.map(([, made]) => made);
   const level = button(
     say('level'),
     () => sliders.forEach((each) => each.go(Math.max(each.input.min, Math.min(each.input.max, 0)))),

@@ -1,17 +1,17 @@
 /** The page for direct control. */
 
 import {appears, element, pageData} from '/static/page.js';
-import {wire} from '/static/wire.js';
 import {facePanel, gesturePanel, jointPanel, sayPanel} from './body.js';
 import {cameraPanel} from './camera.js';
 import {goPanel, helmBar, joystickPanel, mountMap} from './driving.js';
 import {helm} from './helm.js';
 import {logPanel} from './log.js';
 import {panel} from './panel.js';
+import {robot} from './robot.js';
 import {callPanel, codePanel, screenPanel} from './showing.js';
 
 const root = await appears('#drive');
-const body = await wire.request('helm.body');
+const body = await robot.start();
 const operates = pageData.role === 'operator';
 const has = (method) => body.methods.includes(method);
 

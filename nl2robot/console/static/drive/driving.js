@@ -5,6 +5,7 @@ import {wire} from '/static/wire.js';
 import {helm} from './helm.js';
 import {Joystick, SPEEDS} from './joystick.js';
 import {button, controls, doing, labelled, newId, panel} from './panel.js';
+import {robot} from './robot.js';
 import {clock, say, spoken} from './texts.js';
 
 const SPEED_KEPT = 'drive-speed';
@@ -73,10 +74,8 @@ function vitals(body) {
     battery.classList.toggle('bad', state.percent < 15);
     battery.classList.toggle('warn', state.percent >= 15 && state.percent < 30);
   };
-  showPose(body.now.pose);
-  showBattery(body.now.battery);
-  wire.subscribe('pose', showPose);
-  wire.subscribe('battery', showBattery);
+  robot.follow('pose', showPose);
+  robot.follow('battery', showBattery);
   return element('div', {class: 'row vitals'}, place, speed, battery);
 }
 

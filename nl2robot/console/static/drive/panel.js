@@ -58,54 +58,86 @@ export function labelled(text, field) {
   return element('div', {class: 'labelled'}, element('label', {for: field.id}, text), field);
 }
 
-/** A slider that shows its value; `send(value)` is called as it moves, one call after the other. */
-export function slider({label, least, most, value, step = 1, unit = '', send}) {
-  const input = element('input', {type: 'range', min: least, max: most, step, value});
+/**
+ * A slider that shows how something of the robot is. `send(wanted)` is called as it is moved, one
+ * call after the other; `wanted()` tells where it is then. Until that is done it shows both, and
+ * then what the robot says: where that refuses, the slider goes back.
+ */
+export function slider({label, least, most, step = 1, unit = '', send}) {
+  const input = element('input', {type: 'range', min: least, max: most, step});
   const shown = element('output', {class: 'value'});
   input.id = newId('slider');
   shown.htmlFor = input.id;
+  let known = null; // what the robot says of itself
+  let heard = 0; // how often it has said something
+  let wanting = false;
+  const told = (value) => (value === null ? '?' : `${Math.round(value)}${unit}`);
   const show = () => {
-    shown.textContent = `${Math.round(input.value)}${unit}`;
-    const part = (input.value - least) / (most - least || 1);
+    const wanted = Number(input.value);
+    const both = wanting && wanted !== known;
+    shown.textContent = both ? `${told(known)} → ${told(wanted)}` : told(known);
+    const part = (wanted - least) / (most - least || 1);
     input.style.setProperty('--part', `${part * 100}%`);
+    input.classList.toggle('unknown', known === null && !wanting);
+    const spoken = known === null ? say('unknown') : told(known);
+    input.setAttribute('aria-valuetext', both ? told(wanted) : spoken);
   };
-  const put = latest(async () => doing(send(Number(input.value))));
-  input.addEventListener('input', () => {
+  const settle = () => {
+    input.value = known ?? (least + most) / 2;
     show();
-    put();
+  };
+  const put = latest(async () => {
+    const before = heard;
+    let reached = null;
+    const done = await doing(
+      send(() => (reached = Number(input.value))).then(() => true),
+    );
+    // A robot that says nothing of it has done it all the same.
+    if (done && heard === before) known = reached;
   });
-  show();
+  const want = async () => {
+    wanting = true;
+    show();
+    await put();
+    if (put.busy) return;
+    wanting = false;
+    settle();
+  };
+  input.addEventListener('input', want);
+  settle();
   const row = element('div', {class: 'slider'});
   row.append(element('label', {for: input.id}, label), shown, input);
   return {
     row,
     input,
-    /** Show a value, and send nothing. */
-    show: (shownValue) => {
-      input.value = shownValue;
-      show();
+    /** The robot says that it is so; null: it has not said. */
+    tell: (value) => {
+      known = value;
+      heard += 1;
+      if (wanting) show();
+      else settle();
     },
     /** Go to a value, as if it had been dragged there. */
     go: (wanted) => {
       input.value = wanted;
-      show();
-      put();
+      want();
     },
   };
 }
 
-/** A function that does `task`, once more if it was asked to while it did. */
+/** A function that does `task`, once more if it was asked to while it did; it is `busy` meanwhile. */
 export function latest(task) {
-  let busy = false;
   let again = false;
-  return async () => {
+  const run = async () => {
     again = true;
-    if (busy) return;
-    busy = true;
+    if (run.busy) return;
+    run.busy = true;
     while (again) {
       again = false;
       await task();
     }
-    busy = false;
+    run.busy = false;
   };
+  run.busy = false;
+  return run;
 }

@@ -2,9 +2,9 @@
 
 import {notice} from '/static/console.js';
 import {element} from '/static/page.js';
-import {wire} from '/static/wire.js';
 import {helm} from './helm.js';
 import {button, controls, doing, labelled, newId, panel} from './panel.js';
+import {robot} from './robot.js';
 import {say} from './texts.js';
 
 /** The longest page of HTML that a robot takes, with room for what stands around a picture. */
@@ -50,7 +50,7 @@ export function screenPanel(body) {
     button(say('show'), show, {class: 'primary'}),
     button(say('clear'), () => helm.call('show', {text: ' '})),
   );
-  return panel('screen', controls(choice, ...Object.values(fields), tools), preview(body));
+  return panel('screen', controls(choice, ...Object.values(fields), tools), preview());
 }
 
 async function content(kind, field) {
@@ -87,7 +87,7 @@ async function asData(file) {
 }
 
 /** What the screen shows now. */
-function preview(body) {
+function preview() {
   const frame = element('iframe', {sandbox: '', title: say('screen_now'), tabindex: -1});
   const words = element('p');
   const box = element('div', {class: 'screen-now', role: 'status'}, words, frame);
@@ -100,8 +100,7 @@ function preview(body) {
     words.textContent = text || say('screen_empty');
     words.classList.toggle('muted', !text);
   };
-  show(body.now.screen ?? {});
-  wire.subscribe('screen', show);
+  robot.follow('screen', (content) => show(content ?? {}));
   return box;
 }
 
@@ -234,8 +233,7 @@ export function callPanel(body) {
     state.textContent = call ? say(`call_${call.state}`, {who: call.contact}) : '';
     hangUp.disabled = !call || call.state === 'ended';
   };
-  show(body.now.call);
-  wire.subscribe('call', show);
+  robot.follow('call', show);
   const byRobot = controls(
     labelled(say('contact'), whom),
     element('div', {class: 'row'}, ring, hangUp),
