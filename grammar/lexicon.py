@@ -46,7 +46,10 @@ class Routine:
     name: str
     """ "evening round"."""
     sentence: str
-    """What to do, as it was said."""
+    """What to do, as it was said; empty where a program says it."""
+    program: str = ""
+    reviewed: bool = True
+    """Whether somebody has looked at what it does; else it cannot be used."""
 
 
 @dataclass(frozen=True)

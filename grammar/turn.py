@@ -73,7 +73,7 @@ class Turn:
         """The command before; of a routine that was called by its name, its sentence."""
         before = Sentence(self.reader(self.context.text, self.base))
         routine = before.routine()
-        if routine is None:
+        if routine is None or not routine.sentence:
             return before
         return Sentence(self.reader(routine.sentence, self.base))
 

@@ -19,7 +19,8 @@ from grammar.language import load_language
 from grammar.lexicon import Lexicon, Routine
 from grammar.meanings.registry import meaning
 from grammar.meanings.requests import with_own_names
-from grammar.plan import Call, Text
+from grammar.plan import Call, Plan, Text
+from grammar.reading import NotAPlan, parse_program
 from grammar.said import forget
 from grammar.tokens import Token
 from grammar.understanding import Clarification, Context, Understanding, rejected
@@ -55,25 +56,42 @@ def _with_quotes(understood: Understanding, lexicon: Lexicon, language: str) -> 
 
 @meaning("routine")
 def routine(d: Discourse, node: Node) -> Steps:
-    """A routine's name stands for the steps of its sentence, understood in the world as it is now.
-    In there the routine itself is unknown, so that none can go round in circles."""
+    """A routine's name stands for the steps of its sentence, understood in the world as it is now,
+    or of its program."""
     called: Routine = d.get(node, "routine")
-    others = tuple(each for each in d.lexicon.routines if each.name != called.name)
-    inner = understand(called.sentence, replace(d.lexicon, routines=others), d.language.code)
-    if inner.plan is None:
-        reason = inner.message or d.language.phrase("not_understood_at_all")
-        raise NotUnderstood(d.language.phrase("routine_broken", name=called.name, reason=reason))
-    if inner.confidence < 1:
-        d.assumptions.append(called.name)
+    if not called.reviewed:
+        raise NotUnderstood(d.language.phrase("routine_unreviewed", name=called.name))
+    plan = _plan_of(called, d)
     if d.needs_start or node.end < len(d.tokens) - 1:
         d.variables.add(START)  # the sentence around may need the name
-    steps = with_own_names(d, inner.plan)
+    steps = with_own_names(d, plan)
     d.at = d.place = d.thing = d.person = d.with_person = None
     if steps and isinstance(steps[-1], Call) and steps[-1].method == "goto":
         place = steps[-1].arguments.get("place")
         if isinstance(place, Text):
             d.went(place)
     return steps
+
+
+def _plan_of(called: Routine, d: Discourse) -> Plan:
+    """What a routine does. In there the routine itself is unknown, so that none can go round in
+    circles. Raises `NotUnderstood`."""
+    if called.program:
+        try:
+            return parse_program(called.program, d.language.code)
+        except NotAPlan as error:
+            raise _broken(called, d, str(error)) from None
+    others = tuple(each for each in d.lexicon.routines if each.name != called.name)
+    inner = understand(called.sentence, replace(d.lexicon, routines=others), d.language.code)
+    if inner.plan is None:
+        raise _broken(called, d, inner.message or d.language.phrase("not_understood_at_all"))
+    if inner.confidence < 1:
+        d.assumptions.append(called.name)
+    return inner.plan
+
+
+def _broken(called: Routine, d: Discourse, reason: str) -> NotUnderstood:
+    return NotUnderstood(d.language.phrase("routine_broken", name=called.name, reason=reason))
 
 
 __all__ = ["Clarification", "Context", "Token", "Understanding", "understand"]

@@ -28,7 +28,7 @@ COMMANDS = {
     "chat": "the same as a conversation in the terminal",
     "hotword": "say each time the hot word is heard",
     "listen": "turn what is said, or a recording, into a program or an answer",
-    "routines": "commands with a name: list, explain, learn, change, forget",
+    "routines": "commands with a name: list, explain, learn, change, forget, export, import",
     "serve": "the robot server on one port, a simulated hospital by default",
     "robots": "the kinds of robots there are drivers for, and a check of one robot",
     "log": "show past runs, and replay them in the simulator",

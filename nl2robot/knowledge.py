@@ -52,10 +52,13 @@ class Knowledge:
         except UserError as error:
             self.trouble = str(error)
             return self._names(language)
-        return self._with(language, tuple((each.name, each.sentence) for each in known))
+        routines = (
+            Routine(each.name, each.sentence, each.program, each.reviewed) for each in known
+        )
+        return self._with(language, tuple(routines))
 
-    def _lexicon_with(self, language: str, routines: tuple[tuple[str, str], ...]) -> Lexicon:
-        return replace(self._names(language), routines=tuple(Routine(*each) for each in routines))
+    def _lexicon_with(self, language: str, routines: tuple[Routine, ...]) -> Lexicon:
+        return replace(self._names(language), routines=routines)
 
     def _lexicon(self, language: str) -> Lexicon:
         world, robot = self.world, self.capabilities

@@ -10,12 +10,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
+import msgspec
+
 from grammar.explain import explain
 from grammar.language import Language, UnknownLanguage, load_language
 from grammar.lexicon import Lexicon
 from grammar.names import names_of
 from grammar.naming import naming
 from grammar.plan import Plan
+from grammar.reading import NotAPlan, parse_program
 from grammar.requests import Request
 from grammar.samples import samples
 from grammar.understand import understand
@@ -79,14 +82,14 @@ def reply(request: Request, knowledge: Knowledge, language: str, before: str = "
             return teacher.forget(request.name)
 
 
-def settle(pending: Pending, agreed: bool, knowledge: Knowledge) -> Reply:
-    """Do what was waiting for a yes, or leave it."""
+def settle(pending: Pending, agreed: bool, knowledge: Knowledge, by: str = "") -> Reply:
+    """Do what was waiting for a yes, or leave it. `by`: who has agreed."""
     language = pending.language
     pack = load_language(language)
     if not agreed or knowledge.routines is None:
         return Reply("ok", pack.phrase("routine_left"))
     if pending.kind == "learn":
-        knowledge.routines.put(pending.name, pending.sentence, language)
+        knowledge.routines.put(pending.name, pending.sentence, language, by)
         return Reply("ok", pack.phrase("routine_learned", name=pending.name), (pending.name,))
     if pending.kind == "rename":
         knowledge.routines.rename(pending.name, pending.new, language)
@@ -186,7 +189,7 @@ class Teacher:
         known = self.routines.known(self.language)
         if not known:
             return Reply("ok", self.pack.phrase("routines_none"))
-        names = ", ".join(f"“{each.name}” ({each.sentence.rstrip(' .!')})" for each in known)
+        names = ", ".join(f"“{each.name}” ({self.short(each)})" for each in known)
         phrase = "routine_is" if len(known) == 1 else "routines_are"
         message = self.pack.phrase(phrase, number=len(known), names=names)
         return Reply("ok", message, [each.name for each in known])
@@ -196,7 +199,7 @@ class Teacher:
         if known is None:
             return self.unknown(name)
         message = self.pack.phrase(
-            "routine_does",
+            "routine_does" if known.sentence else "routine_does_program",
             name=known.name,
             sentence=known.sentence,
             explanation=self.does(known)[1],
@@ -231,6 +234,25 @@ class Teacher:
             message = f"{message} {self.pack.phrase('routine_used_by', names=users)}"
         return self.asked(message, Pending("forget", known.name, self.language))
 
+    def keep(self, said: str, program: str) -> str:
+        """The name under which a program can be kept as a new routine. Raises `UserError`."""
+        name = tidied(said)
+        if self.routines.get(name, self.language) is not None:
+            raise UserError(self.pack.phrase("routine_name_used", name=name))
+        wrong = self.wrong_name(name)
+        if wrong:
+            raise UserError(wrong)
+        self.check_program(program)
+        return name
+
+    def check_program(self, program: str) -> Plan:
+        """What a program does. Raises `UserError` if no routine can: only what can also be said is
+        understood among other commands."""
+        try:
+            return parse_program(program, self.language)
+        except NotAPlan as error:
+            raise UserError(self.pack.phrase("routine_no_program", reason=str(error))) from error
+
     # --- replies
 
     def asked(self, message: str, pending: Pending) -> Reply:
@@ -260,6 +282,8 @@ class Teacher:
     def changed(self, known: Routine, said: str) -> str:
         """The routine's sentence after what is said of it: "also wave", "without the greeting"; a
         command of its own stands for all of it."""
+        if not known.sentence:
+            return said  # no words that "also" could go on from
         context = self.body(known.name, known.sentence).context
         result = understand(said, self.without(known.name), self.language, context)
         return result.context.text if result.plan is not None else said
@@ -272,12 +296,25 @@ class Teacher:
     def told(self, plan: Plan) -> str:
         return told(plan, self.lexicon, self.language)
 
+    def plan_of(self, routine: Routine) -> tuple[Plan | None, str]:
+        """What a routine does in this world; None and why it cannot be used here."""
+        if routine.program:
+            try:
+                plan = parse_program(routine.program, self.language)
+                # Comments are notes of who wrote it, and nothing that was said.
+                return msgspec.structs.replace(plan, background=()), ""
+            except NotAPlan as error:
+                return None, str(error)
+        body = self.body(routine.name, routine.sentence)
+        return body.plan, body.message or self.pack.phrase("not_understood_at_all")
+
     def does(self, routine: Routine) -> tuple[bool, str]:
         """Whether a routine can be used in this world, and what it does, or why it cannot."""
-        body = self.body(routine.name, routine.sentence)
-        if body.plan is not None:
-            return True, self.told(body.plan)
-        return False, body.message or self.pack.phrase("not_understood_at_all")
+        plan, why = self.plan_of(routine)
+        return (True, self.told(plan)) if plan is not None else (False, why)
+
+    def short(self, routine: Routine) -> str:
+        return routine.sentence.rstrip(" .!") or self.pack.phrase("routine_a_program")
 
     def users(self, routine: Routine) -> str:
         """The names of the routines that could not do without this one."""

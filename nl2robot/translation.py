@@ -8,6 +8,7 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Sequence
+from contextlib import suppress
 from copy import copy
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import msgspec
 
 from grammar.language import load_language
+from grammar.normal import normal
 from grammar.plan import Plan, calls, methods, to_data
 from grammar.planning.planner import (
     Answer,
@@ -111,6 +113,8 @@ class Talk:
     """The last one with a program."""
     last_at: float = 0.0
     """When that was: seconds since the epoch."""
+    who: str = ""
+    """Who speaks; noted with the routines that they teach."""
 
     def copy(self) -> Talk:
         """For a translation that may be given up: only what comes of it is to be remembered."""
@@ -279,7 +283,7 @@ def _with_program(utterance: str, turn: Turn, chosen: Chosen, started: float) ->
     return Translation(
         utterance=utterance,
         status="ok",
-        program=chosen.considered.program,
+        program=_as_kept(turn, chosen.plan) or chosen.considered.program,
         plan=to_data(chosen.plan),
         source=chosen.draft.planner,
         confidence=chosen.confidence,
@@ -290,6 +294,21 @@ def _with_program(utterance: str, turn: Turn, chosen: Chosen, started: float) ->
         unused=chosen.considered.checked.unused,
         own=chosen.considered.checked.own,
     )
+
+
+def _as_kept(turn: Turn, plan: Plan) -> str | None:
+    """The program of the routine that is all that was asked for, as it was kept: so it has been
+    approved before. None if it is more, or something else."""
+    from grammar.reading import NotAPlan, parse_program
+
+    said = " ".join(turn.language.tokens_of(turn.text))
+    for routine in turn.lexicon.routines:
+        if routine.program and " ".join(turn.language.tokens_of(routine.name)) in said:
+            with suppress(NotAPlan):
+                kept = parse_program(routine.program, turn.language.code)
+                if kept.steps == normal(plan).steps:
+                    return routine.program
+    return None
 
 
 def _without_program(
@@ -385,7 +404,7 @@ def _settled(utterance: str, knowledge: Knowledge, talk: Talk) -> Reply | None:
         return None
     from nl2robot.teaching import settle
 
-    return settle(pending, yes, knowledge)
+    return settle(pending, yes, knowledge, talk.who)
 
 
 def _answer(utterance: str, answer: Reply, request: Request | None, started: float) -> Translation:

@@ -122,6 +122,11 @@ def compose(path: Path, sort: Sort) -> Node:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise Hopeless(None, f"The file cannot be read: {reason}. Give {sort.path}.") from None
+    return compose_text(text, sort)
+
+
+def compose_text(text: str, sort: Sort) -> Node:
+    """The YAML of a text as nodes. Raises `Hopeless`."""
     try:
         root = _build(yaml.parse(text, Loader=_LOADER), sort)
     except yaml.MarkedYAMLError as error:

@@ -11,7 +11,7 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps
 from grammar.lexicon import Name, Routine
 from grammar.meanings.registry import meaning
-from grammar.plan import Call, ForEach, Plan, Remember
+from grammar.plan import Call, ForEach, Plan, Remember, Try
 from grammar.requests import Kind, Request
 from grammar.tidy import nodes
 
@@ -19,13 +19,18 @@ from grammar.tidy import nodes
 def with_own_names(d: Discourse, plan: Plan) -> Steps:
     """The steps with names that the sentence around does not use."""
     names: dict[str, str] = {}
+    own: tuple[str, ...]
     for each in nodes(plan.steps):
         match each:
-            case Call(save_as=str() as name) | Remember(name=name) | ForEach(variable=name):
-                if name not in names:
-                    names[name] = d.variable(name)
+            case Call(save_as=str() as name) | Remember(name=name) | Try(problem=str() as name):
+                own = (name,)
+            case ForEach(variable=name, value=other):
+                own = (name,) if other is None else (name, other)
             case _:
-                pass
+                own = ()
+        for name in own:
+            if name not in names:
+                names[name] = d.variable(name)
     return [_renamed(step, names) for step in plan.steps]
 
 
@@ -37,7 +42,8 @@ def _renamed(value: Any, names: dict[str, str]) -> Any:
     if not isinstance(value, msgspec.Struct):
         return value
     changed = {field: _renamed(getattr(value, field), names) for field in value.__struct_fields__}
-    for field in ("name", "save_as", "variable"):
+    owned = ("value", "problem") if isinstance(value, ForEach | Try) else ()
+    for field in ("name", "save_as", "variable", *owned):
         if changed.get(field) in names:
             changed[field] = names[changed[field]]
     return type(value)(**changed)

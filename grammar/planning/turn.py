@@ -49,6 +49,7 @@ class Turn:
             for at in range(len(self.tokens))
             for _, _, routines in self.reader.slots.matches("{routine}", at)
             for routine in routines
+            if routine.sentence  # a program has no words
         )
 
     @property

@@ -1,20 +1,25 @@
-"""`nl2robot routines`: commands that go by a name: list, explain, learn, change, rename, forget."""
+"""`nl2robot routines`: commands that go by a name: list, explain, learn, change, rename, forget; to
+hand them on in a file, and to review what came in one."""
 
 from __future__ import annotations
 
 import argparse
 import json
+from pathlib import Path
 
 import msgspec
 
-from nl2robot.commands.options import add_language, add_world, names_of, words
+from nl2robot import routine_files
+from nl2robot.commands.options import add_language, add_world, names_of, user_name, words
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.routines import open_routines
 from nl2robot.teaching import Reply, Teacher, settle
 from nl2robot.terminal import Terminal
 
-ACTIONS = ("list", "explain", "learn", "change", "rename", "forget")
+ACTIONS = (
+    *("list", "explain", "learn", "change", "rename", "forget", "export", "import", "review"),
+)
 WITH_SENTENCE = {
     "learn": "go to every ward and say good night",
     "change": "go to ward a and say good night",
@@ -25,11 +30,15 @@ WITH_SENTENCE = {
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("action", choices=ACTIONS, nargs="?", default="list")
-    parser.add_argument("name", nargs="?", type=words, help="what the routine is called")
+    parser.add_argument(
+        "name", nargs="?", type=words, help="what the routine is called; import: the file"
+    )
     parser.add_argument(
         "sentence", nargs="?", type=words, help="learn, change: what it does; rename: its new name"
     )
     parser.add_argument("-y", "--yes", action="store_true", help="without being asked")
+    parser.add_argument("--replace", action="store_true", help="import: also those of known names")
+    parser.add_argument("-o", "--out", type=Path, help="export: the file; else it is printed")
     parser.add_argument("--json", action="store_true", help="list: one JSON object a routine")
     add_world(parser)
     add_language(parser)
@@ -39,6 +48,12 @@ def run(options: argparse.Namespace) -> int:
     knowledge = Knowledge(names_of(options), routines=open_routines())
     if options.action == "list":
         return _list(knowledge, options.json)
+    if options.action == "export":
+        return _export(knowledge, options)
+    if options.action == "import":
+        return _import(knowledge, options)
+    if options.action == "review":
+        return _review(knowledge, options)
     example = '"evening round"'
     if options.action in WITH_SENTENCE:
         example += f' "{WITH_SENTENCE[options.action]}"'
@@ -49,9 +64,113 @@ def run(options: argparse.Namespace) -> int:
     terminal.console.print(reply.message, markup=False)
     if reply.pending is None:
         return ExitStatus.OK if reply.status == "ok" else ExitStatus.BAD_INPUT
-    agreed = options.yes or terminal.ask("[y]es or [n]o? ").strip().lower() in ("y", "yes")
-    terminal.console.print(settle(reply.pending, agreed, knowledge).message, markup=False)
+    agreed = _agreed(terminal, options)
+    told = settle(reply.pending, agreed, knowledge, user_name())
+    terminal.console.print(told.message, markup=False)
     return ExitStatus.OK if agreed else ExitStatus.NOT_APPROVED
+
+
+def _agreed(terminal: Terminal, options: argparse.Namespace) -> bool:
+    return options.yes or terminal.ask("[y]es or [n]o? ").strip().lower() in ("y", "yes")
+
+
+def _export(knowledge: Knowledge, options: argparse.Namespace) -> int:
+    """All routines, or one, as a file."""
+    assert knowledge.routines is not None
+    known = knowledge.routines.known()
+    if options.name:
+        one = knowledge.routines.get(options.name, options.lang)
+        if one is None:
+            raise UserError(Teacher.of(knowledge, options.lang).unknown(options.name).message)
+        known = (one,)
+    if not known:
+        raise UserError("There are no routines to export. Teach one first.")
+    text = routine_files.exported(known)
+    if options.out is None:
+        print(text, end="")
+        return ExitStatus.OK
+    try:
+        options.out.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise UserError(
+            f"The routines cannot be written to {options.out} ({error.strerror})."
+            " Choose another place."
+        ) from error
+    told = "One routine was" if len(known) == 1 else f"{len(known)} routines were"
+    Terminal().console.print(f"{told} written to {options.out}.", markup=False)
+    return ExitStatus.OK
+
+
+def _import(knowledge: Knowledge, options: argparse.Namespace) -> int:
+    """Those of a file, all that are new; each needs a review before it can be used."""
+    if not options.name:
+        raise UserError("Write it so: nl2robot routines import routines.yaml.")
+    file = Path(options.name)
+    try:
+        text = file.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        why = getattr(error, "strerror", None) or "it is no text in UTF-8"
+        raise UserError(f"The file {file} cannot be read ({why}). Check its name.") from error
+    found = routine_files.read(text, str(file))
+    terminal = Terminal()
+    choices = []
+    for number, each in enumerate(found):
+        routine = each.routine
+        state, why = routine_files.state_of(routine, knowledge)
+        _, does = Teacher.of(knowledge, routine.language).does(routine)
+        terminal.console.print(f"{routine.name} ({routine.language}): {does}", markup=False)
+        if state == "same":
+            terminal.console.print("  It is known here just so already.")
+        elif state == "unfit":
+            terminal.console.print(f"  {why} It is left out.", markup=False)
+        elif state == "taken" and not options.replace:
+            terminal.console.print(
+                "  Another routine has this name here. It is left out; --replace puts it in its"
+                " place."
+            )
+        else:
+            replaces = state == "taken"
+            if replaces:
+                terminal.console.print("  It takes the place of the routine of this name.")
+            choices.append(routine_files.Choice(number, routine.name, replaces))
+    if not choices:
+        terminal.console.print("There is nothing to import in this file.")
+        return ExitStatus.OK
+    terminal.console.print(f"Import {len(choices)} of {len(found)}?")
+    if not _agreed(terminal, options):
+        return ExitStatus.NOT_APPROVED
+    for routine in routine_files.take_over(found, choices, knowledge, file.name):
+        terminal.console.print(
+            f"Imported: {routine.name}. Look at it before it can be used:"
+            f' nl2robot routines review "{routine.name}"'
+            + (f" --lang {routine.language}" if routine.language != "en" else ""),
+            markup=False,
+        )
+    return ExitStatus.OK
+
+
+def _review(knowledge: Knowledge, options: argparse.Namespace) -> int:
+    """Look at what an imported routine does, and let it be used."""
+    assert knowledge.routines is not None
+    if not options.name:
+        raise UserError('Write it so: nl2robot routines review "evening round".')
+    routine = knowledge.routines.get(options.name, options.lang)
+    teacher = Teacher.of(knowledge, options.lang)
+    if routine is None:
+        raise UserError(teacher.unknown(options.name).message)
+    terminal = Terminal()
+    terminal.console.print(teacher.explain(routine.name).message, markup=False)
+    if routine.program:
+        terminal.console.print(routine.program, markup=False)
+    if routine.reviewed:
+        terminal.console.print("It can be used already.")
+        return ExitStatus.OK
+    terminal.console.print("May it be used from now on?")
+    if not _agreed(terminal, options):
+        return ExitStatus.NOT_APPROVED
+    knowledge.routines.accept(routine.name, routine.language, routine.body, user_name())
+    terminal.console.print(f"The routine “{routine.name}” can be used now.", markup=False)
+    return ExitStatus.OK
 
 
 def _reply(teacher: Teacher, options: argparse.Namespace) -> Reply:
