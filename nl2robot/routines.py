@@ -262,7 +262,9 @@ def as_data(routine: Routine) -> dict[str, Any]:
     """A routine as it stands in a file: what is not said is left out, but for its language."""
     data: dict[str, Any] = msgspec.to_builtins(routine)
     name = data.pop("name")
-    body = {part: data.pop(part) for part in ("sentence", "program") if part in data}
+    body: dict[str, Any] = {
+        part: data.pop(part) for part in ("sentence", "program") if part in data
+    }
     return {"name": name, **body, **data, "language": routine.language}
 
 

@@ -315,6 +315,8 @@ class Terminal:
 
     def show_answer(self, answer: Sequence[Sentence], state: str, message: str | None) -> None:
         """What came of a run; how it ended only where that was not as it should, or nothing did."""
+        self._live.leave()
+        self._way.end()
         with contextlib.suppress(BrokenPipeError):
             for sentence in answer:
                 self.console.print(f"[bold green]{_plain(sentence.text)}[/]")
