@@ -10,17 +10,31 @@ import msgspec
 
 from nl2robot.answers import Sentence
 from nl2robot.review import Review
-from nl2robot.runner import Approval, Status
+from nl2robot.runner import GOING, Approval, Status
 from nl2robot.thinking import EVENT, OnProgress, Progress
 from nl2robot.translation import Translation
 from robot_api.client import Robot
-from robot_api.errors import InvalidCall, Stopped
+from robot_api.errors import InvalidCall, RobotError, Stopped
 
 T = TypeVar("T")
 
 
+class Left(msgspec.Struct, frozen=True):
+    """What is left of a run that was broken off."""
+
+    run: int
+    program: str
+    utterance: str | None
+    told: list[str]
+    """What is done and what is left, in sentences."""
+
+
+def _continuing(run: int | None) -> dict[str, int]:
+    return {} if run is None else {"continues": run}  # which older servers do not know
+
+
 # Learned before there are threads, see `robot_api.schema`.
-msgspec.json.Decoder(tuple[Translation, Review, Approval, Status, Sentence])
+msgspec.json.Decoder(tuple[Translation, Review, Approval, Status, Sentence, Left])
 
 
 class Operator:
@@ -79,19 +93,49 @@ class Operator:
         """What can be said here: sentences by topic."""
         return self._request("program.phrases", {"language": language}, dict[str, list[str]])
 
-    def check(self, program: str, language: str = "en") -> Review:
-        """Review a program; nothing moves."""
-        return self._request("program.check", {"program": program, "language": language}, Review)
+    def check(self, program: str, language: str = "en", continues: int | None = None) -> Review:
+        """Review a program, or what is left of it after a run; nothing moves."""
+        parameters = {"program": program, "language": language, **_continuing(continues)}
+        return self._request("program.check", parameters, Review)
+
+    def unfinished(self, language: str = "en") -> Left | None:
+        """What is left of the last run, if it was broken off."""
+        try:
+            left = self.robot.request("program.unfinished", {"language": language})
+        except InvalidCall:  # a server that cannot go on
+            return None
+        return None if left is None else msgspec.convert(left, Left)
+
+    def pause(self) -> None:
+        self.robot.request("program.pause")
+
+    def resume(self) -> None:
+        self.robot.request("program.resume")
+
+    def state(self) -> str:
+        """How the robot and its program stand, see `nl2robot.state`."""
+        state: str = self.robot.request("station.state")["state"]
+        return state
+
+    def reviewing(self, lies: bool) -> None:
+        """Tell that a program lies before somebody here who decides on it, or no longer."""
+        with contextlib.suppress(RobotError):  # a server that shows it nobody
+            self.robot.request("program.reviewing", {"lies": lies})
 
     def approve(
-        self, review: Review, translation: Translation | None = None, heard: str | None = None
+        self,
+        review: Review,
+        translation: Translation | None = None,
+        heard: str | None = None,
+        continues: int | None = None,
     ) -> Approval:
-        """Approve exactly the program that was reviewed."""
+        """Approve exactly the program that was reviewed; with `continues`, what is left of it."""
         parameters: dict[str, Any] = {
             "program": review.program,
             "sha256": review.sha256,
             "by": self.name,
             "heard": heard,
+            **_continuing(continues),
         }
         if translation is not None:
             parameters["utterance"] = translation.utterance
@@ -106,11 +150,12 @@ class Operator:
 
     def wait(self, run: int) -> Status:
         """Wait until the run is over."""
-        try:
-            return self._request("program.wait", {"run": run}, Status)
-        except Stopped:
+        while True:
             # A stop of the robot breaks off every call, this one too; the run is about to be over.
-            return self._request("program.wait", {"run": run}, Status)
+            with contextlib.suppress(Stopped):
+                status = self._request("program.wait", {"run": run}, Status)
+                if status.state not in GOING:
+                    return status
 
     def answer(self, run: int, language: str = "en") -> list[Sentence]:
         """What came of a run, for whoever asked for it; nothing from a server that cannot say."""

@@ -21,6 +21,7 @@ from robot_api.errors import Stopped
 from sandbox.limits import Limits
 
 if TYPE_CHECKING:
+    from nl2robot.going_on import Recall
     from sim.record import Record, Sample
     from sim.simulation import Simulation
 
@@ -164,8 +165,9 @@ def watched(
     budget: Budget = BUDGET,
     seed: int | None = None,
     skills: Collection[str] = (),
+    recall: Recall | None = None,
 ) -> tuple[DryRun, Course]:
-    """As `rehearse`, with the course of it."""
+    """As `rehearse`, with the course of it. `recall` answers the calls that were done before."""
     from robot_api.capabilities.names import one_of
     from robot_api.drivers import simulated
     from sandbox.execution import Execution
@@ -179,6 +181,8 @@ def watched(
     counts: Counter[str] = Counter()
 
     def call(method: str, arguments: dict[str, Any], line: int) -> Any:
+        if recall is not None and recall.goes_on:
+            return recall.answer(method, arguments)
         at = simulation.time
         try:
             return do(method, arguments)

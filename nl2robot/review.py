@@ -18,6 +18,7 @@ from nl2robot.risks import Risk, Situation, Tried, risks
 from sandbox.check import Finding, check
 
 if TYPE_CHECKING:
+    from nl2robot.going_on import Recall
     from sim.simulation import Simulation
 
 
@@ -66,15 +67,18 @@ def review(
     stage: Callable[[], Simulation] | None = None,
     language: str = "en",
     seed: int | None = None,
+    recall: Recall | None = None,
 ) -> Review:
     """Check a program without moving anything. `stage` gives a copy of the simulated world,
-    in which the program is tried; `seed` is what its `random` will begin with."""
+    in which the program is tried; `seed` is what its `random` will begin with; `recall` answers
+    what was done of it before."""
     from robot_api.stub import stub
 
     findings = [*check(program, stub()), *violations(program, knowledge)]
     findings.sort(key=lambda finding: (finding.line, finding.column))
     acceptable = not any(finding.severity == "error" for finding in findings)
-    tried = _tried(program, stage(), seed, knowledge) if acceptable and stage is not None else None
+    may_try = acceptable and stage is not None
+    tried = _tried(program, stage(), seed, knowledge, recall) if may_try and stage else None
     return Review(
         program=program,
         sha256=digest(program),
@@ -85,10 +89,17 @@ def review(
     )
 
 
-def _tried(program: str, simulation: Simulation, seed: int | None, knowledge: Knowledge) -> Tried:
+def _tried(
+    program: str,
+    simulation: Simulation,
+    seed: int | None,
+    knowledge: Knowledge,
+    recall: Recall | None,
+) -> Tried:
     situation = Situation.of(simulation)
     skills = knowledge.capabilities.skills if knowledge.capabilities is not None else ()
-    return Tried(situation, *watched(program, simulation, seed=seed, skills=skills))
+    course = watched(program, simulation, seed=seed, skills=skills, recall=recall)
+    return Tried(situation, *course)
 
 
 def reading(program: str, knowledge: Knowledge, language: str) -> Iterator[Reading]:

@@ -43,7 +43,8 @@ CREATE TABLE IF NOT EXISTS runs (
     message TEXT,
     picture TEXT,                    -- path of the picture of the run
     start TEXT,                      -- JSON: x, y (metres), theta (degrees) of a simulated robot
-    process INTEGER                  -- that runs it
+    process INTEGER,                 -- that runs it
+    continues INTEGER                -- the run that was broken off, with which this one goes on
 );
 CREATE TABLE IF NOT EXISTS calls (
     run INTEGER NOT NULL REFERENCES runs(id),
@@ -74,8 +75,8 @@ CREATE TABLE IF NOT EXISTS movements (
 );
 """
 
-_VERSION = 5
-_ADDED = {"start": "TEXT", "process": "INTEGER"}
+_VERSION = 6
+_ADDED = {"start": "TEXT", "process": "INTEGER", "continues": "INTEGER"}
 """Columns of `runs` that a log of an older version has not got."""
 
 
@@ -105,6 +106,7 @@ class Run(msgspec.Struct, frozen=True, kw_only=True):
     picture: str | None
     start: str | None
     process: int | None
+    continues: int | None = None
 
     @property
     def going_on(self) -> bool:
@@ -173,6 +175,7 @@ class RunLog:
         world: str | None = None,
         seed: int | None = None,
         robot: str | None = None,
+        continues: int | None = None,
     ) -> int:
         """Note that an approved program starts; returns the run's number."""
         values = {
@@ -189,6 +192,7 @@ class RunLog:
             "world": world,
             "seed": seed,
             "robot": robot,
+            "continues": continues,
         }
         cursor = self._write(
             f"INSERT INTO runs ({', '.join(values)}) VALUES ({', '.join('?' * len(values))})",

@@ -25,6 +25,7 @@ from typing import Any, Final, Literal
 import msgspec
 
 from nl2robot import state as happenings
+from nl2robot.going_on import Recall, Unfinished, unfinished
 from nl2robot.history import Record, done_calls
 from nl2robot.knowledge import Knowledge
 from nl2robot.pausing import (
@@ -93,6 +94,8 @@ class Approval(msgspec.Struct, frozen=True, kw_only=True):
     heard: str | None = None
     language: str | None = None
     plan: str | None = None
+    continues: int | None = None
+    """The run that was broken off, with which it goes on; what was done there is not done again."""
 
 
 class Status(msgspec.Struct, frozen=True, kw_only=True):
@@ -140,6 +143,8 @@ class _Activity:
         """Whether a pause has broken that off."""
         self.odometer: Odometer | None = None
         """Of the movement that is measured."""
+        self.recall: Recall | None = None
+        """What was done before, if it goes on with another run."""
 
     def status(self, state: State) -> Status:
         return Status(
@@ -189,9 +194,17 @@ class Runner:
 
     # --- before it runs
 
-    def check(self, program: str, language: str = "en") -> Review:
-        """Review a program, and read it in a language; nothing moves."""
-        return review(program, self.knowledge, self._stage, language, self._seed)
+    def check(self, program: str, language: str = "en", continues: int | None = None) -> Review:
+        """Review a program, and read it in a language; nothing moves. `continues`: only what is
+        left of it after that run is tried. Raises `NotPossible` if nothing is."""
+        recall = self._recall(continues, program) if continues is not None else None
+        return review(program, self.knowledge, self._stage, language, self._seed, recall)
+
+    def unfinished(self, run: int | None = None) -> Unfinished | None:
+        """What is left of that run, or of the last one, if it was broken off."""
+        if self.present.state.run is not None:
+            return None
+        return unfinished(self.log, run)
 
     def approve(
         self,
@@ -203,6 +216,7 @@ class Runner:
         heard: str | None = None,
         language: str | None = None,
         plan: str | None = None,
+        continues: int | None = None,
     ) -> Approval:
         """Approve exactly this program. Raises `AccessDenied` if the hash is that of another text,
         or if the review finds an error in it, `NotPossible` while another program runs."""
@@ -220,6 +234,8 @@ class Runner:
             raise AccessDenied(
                 f"The program cannot be approved: line {errors[0].line}: {errors[0].message}"
             )
+        if continues is not None:
+            self._recall(continues, program)
         approval = Approval(
             id=secrets.token_urlsafe(16),
             program=program,
@@ -230,6 +246,7 @@ class Runner:
             heard=heard,
             language=language,
             plan=plan,
+            continues=continues,
         )
         with self._lock:
             self._approvals[approval.id] = approval
@@ -254,8 +271,11 @@ class Runner:
                 )
             self._check_free()
             del self._approvals[approval_id]
+            goes_on = approval.continues
+            recall = self._recall(goes_on, approval.program) if goes_on is not None else None
             run = self._begin(approval)
             activity = self._activity = _Activity(run, approval)
+            activity.recall = recall
         if self.present.happened(happenings.Began(run)).run != run:  # stopped in this very moment
             activity.stop_because = self.present.state.because or "The robot was stopped."
         threading.Thread(
@@ -361,6 +381,7 @@ class Runner:
                 world=_where_from(self.knowledge.world),
                 seed=self._seed,
                 robot=self.knowledge.capabilities.name if self.knowledge.capabilities else None,
+                continues=approval.continues,
             )
         except LogError as error:
             raise NotPossible(str(error)) from error
@@ -384,15 +405,21 @@ class Runner:
             self._end(activity)
 
     def _execute(self, activity: _Activity, robot: Robot) -> Outcome:
+        recall = activity.recall
+
         def on_line(line: int) -> None:
             activity.line = line
             self.present.happened(happenings.AtLine(line))
             self._tell(activity, "line")
 
         def call(method: str, arguments: dict[str, Any], line: int) -> Any:
+            if recall is not None and recall.goes_on:
+                return recall.answer(method, arguments)
             return self._call(activity, robot, method, arguments, line)
 
         def on_print(text: str) -> None:
+            if recall is not None and recall.goes_on:
+                return  # it was printed before
             self._logged(self.log.printed, activity.run, text)
             self._tell(activity, "print", text=text)
 
@@ -408,7 +435,12 @@ class Runner:
         self._tell(activity, "state")
         if activity.stop_because is not None:  # stopped before it began
             execution.stop(activity.stop_because)
-        return execution.run()
+        outcome = execution.run()
+        if recall is not None and recall.deviation is not None:
+            return dataclasses.replace(
+                outcome, status="failed", message=recall.deviation, error="Deviates"
+            )
+        return outcome
 
     def _call(
         self, activity: _Activity, robot: Robot, method: str, arguments: dict[str, Any], line: int
@@ -594,6 +626,16 @@ class Runner:
             case "running" | "pausing" | "paused":
                 return activity.status(now)
         return activity.status("running")  # until it is over, whatever the robot is at
+
+    def _recall(self, run: int, program: str) -> Recall:
+        """What was done in that run of this program. Raises `NotPossible`."""
+        rest = unfinished(self.log, run)
+        if rest is None or rest.program != program:
+            raise NotPossible(
+                f"Run {run} is not one that this program could go on with."
+                " Have it done from the beginning instead."
+            )
+        return Recall(rest.done)
 
     def _check_free(self) -> None:
         """Raise `NotPossible` while a program runs."""

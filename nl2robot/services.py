@@ -13,8 +13,10 @@ import msgspec
 from grammar.planning.planner import Interrupted
 from grammar.samples import samples
 from nl2robot.answers import answer
+from nl2robot.going_on import told
 from nl2robot.planners import names
 from nl2robot.runner import GOING, Runner
+from nl2robot.state import Reviewing
 from nl2robot.talks import Talks
 from nl2robot.thinking import EVENT, Thought, published
 from nl2robot.translation import Translation, translate
@@ -34,6 +36,7 @@ _MAYBE = {"type": ["string", "null"], "maxLength": 4 * LONGEST_PROGRAM}
 _PROGRAM = {"type": "string", "maxLength": LONGEST_PROGRAM}
 _LANGUAGE = {"type": "string", "pattern": "^[a-z]{2}$"}
 _RUN = {"type": "integer", "minimum": 1}
+_MAYBE_RUN = {"type": ["integer", "null"], "minimum": 1}
 
 
 EVENTS: Mapping[str, str] = {
@@ -75,6 +78,9 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
         remembered.adopt(mine)
         return translation
 
+    def reviewed(p: Mapping[str, Any], context: Context) -> None:
+        runner.present.happened(Reviewing(reviewer(context.connection), p["lies"]))
+
     def approved(p: Mapping[str, Any], context: Context) -> Any:
         by = context.who or p["by"]  # who has signed in need not be believed
         return runner.approve(p["program"], p["sha256"], by, **_rest(p, "program sha256 by"))
@@ -92,6 +98,13 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
                 enough = min(enough, time.monotonic() + to_end)
             status = runner.wait(p["run"], 0.05)
         return status
+
+    def left_of(run: int | None, language: str) -> dict[str, Any] | None:
+        rest = runner.unfinished(run)
+        if rest is None:
+            return None
+        more = {"line": rest.line, "told": told(rest, runner.knowledge, language)}
+        return {**msgspec.to_builtins(rest), **more}
 
     def listed(p: Mapping[str, Any]) -> Any:
         return runner.log.runs(p.get("last", 20))
@@ -121,14 +134,29 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             observes=True,
         ),
         "program.check": service(
-            lambda p: runner.check(p["program"], p.get("language", "en")),
-            "Review a program: types, what this robot lacks, a dry run; moves nothing.",
-            {"program": _PROGRAM, "language": _LANGUAGE},
+            lambda p: runner.check(p["program"], p.get("language", "en"), p.get("continues")),
+            "Review a program: types, what this robot lacks, a dry run; moves nothing. With"
+            " `continues`, of what is left of it after that run.",
+            {"program": _PROGRAM, "language": _LANGUAGE, "continues": _MAYBE_RUN},
             "program",
+        ),
+        "program.unfinished": service(
+            lambda p: left_of(p.get("run"), p.get("language", "en")),
+            "Tell what is done and what is left of a run that was broken off, the last one if none"
+            " is named; null if nothing is. It goes on as any program: approved, with `continues`.",
+            {"run": _RUN, "language": _LANGUAGE},
+            observes=True,
+        ),
+        "program.reviewing": service_of_call(
+            reviewed,
+            "Tell that a program lies before somebody here who decides on it, or no longer.",
+            {"lies": {"type": "boolean"}},
+            "lies",
         ),
         "program.approve": service_of_call(
             approved,
-            "Approve exactly the program with this SHA-256 for one run.",
+            "Approve exactly the program with this SHA-256 for one run. With `continues`, the"
+            " number of a run that was broken off, what was done there is not done again.",
             {
                 "program": _PROGRAM,
                 "sha256": {"type": "string", "pattern": "^[0-9a-f]{64}$"},
@@ -137,6 +165,7 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
                 "heard": _MAYBE,
                 "language": {"type": ["string", "null"], "maxLength": 5},
                 "plan": _MAYBE,
+                "continues": _MAYBE_RUN,
             },
             "program sha256 by",
         ),
@@ -190,6 +219,11 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             observes=True,
         ),
     }
+
+
+def reviewer(connection: str) -> str:
+    """Whoever reviews a program at that connection, for `nl2robot.state`."""
+    return f"connection {connection}"
 
 
 def _rest(parameters: Mapping[str, Any], taken: str) -> dict[str, Any]:

@@ -15,13 +15,22 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from nl2robot.answers import Sentence
 from nl2robot.errors import ExitStatus, UserError
+from nl2robot.going_on import asks_to_go_on
+from nl2robot.going_on import texts as going_on_texts
 from nl2robot.operator import Operator
 from nl2robot.review import Review
 from nl2robot.runner import GOING, Approval, Status
 from nl2robot.terminal import Decision, Terminal
 from nl2robot.translation import Translation
 from nl2robot.waiting import GivenUp
-from robot_api.errors import InvalidCall, LostConnection, RobotError, StopNotConfirmed, Stopped
+from robot_api.errors import (
+    InvalidCall,
+    LostConnection,
+    NotPossible,
+    RobotError,
+    StopNotConfirmed,
+    Stopped,
+)
 from sandbox.limits import MAX_PROGRAM
 
 if TYPE_CHECKING:
@@ -34,6 +43,8 @@ MOST_QUESTIONS = 5
 """Questions back that are asked before the command is left alone."""
 LOOK_EVERY = 0.1
 """Seconds between two looks whether a run is over."""
+HELD = ("pausing", "paused")
+"""The states in which "go on" means the program that runs."""
 LAST_WORDS = 2.0
 """Seconds to wait for the events of a run that is over."""
 
@@ -68,14 +79,20 @@ class Session:
         self._watching = threading.Event()
         """While a run of this session goes on; others may use the same robot in between."""
         self._told_end = threading.Event()
-        self._lost = False
+        self._state: Mapping[str, Any] = {}
         operator.watch(self._show, "program")
         with contextlib.suppress(InvalidCall):  # a server that tells nothing of it
-            operator.watch(self._show_link, "link")
+            operator.watch(self._show_state, "state")
         terminal.accompany(operator, world)
 
     def perform(self, utterance: str, heard: str | None = None) -> ExitStatus:
         """Understand an utterance, have its program approved, run it."""
+        if asks_to_go_on(utterance, self.language):
+            rest = self.operator.unfinished(self.language)
+            if rest is not None:
+                for sentence in rest.told:
+                    self.terminal.console.print(sentence, markup=False)
+                return self.perform_program(rest.program, continues=rest.run)
         try:
             translation = self.understand(utterance)
         except GivenUp as given_up:
@@ -125,26 +142,42 @@ class Session:
         self.terminal.show_phrases(self.operator.phrases(self.language), about)
 
     def perform_program(
-        self, program: str, translation: Translation | None = None, heard: str | None = None
+        self,
+        program: str,
+        translation: Translation | None = None,
+        heard: str | None = None,
+        continues: int | None = None,
     ) -> ExitStatus:
-        """Review a program, have it approved, run it. A correction instead of a decision makes
+        """Review a program, have it approved, run it; what is left of it, if it `continues` a run.
+        A correction instead of a decision makes
         another program of it, which is reviewed in its place."""
         while True:
             if len(program.encode()) > MAX_PROGRAM:
                 raise UserError(
                     f"The program is longer than {MAX_PROGRAM // 1000} kB. Make it shorter."
                 )
-            review = self.operator.check(program, self.language)
+            review = self.operator.check(program, self.language, continues)
             edited = translation is None or program != translation.program
             self.terminal.show_review(review, None if edited else translation)
             if self.approve_all and not review.acceptable:
                 self.terminal.console.print(self.terminal.words["cannot_be_approved"])
                 return ExitStatus.NOT_APPROVED
-            decision, said = self._decision(review)
+            self.operator.reviewing(True)
+            try:
+                decision, said = self._decision(review)
+            finally:
+                self.operator.reviewing(False)
             if decision == "approve":
-                break
+                approval = self._approve(review, translation, heard, continues)
+                if approval is not None:
+                    break
+                continue  # it waits here until the other program is over
             if decision == "edit":
-                program = self.terminal.edit(program)
+                before, program = program, self.terminal.edit(program)
+                if continues is not None and program != before:
+                    continues = None
+                    told = going_on_texts(self.language)["changed"]
+                    self.terminal.console.print(told, markup=False)
                 continue
             if decision is None:
                 try:
@@ -153,14 +186,30 @@ class Session:
                     self.terminal.show_given_up()
                     continue
                 if changed.program is not None and changed.program != STOP:
-                    translation, program = changed, changed.program
+                    translation, program, continues = changed, changed.program, None
                     continue
                 if not self._is_dropped(changed):
                     self._show_answer(changed)
                     continue
             self.terminal.console.print(self.terminal.words["rejected"])
             return ExitStatus.NOT_APPROVED
-        return self._run(self.operator.approve(review, translation, heard))
+        return self._run(approval)
+
+    def _approve(
+        self,
+        review: Review,
+        translation: Translation | None,
+        heard: str | None,
+        continues: int | None,
+    ) -> Approval | None:
+        """None while another program runs, which is said."""
+        try:
+            return self.operator.approve(review, translation, heard, continues)
+        except NotPossible:
+            if self.approve_all:
+                raise
+            self.terminal.console.print(self.terminal.words["busy"], markup=False)
+            return None
 
     def _decision(self, review: Review) -> tuple[Decision | None, str]:
         return ("approve", "") if self.approve_all else self.terminal.decide(review)
@@ -221,11 +270,16 @@ class Session:
             return False
         return True
 
-    def _show_link(self, kind: str, data: Mapping[str, Any]) -> None:
-        lost = data["state"] == "lost"
-        if lost != self._lost:  # who comes later is told how it is
-            self._lost = lost
+    def _show_state(self, kind: str, data: Mapping[str, Any]) -> None:
+        """How the robot stands, where that is news."""
+        if data["sequence"] <= self._state.get("sequence", 0):
+            return
+        before, self._state = self._state, data
+        was_lost = before.get("lost_since") is not None
+        if was_lost != (data["lost_since"] is not None):
             self.terminal.show_link(data)
+        if self._watching.is_set() and data["state"] != before.get("state"):
+            self.terminal.show_state(data["state"], before.get("state"))
 
     def _wait(self, run: int) -> Status:
         """Wait for the end of a run, with an open ear where somebody may type meanwhile."""
@@ -264,6 +318,10 @@ class Session:
         from grammar.planning.rules import NAME as RULES
         from grammar.requests import ABOUT_RUNS
 
+        if asks_to_go_on(line, self.language) and self._state.get("state") in HELD:
+            with contextlib.suppress(NotPossible):  # it was over in that very moment
+                self.operator.resume()
+            return
         heard = self.operator.translate(line, self.language, RULES)
         if heard.program == STOP:
             self._stop()

@@ -22,8 +22,8 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.routines import open_routines
 from nl2robot.runlog import LogError, RunLog
 from nl2robot.runner import GOING, Runner
-from nl2robot.services import EVENTS, services
-from nl2robot.state import Charging, State, on_wire
+from nl2robot.services import EVENTS, reviewer, services
+from nl2robot.state import Charging, Reviewing, State, on_wire
 from nl2robot.talks import Talks
 from nl2robot.voice_services import Microphones
 from robot_api import limits
@@ -379,6 +379,7 @@ def _open(
 
     def on_left(connection: str) -> None:
         microphones.give_up(connection)
+        runner.present.happened(Reviewing(reviewer(connection), False))
         if added:
             added.left(connection)
 

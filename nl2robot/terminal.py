@@ -306,12 +306,19 @@ class Terminal:
     def show_link(self, data: Mapping[str, Any]) -> None:
         """The robot was lost, or found again."""
         self._live.leave()
-        if data["state"] == "lost":
-            time = datetime.fromtimestamp(data["since"])
-            told = self.words["robot_lost"].format(time=f"{time:%H:%M}", because=data["because"])
+        if data["lost_since"] is not None:
+            time, because = datetime.fromtimestamp(data["lost_since"]), data["because"] or ""
+            told = self.words["robot_lost"].format(time=f"{time:%H:%M}", because=because)
             self.console.print(f"[bold red]{_plain(told.rstrip())}[/]")
         else:
             self.console.print(_plain(self.words["robot_found"]))
+
+    def show_state(self, state: str, before: str | None) -> None:
+        """The run in view was halted, goes on, or is being stopped."""
+        key = "resumed" if state == "running" and before in ("pausing", "paused") else state
+        if told := self.words.get(f"state_{key}"):
+            self._live.leave()
+            self.console.print(f"[yellow]{_plain(told)}[/]")
 
     def show_answer(self, answer: Sequence[Sentence], state: str, message: str | None) -> None:
         """What came of a run; how it ended only where that was not as it should, or nothing did."""

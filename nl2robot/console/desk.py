@@ -279,6 +279,9 @@ class _Desk:
             program, at_once = str(event.args["program"]), bool(event.args["at_once"])
             await self._do(dialogue.propose, program, language, who, at_once)
 
+        async def go_on(event: GenericEventArguments) -> None:
+            await self._do(dialogue.go_on, int(event.args["run"]), language)
+
         async def approve(event: GenericEventArguments) -> None:
             program, shown = str(event.args["program"]), str(event.args["sha256"])
             insists = bool(event.args["all_the_same"])
@@ -297,6 +300,7 @@ class _Desk:
             "desk-given-up": give_up,
             "desk-cancel": cancel,
             "desk-propose": propose,
+            "desk-go-on": go_on,
             "desk-approve": approve,
             "desk-reject": reject,
             "desk-shade": shade,

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Final, Literal
 
@@ -22,11 +23,14 @@ from nl2robot.console.part import Backstage
 from nl2robot.console.thought import Thought
 from nl2robot.console.visitor import texts
 from nl2robot.errors import UserError
+from nl2robot.going_on import asks_to_go_on
+from nl2robot.going_on import texts as going_on_texts
+from nl2robot.going_on import told as rest_told
 from nl2robot.review import Review, digest
 from nl2robot.session import STOP
 from nl2robot.translation import Translation, translate
 from nl2robot.trouble import told
-from robot_api.errors import RobotError
+from robot_api.errors import NotPossible, RobotError
 
 LINES_KEPT: Final = 200
 
@@ -58,6 +62,8 @@ class Draft:
     heard: str | None = None
     review: Review | None = None
     """Of exactly this program; None while it is being reviewed."""
+    continues: int | None = None
+    """The run that was broken off, with which it goes on."""
 
     @property
     def edited(self) -> bool:
@@ -115,13 +121,22 @@ class Dialogue:
                 alone = self._present == 0
             if alone:
                 self.cancel(language)
+                self._changed()
 
+        self._changed()
         return leave
+
+    @property
+    def attended(self) -> bool:
+        """Whether somebody is there."""
+        return self._present > 0
 
     # --- understand
 
     def say(self, words: str, language: str, who: str, harmless: bool = False) -> None:
         """Take what somebody typed. `harmless`: what does no harm need not be approved."""
+        if asks_to_go_on(words, language) and self._goes_on(words, language):
+            return
         thought = self._begin(Thought(words, self._grown), language)
         self._tell(Line("you", words))
         with self._words:
@@ -284,6 +299,33 @@ class Dialogue:
             if at_once and draft and draft.review and draft.may_run and not draft.review.risks:
                 self.approve(draft.program, who, language, draft.review.sha256)
 
+    def _goes_on(self, words: str, language: str) -> bool:
+        """Go on with what is paused, or propose what is left of the last run; whether there is
+        any of it."""
+        runner = self._backstage.runner
+        if runner.present.state.state in ("pausing", "paused"):
+            self._tell(Line("you", words))
+            with suppress(NotPossible):  # it was over in that very moment
+                runner.resume()
+            return True
+        if runner.unfinished() is None:
+            return False
+        self._tell(Line("you", words))
+        self.go_on(None, language)
+        return True
+
+    def go_on(self, run: int | None, language: str) -> None:
+        """Lay what is left of a run that was broken off before the operator, the last one if none
+        is named."""
+        runner = self._backstage.runner
+        rest = runner.unfinished(run)
+        if rest is None:
+            self._tell(Line("robot", going_on_texts(language)["nothing_left"]))
+            return
+        self._tell(Line("robot", " ".join(rest_told(rest, runner.knowledge, language))))
+        with self._turn:
+            self._review(Draft(rest.program, continues=rest.run), language)
+
     def touch(self, program: str) -> None:
         """Somebody is changing the program: from now on there is nothing that could be approved."""
         draft = self.draft
@@ -297,6 +339,8 @@ class Dialogue:
             draft = self.draft
             if draft is None:
                 return
+            if draft.continues is not None:
+                self._tell(Line("robot", going_on_texts(language)["changed"]))
             self._review(Draft(program, draft.translation, draft.heard), language)
 
     def review(self, language: str) -> None:
@@ -309,7 +353,7 @@ class Dialogue:
     def _review(self, draft: Draft, language: str) -> None:
         self.draft = draft
         self._changed()
-        review = self._backstage.runner.check(draft.program, language)
+        review = self._backstage.runner.check(draft.program, language, draft.continues)
         if self.draft is draft:
             self.draft = replace(draft, review=review)
         self._changed()
@@ -352,10 +396,13 @@ class Dialogue:
                     heard=draft.heard,
                     language=language,
                     plan=msgspec.json.encode(plan).decode() if plan is not None else None,
+                    continues=draft.continues,
                 )
                 self.runs.add(runner.run(approval.id))
             except (RobotError, UserError) as error:
-                self._tell(Line("robot", str(error), "trouble"))
+                busy = runner.present.state.run is not None
+                why = _said("busy", language) if busy else str(error)
+                self._tell(Line("robot", why, "trouble"))
                 return
             self.draft = None
             self._changed()

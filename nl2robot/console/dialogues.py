@@ -19,6 +19,7 @@ from nl2robot.archive import state_of
 from nl2robot.console.dialogue import Dialogue, Draft, Line
 from nl2robot.console.part import STOP, Backstage
 from nl2robot.runner import GOING
+from nl2robot.state import Reviewing
 from nl2robot.translation import Translation
 
 IN_MEMORY: Final = 50
@@ -35,6 +36,7 @@ class _Waiting(msgspec.Struct):
     program: str
     translation: Translation | None
     heard: str | None
+    continues: int | None = None
 
 
 class _Kept(msgspec.Struct):
@@ -44,6 +46,10 @@ class _Kept(msgspec.Struct):
 
 
 msgspec.json.Decoder(_Kept)  # learned before there are threads, see `robot_api.schema`
+
+
+def _waiting(draft: Draft) -> _Waiting:
+    return _Waiting(draft.program, draft.translation, draft.heard, draft.continues)
 
 
 class Dialogues:
@@ -68,6 +74,7 @@ class Dialogues:
             dialogue = Dialogue(self._backstage, name)
             self._recall(dialogue, language)
             dialogue.watch(partial(self._keep, dialogue))
+            dialogue.watch(partial(self._tell_review, dialogue))
             self._dialogues[name] = dialogue
         self._dialogues.move_to_end(name)
         self._languages[name] = language
@@ -103,11 +110,16 @@ class Dialogues:
             if dialogue.thought is not None:  # who stops the robot does not wait for it
                 self.later(dialogue.cancel, self._languages.get(name, "en"))
 
+    def _tell_review(self, dialogue: Dialogue) -> None:
+        """Whether a program lies before somebody is a part of how the robot stands."""
+        lies = dialogue.draft is not None and dialogue.attended
+        self._backstage.runner.present.happened(Reviewing(dialogue.name, lies))
+
     # --- files
 
     def _keep(self, dialogue: Dialogue) -> None:
         draft = dialogue.draft
-        waiting = _Waiting(draft.program, draft.translation, draft.heard) if draft else None
+        waiting = _waiting(draft) if draft else None
         kept = msgspec.json.encode(_Kept(dialogue.lines, sorted(dialogue.runs), waiting))
         with self._writing:
             if self._written.get(dialogue.name) == kept:
@@ -132,7 +144,10 @@ class Dialogues:
             return
         dialogue.lines = kept.lines
         if kept.draft:
-            dialogue.draft = Draft(kept.draft.program, kept.draft.translation, kept.draft.heard)
+            draft = kept.draft
+            dialogue.draft = Draft(
+                draft.program, draft.translation, draft.heard, continues=draft.continues
+            )
         dialogue.runs = set(kept.runs)
         for run in kept.runs:
             self._tell_end(dialogue, run, language)

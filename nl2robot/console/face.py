@@ -39,8 +39,9 @@ SEARCHING: Final = ("find", "wait_for", "sees", "count", "objects", "people", "d
 
 EVENTS: Final = {
     "face": "version and what has changed of: language, emotion, mood (thinking | null), screen,"
-    " asking, speech, stopped, unconfirmed (whether the last stop was not confirmed), lost (since"
-    " when the robot is, or null); as `face.state` tells all of it",
+    " asking, speech, robot (the state, as of the event `state`), stopped, unconfirmed (whether the"
+    " last stop was not confirmed), lost (since when the robot is, or null); as `face.state` tells"
+    " all of it",
     "face.act": "number, act (click | type), selector, text: what this face is to do to its page",
 }
 
@@ -89,20 +90,27 @@ class Face:
                 self.change("language", data["code"])
             case "speech":
                 self.change("speech", {**data, "number": self.state["version"]})
-            case "stop":
-                if self.state["unconfirmed"]:
-                    self.change("unconfirmed", False)
-                self._thinks(False)
-            case "stopped":
-                self.change("stopped", self.state["version"])
-            case "stop_not_confirmed":
-                self.change("unconfirmed", True)
-            case "link":
-                self.change("lost", data["since"] if data["state"] == "lost" else None)
+            case "state":
+                self._stands(data)
             case "program" if data["what"] == "call":
                 self._thinks(data["method"] in SEARCHING)
             case "program" if data["what"] in ("result", "state"):
                 self._thinks(False)
+
+    def _stands(self, now: Event) -> None:
+        """How the robot stands, as everybody is told."""
+        before = self.state
+        for name, value in (
+            ("unconfirmed", now["unconfirmed"]),
+            ("lost", now["lost_since"]),
+            ("robot", now["state"]),
+        ):
+            if before[name] != value:
+                self.change(name, value)
+        if now["state"] == "stopped" != before["robot"]:
+            self.change("stopped", self.state["version"])
+        if now["state"] == "stopping":
+            self._thinks(False)
 
     def _thinks(self, thinking: bool) -> None:
         mood = "thinking" if thinking else None
@@ -225,6 +233,7 @@ def _at_the_start(backstage: Backstage) -> dict[str, Any]:
         "screen": {**screen, "number": 0, "page": 0, "by": None},
         "asking": None,
         "speech": None,
+        "robot": "idle",
         "stopped": None,
         "unconfirmed": False,
         "lost": None,

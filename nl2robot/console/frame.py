@@ -135,8 +135,10 @@ def _header(page: str, name: str, visitor: Visitor, words: Mapping[str, str]) ->
         else ""
     )
     return f"""
-<a class="skip" href="#main">{said("skip")}</a>
 <header class="frame">
+  <button type="button" id="stop" class="stop" title="{said("stop_hint")}"
+    aria-keyshortcuts="Escape Space">{said("stop")}</button>
+  <a class="skip" href="#main">{said("skip")}</a>
   <a class="brand" href="/" aria-label="{escape(name, quote=True)}">
     <img src="/static/icon.svg" alt="" width="28" height="28">
     <span>{escape(name)}</span></a>
@@ -144,12 +146,11 @@ def _header(page: str, name: str, visitor: Visitor, words: Mapping[str, str]) ->
   <span class="frame-tools">
     {observer}
     {microphone}
+    <span id="robot-badge" class="chip" role="status" hidden></span>
     <span id="connection" role="status" data-state="waiting"><span class="sr">…</span></span>
     <button type="button" id="settings-button" class="icon-button" aria-haspopup="dialog"
       aria-label="{said("settings")}" title="{said("settings")}">{_icon(_GEAR)}</button>
   </span>
-  <button type="button" id="stop" class="stop" title="{said("stop_hint")}"
-    aria-keyshortcuts="Escape Space">{said("stop")}</button>
 </header>
 <div id="calls"></div>
 <p id="robot-state" class="robot-state" role="alert" hidden></p>

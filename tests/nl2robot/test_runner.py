@@ -187,6 +187,16 @@ def test_one_program_at_a_time(slow_operator) -> None:
     assert slow_operator.wait(start(slow_operator, ROUND)).state == "done"
 
 
+def test_nothing_is_approved_while_another_program_runs(slow_operator) -> None:
+    run = start(slow_operator, ENDLESS)
+    review = slow_operator.check(ROUND)
+    with pytest.raises(NotPossible, match="Another program is running"):
+        slow_operator.approve(review)
+    slow_operator.stop()
+    slow_operator.wait(run)
+    slow_operator.approve(review)
+
+
 def test_an_approved_program_goes_on_when_its_client_leaves(slow_station, sit_down) -> None:
     operator = sit_down(slow_station)
     watch = Watch(operator)

@@ -1,11 +1,17 @@
 /** What every page of the console does: STOP, the sign of the connection, the settings. */
 
 import {element, filled, keep, timeOfDay} from '/static/page.js';
+import {present} from '/static/state.js';
+import {mountStop} from '/static/stop.js';
 import {wire} from '/static/wire.js';
 
 const {words, role, who, language, call, microphone} = JSON.parse(document.getElementById('frame-data').textContent);
 const NOTICE_FOR = 6000;
 const SLOW_STOP = 300;
+const TONES = {
+  ...{running: 'good', pausing: 'warn', paused: 'warn', stopping: 'bad', stopped: 'warn', lost: 'bad'},
+  ...{reviewing: 'accent', charging: '', idle: ''},
+};
 
 let fading = 0;
 
@@ -26,16 +32,12 @@ export function notice(sentence, {alarm = false, action = null} = {}) {
 
 /** Stop the robot and whatever program runs. */
 export async function stop() {
-  const button = document.getElementById('stop');
-  button?.classList.add('pressed');
-  setTimeout(() => button?.classList.remove('pressed'), 400);
   const waiting = setTimeout(() => notice(words.stopping), SLOW_STOP);
   try {
     await wire.request('robot.stop');
-    document.dispatchEvent(new CustomEvent('robot-stopped'));
     notice(words.stopped);
   } catch (error) {
-    // What is not confirmed is said to everybody, by `showStop`.
+    // What is not confirmed is said to everybody, by `showState`.
     if (error.kind === 'StopNotConfirmed') document.getElementById('notice').hidden = true;
     else notice(words.not_stopped, {alarm: true});
   } finally {
@@ -43,54 +45,38 @@ export async function stop() {
   }
 }
 
-/** Whether the space key means something where the focus is. */
-function spaceIsTaken(target) {
-  return target.closest?.(
-    'input, textarea, select, button, a, summary, dialog[open], [contenteditable], [role=button],' +
-      ' [role=slider], [role=tab], [role=option], [role=switch], [role=checkbox], [data-space]',
-  );
-}
-
-function onKey(event) {
-  const escape = event.key === 'Escape';
-  const space = event.key === ' ' && !spaceIsTaken(event.target);
-  if (!(escape || space) || event.repeat) return;
-  // An Escape that closes a window stops the robot as well: better once too often.
-  if (space) event.preventDefault();
-  stop();
-}
-
-/** What stays at the top of the page as long as it is so: the robot may move, or is lost. */
-const alarms = {lost: '', unconfirmed: ''};
-
-function showAlarms() {
+/** What the header says of the robot, and what stays below it as long as it is so: the robot may
+ * move, or is lost. */
+function showState(now, before) {
+  const {state, unconfirmed, lost_since: lost} = now;
+  const alarms = [
+    lost ? filled(words.robot_lost, {time: timeOfDay(lost, language)}) : '',
+    unconfirmed ? words.unconfirmed : '',
+  ].filter(Boolean);
   const told = document.getElementById('robot-state');
-  told.replaceChildren(
-    ...Object.values(alarms)
-      .filter(Boolean)
-      .map((sentence) => element('span', {}, sentence)),
-  );
-  told.hidden = !told.hasChildNodes();
+  if (alarms.join() !== [...told.children].map((each) => each.textContent).join()) {
+    told.replaceChildren(...alarms.map((sentence) => element('span', {}, sentence)));
+  }
+  told.hidden = !alarms.length;
+  if (before.lost_since && !lost) notice(words.robot_found);
+  const badge = document.getElementById('robot-badge');
+  badge.hidden = false;
+  badge.dataset.state = state;
+  badge.className = `chip ${TONES[state] ?? ''}`;
+  const text = words[`state_${state}`];
+  if (badge.textContent !== text) badge.textContent = text; // or it would be read out again
+  document.documentElement.dataset.robot = state;
   showSign();
-}
-
-function showStop(sentence) {
-  alarms.unconfirmed = sentence;
-  showAlarms();
-}
-
-function showLink({state, since}) {
-  const was = alarms.lost;
-  alarms.lost = state === 'lost' ? filled(words.robot_lost, {time: timeOfDay(since, language)}) : '';
-  showAlarms();
-  if (was && !alarms.lost) notice(words.robot_found);
 }
 
 /** The dot in the header: green while page, server and robot are connected. */
 function showSign() {
   const sign = document.getElementById('connection');
   if (sign.dataset.state === 'waiting') return;
-  const lost = !wire.connected ? words.lost : alarms.lost;
+  const robotLost = present.now.lost_since;
+  const lost = !wire.connected
+    ? words.lost
+    : robotLost && filled(words.robot_lost, {time: timeOfDay(robotLost, language)});
   sign.dataset.state = lost ? 'lost' : 'connected';
   sign.title = sign.firstElementChild.textContent = lost || words.connected;
 }
@@ -101,9 +87,9 @@ function showConnection(connected) {
   if (!connected) notice(words.lost, {alarm: true});
   else if (sign.dataset.state === 'lost') document.getElementById('notice').hidden = true;
   sign.dataset.state = connected ? 'connected' : 'lost';
-  // The server tells anew how the robot is; it may have been started anew itself.
-  if (connected) Object.assign(alarms, {lost: '', unconfirmed: ''});
-  showAlarms();
+  // What was so when the connection was lost need not be so any more.
+  document.getElementById('robot-badge').classList.toggle('stale', !connected);
+  showSign();
 }
 
 function openSettings() {
@@ -155,17 +141,13 @@ function toDesk(text) {
   location.assign('/');
 }
 
-document.getElementById('stop').addEventListener('click', stop);
+mountStop(document.getElementById('stop'), stop);
 document.getElementById('settings-button').addEventListener('click', openSettings);
 document.getElementById('settings').addEventListener('click', (event) => {
   if (event.target === event.currentTarget) event.target.close();
 });
-document.addEventListener('keydown', onKey, {capture: true});
 wire.onChange(showConnection);
-wire.subscribe('link', showLink);
-wire.subscribe('stopping', () => showStop(''));
-wire.subscribe('stopped', () => showStop(''));
-wire.subscribe('stop_not_confirmed', () => showStop(words.unconfirmed));
+present.onChange(showState);
 if (role === 'operator') {
   openCalls();
   const button = document.getElementById('frame-microphone');

@@ -1,6 +1,7 @@
 /** The operator's page in the browser: what is typed, spoken and clicked, the run, the map. */
 
 import {appears, pageData} from '/static/page.js';
+import {present} from '/static/state.js';
 import {wire} from '/static/wire.js';
 import {ReviewSeen} from '/static/desk/review_seen.js';
 import {RunPanel} from '/static/desk/run_panel.js';
@@ -139,13 +140,15 @@ function changeIt(said) {
 }
 
 function openDecisions() {
-  const approve = (allTheSame) =>
+  const approve = (allTheSame) => {
+    if (present.now.run !== null) return alertOf(Error(words.busy));
     // What is approved is what stands before one's eyes, whatever of it has reached the server.
     tell('desk-approve', {
       program: editorView().state.doc.toString(),
       sha256: document.getElementById('decide').dataset.review,
       all_the_same: allTheSame,
     });
+  };
   document.addEventListener('click', (event) => {
     if (event.target.closest('#approve')) approve(false);
     if (event.target.closest('#run-anyway')) approve(true);

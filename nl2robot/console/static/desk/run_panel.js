@@ -1,11 +1,13 @@
 /** The run that goes on: its lines with the current one lit, its calls as they tick by. */
 
 import {element, filled} from '/static/page.js';
+import {present} from '/static/state.js';
 
 const CALLS_SHOWN = 100;
 const LONGEST = 80;
 const STATES = {stopped: 'was_stopped'};
-const TONES = {running: 'good', paused: 'warn', done: 'good', failed: 'bad', stopped: 'warn', limit: 'bad'};
+const GOING = ['running', 'pausing', 'paused'];
+const TONES = {running: 'good', pausing: 'warn', paused: 'warn', stopping: 'bad', lost: 'bad', done: 'good', failed: 'bad', stopped: 'warn', limit: 'bad'};
 
 function short(value) {
   if (value && typeof value === 'object' && 'x' in value && 'y' in value) {
@@ -30,6 +32,9 @@ export class RunPanel {
     this._early = [];
     wire.subscribe('program', (event) => this._onEvent(event));
     wire.onChange((connected) => connected && this._load());
+    present.onChange(({run}) => {
+      if (this.run !== null && run === this.run) this._showState();
+    });
   }
 
   /** Ask how the run stands: at the start, after a break, and when another begins. */
@@ -39,7 +44,7 @@ export class RunPanel {
     const view = await loading.catch(() => null);
     if (this._loading !== loading) return;
     this._loading = null;
-    const over = view && !['running', 'paused'].includes(view.state);
+    const over = view && !GOING.includes(view.state);
     if (!view || view.run === this.dismissed || (over && this.run !== view.run)) return;
     this._build(view);
     for (const event of this._early.splice(0)) this._show(event);
@@ -58,9 +63,13 @@ export class RunPanel {
     this.chip = element('span', {class: 'chip', role: 'status'});
     this.message = element('p', {class: 'run-message', hidden: true});
     this.finishing = element('p', {class: 'muted', role: 'status', hidden: true}, words.finishing);
-    this.pause = this._button(words.pause, () => this._control(this.state === 'paused' ? 'resume' : 'pause'));
+    this.pause = this._button(words.pause, () =>
+      this._control(['paused', 'pausing'].includes(present.now.state) ? 'resume' : 'pause'),
+    );
     this.step = this._button(words.step, () => this._control('step'));
     this.close = this._button(words.dismiss, () => this._dismiss());
+    this.goOn = this._button(words.go_on_from, () => window.emitEvent('desk-go-on', {run: this.run}));
+    this.goOn.hidden = true;
     this.see = element('a', {class: 'button small', href: `/runs/${view.run}`}, filled(words.see_run, view));
     this.lines = view.lines.map(({code, reading}, index) => {
       const source = element('code');
@@ -78,7 +87,7 @@ export class RunPanel {
         element('span', {class: 'muted'}, filled(words.approved_by, {who: view.by ?? '?'})),
       ),
       this.finishing, this.message, this.list, this.calls,
-      element('div', {class: 'row'}, ...(this.operator ? [this.pause, this.step] : []), this.see, this.close),
+      element('div', {class: 'row'}, ...(this.operator ? [this.pause, this.step, this.goOn] : []), this.see, this.close),
     );
     for (const call of view.calls) {
       this._call(call);
@@ -167,33 +176,52 @@ export class RunPanel {
   _result(call) {
     const row = this.rows.get(call.number);
     if (!row) return;
-    row.className = call.error ? 'went-wrong' : 'went-well';
+    const halted = call.error?.startsWith('Paused:'); // what is left of it comes later
+    row.className = halted ? 'halted' : call.error ? 'went-wrong' : 'went-well';
     this._showFinishing();
-    const told = call.error ?? (call.result == null ? '' : `→ ${short(call.result)}`);
+    const told = (halted ? this.words.halted : call.error) ?? (call.result == null ? '' : `→ ${short(call.result)}`);
     row.querySelector('.result').textContent = `${told} ${call.seconds.toFixed(1)} s`.trim();
   }
 
+  /** How the run itself stands: it goes on, or how it ended. */
   _state(state, message) {
-    const {words} = this;
-    const going = state === 'running' || state === 'paused';
+    this.going = GOING.includes(state);
     this.state = state;
-    this.root.dataset.state = state;
-    this.chip.className = `chip ${TONES[state] ?? ''}`;
-    this.chip.textContent = words[STATES[state] ?? state] ?? state;
-    this.pause.textContent = state === 'paused' ? words.resume : words.pause;
-    this.pause.hidden = !going;
-    this.step.hidden = state !== 'paused';
-    this.see.hidden = this.close.hidden = going;
-    if (!going) this._line(state === 'done' ? null : Number(this.list.querySelector('.current')?.dataset.line));
-    this._showFinishing();
+    this.see.hidden = this.close.hidden = this.going;
+    this.goOn.hidden = true;
+    if (this.operator && !this.going && state !== 'done') this._offerToGoOn();
+    if (!this.going) this._line(state === 'done' ? null : Number(this.list.querySelector('.current')?.dataset.line));
+    this._showState();
     this._tell(message);
     this.fold();
   }
 
-  /** A program pauses between two calls: until then, the robot may still drive. */
+  /** After a stop one can go on from there, if something is left. */
+  async _offerToGoOn() {
+    const {run} = this;
+    const rest = await this.wire.request('program.unfinished', {run}).catch(() => null);
+    if (rest && run === this.run && !this.going) this.goOn.hidden = false;
+  }
+
+  /** While it goes on, what is shown is the one state of the robot. */
+  _showState() {
+    const {words} = this;
+    const now = this.going && present.goesOn(this.run) ? present.now.state : this.state;
+    const [paused, held] = [now === 'paused', ['pausing', 'paused'].includes(now)];
+    this.root.dataset.state = now;
+    this.chip.className = `chip ${TONES[now] ?? ''}`;
+    const text = words[STATES[now] ?? now] ?? now;
+    if (this.chip.textContent !== text) this.chip.textContent = text;
+    this.pause.textContent = held ? words.resume : words.pause;
+    this.pause.hidden = !this.going || !GOING.includes(now);
+    this.step.hidden = !this.going || !paused;
+    this._showFinishing();
+  }
+
+  /** A sentence may end while the robot already stands. */
   _showFinishing() {
     const going = this.calls.lastElementChild?.classList.contains('going') ?? false;
-    this.finishing.hidden = !(this.state === 'paused' && going);
+    this.finishing.hidden = !(this.root.dataset.state === 'paused' && going);
   }
 
   _tell(message) {

@@ -1,5 +1,6 @@
 /** The helm as this page knows it: who drives, and calls of the robot in the driver's name. */
 
+import {present} from '/static/state.js';
 import {wire} from '/static/wire.js';
 
 const KEPT = 'helm';
@@ -21,9 +22,7 @@ class Helm {
   start(who, operates) {
     this._who = who;
     wire.subscribe('helm', (state) => this._show(state));
-    wire.subscribe('program', ({what, state}) => {
-      if (what === 'state') this._showProgram(state);
-    });
+    present.onChange(({run}) => this._showProgram(run));
     wire.onChange((connected) => {
       if (!connected) {
         this.me = null;
@@ -34,7 +33,6 @@ class Helm {
         this._againUntil = performance.now() + AGAIN_WITHIN;
       }
       wire.request('helm.state').then((state) => this._show(state), () => {});
-      wire.request('program.state').then((run) => this._showProgram(run?.state), () => {});
     });
   }
 
@@ -101,8 +99,9 @@ class Helm {
     this._tell();
   }
 
-  _showProgram(state) {
-    this.program = state === 'running' || state === 'paused';
+  _showProgram(run) {
+    if (this.program === (run !== null)) return;
+    this.program = run !== null;
     this._tell();
   }
 

@@ -4,6 +4,7 @@
  * ten times a second and lasts 0.3 s at the robot, so that it stands whatever becomes of this page.
  */
 
+import {present} from '/static/state.js';
 import {wire} from '/static/wire.js';
 import {helm} from './helm.js';
 
@@ -73,10 +74,7 @@ export class Joystick {
     window.addEventListener('blur', end);
     window.addEventListener('pagehide', end);
     document.addEventListener('visibilitychange', end);
-    document.addEventListener('robot-stopped', end);
-    wire.subscribe('stopping', end);
-    wire.subscribe('stopped', end);
-    wire.subscribe('link', ({state}) => state === 'lost' && end());
+    present.onChange(({state}) => ['stopping', 'stopped', 'lost'].includes(state) && end());
     wire.onChange((connected) => connected || this.end());
     helm.onChange(() => helm.moves || this.end());
   }

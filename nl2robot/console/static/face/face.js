@@ -66,6 +66,7 @@ function show() {
     words,
     mine: mine !== null && state.screen.by === mine,
   });
+  document.body.dataset.robot = state.robot;
   document.body.dataset.view = beside ? 'content' : 'face';
   showLanguage();
   showAlarm();
@@ -75,7 +76,9 @@ function show() {
 function showAlarm() {
   const {lost, unconfirmed} = state;
   const since = lost ? filled(words.robot_lost, {time: timeOfDay(lost, state.language)}) : '';
-  at.alarm.textContent = since || (unconfirmed ? words.unconfirmed : '');
+  const halted = {pausing: words.pausing, paused: words.paused}[state.robot] ?? '';
+  at.alarm.textContent = since || (unconfirmed ? words.unconfirmed : halted);
+  at.alarm.classList.toggle('calm', !since && !unconfirmed);
   at.alarm.hidden = !at.alarm.textContent;
 }
 
