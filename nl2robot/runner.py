@@ -24,6 +24,8 @@ from typing import Any, Final, Literal
 
 import msgspec
 
+from grammar.language import languages, load_language
+from grammar.naming import naming
 from nl2robot import state as happenings
 from nl2robot.going_on import Recall, Unfinished, unfinished
 from nl2robot.history import Record, done_calls
@@ -364,6 +366,20 @@ class Runner:
         odometer = activity.odometer if activity is not None else None
         if odometer is not None:
             odometer.at(pose)
+
+    def note_search(self, search: Mapping[str, Any]) -> None:
+        """Where the robot has looked in vain (the data of the event `searched`): the program's
+        people are told, in the language of whoever approved it."""
+        activity = self._activity
+        if activity is None or activity.outcome is not None or not search["places"]:
+            return
+        code = activity.approval.language or "en"
+        pack = load_language(code if code in languages() else "en")
+        called = naming(self.knowledge.lexicon(pack.code), pack).called
+        text = pack.phrase("looked_in", places=", ".join(map(called, search["places"])))
+        with contextlib.suppress(Stopped):  # the next call finds that the log is full
+            self._logged(self.log.printed, activity.run, f"{text}\n")
+        self._tell(activity, "print", text=f"{text}\n")
 
     # --- the run itself
 

@@ -368,6 +368,8 @@ def _open(
         runner.present.on_event(kind, data)
         if kind == "pose":
             runner.note_pose(data)
+        elif kind == "searched":
+            runner.note_search(data)
         elif kind == STOP:
             runner.stop(str(data.get("because", "The robot was stopped.")))
             microphones.give_up()

@@ -114,6 +114,8 @@ EVENTS: Mapping[str, str] = {
     "sound": "audio (a WAV file in base64), seconds: the next piece of what the robot says, for"
     " whoever plays it; played one after the other",
     "silence": "because: what was to be played is not to be heard any more",
+    "searched": "thing, places: it has looked there for something, in the order of the places, and"
+    " has not found it",
     "stopping": "because: it was told to stop, and everything that was in flight has ended",
     "stopped": "because: the robot has confirmed that it stands",
     "stop_not_confirmed": "because, message: it may still be moving, use its own button",

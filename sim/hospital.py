@@ -90,6 +90,8 @@ class Hospital:
             human = self.add_person(person, placing.x, placing.y, placing.theta, placing.posture)
             human.home = Home(placing.x, placing.y, placing.theta, placing.posture)
         self.known_closed: dict[str, float] = {}
+        self.last_seen: dict[str, str] = {}
+        """By the name of a thing or a person, the place where the robot saw it last."""
         """Doors that the robot has found closed, and when."""
         self.trail: list[Spot] = []
         """Where the robot has driven since it began to guide somebody."""
@@ -149,6 +151,7 @@ class Hospital:
             body.resume(human.body)
             twin.people.append(human.copy(body))
         twin.known_closed = dict(self.known_closed)
+        twin.last_seen = dict(self.last_seen)
         twin.trail = list(self.trail)
         twin.met = {place: set(names) for place, names in self.met.items()}
         twin.partner = self.partner

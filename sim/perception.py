@@ -232,6 +232,11 @@ def _tokens(text: str) -> list[str]:
     return re.findall(r"\w+", re.sub(r"\b(l|d|qu)'|'s\b", " ", text.replace("-", " ")))
 
 
+def names_in(text: str) -> frozenset[str]:
+    """The words of a name or a phrase, without those that say nothing."""
+    return frozenset(_tokens(key(text))) - words().fillers
+
+
 def posture_now(human: Human) -> str:
     return "walking" if human.walking else human.posture
 

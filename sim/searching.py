@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from sim.driving import lengths_to, travel, way_to
 from sim.errors import Blocked, NotPossible
 from sim.hospital import Hospital
+from sim.likely import likeliness, remember
 from sim.navigation import Spot
 from sim.people import Errand, Human
 from sim.perception import Sight, fits, fitting, in_view, parse, spot_of
@@ -29,7 +30,9 @@ _MOST_CHASES = 20
 
 
 def find(hospital: Hospital, thing: str, place: str | None) -> Behaviour[bool]:
-    """Look here, then from place to place, the nearest next; stand by what is found."""
+    """Look here, then from place to place, the likeliest next (`sim.likely`), of such that are as
+    likely the nearest; stand by what is found. What is not found is told of with the event
+    "searched"."""
     target = hospital.place_named(place) if place is not None else None
     with wheel(hospital):
         if target is not None:
@@ -37,24 +40,29 @@ def find(hospital: Hospital, thing: str, place: str | None) -> Behaviour[bool]:
             if _place_here(hospital) != target.name:
                 yield from travel(hospital, (x, y), theta)
             found = yield from _look_around(hospital, thing)
+            if not found:
+                _tell_searched(hospital, thing, [target.name])
             return found
-        looked: set[str] = set()
+        looked: dict[str, None] = {}
+        closed: set[str] = set()
         while True:
             found = yield from _look_around(hospital, thing)
             if found:
                 return True
             here = hospital.place
             if here is not None:
-                looked.add(here.name)
-            ahead = _next_place(hospital, looked)
+                looked[here.name] = None
+            ahead = _next_place(hospital, thing, looked)
             if ahead is None:
+                _tell_searched(hospital, thing, [name for name in looked if name not in closed])
                 return False
-            looked.add(ahead.name)
+            looked[ahead.name] = None
             pose = hospital.pose_of(ahead)
             assert pose is not None
-            with contextlib.suppress(Blocked, NotPossible):
-                # A place that cannot be reached is one that it is not found in.
+            try:
                 yield from _travel_looking(hospital, pose, thing)
+            except (Blocked, NotPossible):
+                closed.add(ahead.name)  # it is not found there, and was not looked for
 
 
 def _place_here(hospital: Hospital) -> str | None:
@@ -62,8 +70,13 @@ def _place_here(hospital: Hospital) -> str | None:
     return here.name if here else None
 
 
-def _next_place(hospital: Hospital, looked: set[str]) -> Place | None:
-    """The place with the shortest way of those where it has not looked."""
+def _tell_searched(hospital: Hospital, thing: str, places: list[str]) -> None:
+    hospital.emit("searched", {"thing": thing, "places": places})
+
+
+def _next_place(hospital: Hospital, thing: str, looked: Collection[str]) -> Place | None:
+    """The likeliest place of those where it has not looked, and of these the one with the shortest
+    way; None if there is no way to any."""
     check_battery(hospital)
     places: list[Place] = []
     spots: list[Spot] = []
@@ -77,8 +90,13 @@ def _next_place(hospital: Hospital, looked: set[str]) -> Place | None:
         places.append(place)
         spots.append((pose[0], pose[1]))
     lengths = lengths_to(hospital, spots)
-    nearest = min(range(len(places)), key=lambda i: lengths[i], default=None)
-    return None if nearest is None or math.isinf(lengths[nearest]) else places[nearest]
+    rank = likeliness(hospital, thing)
+    ranked = [
+        (rank(place), length, number)
+        for number, (place, length) in enumerate(zip(places, lengths, strict=True))
+        if not math.isinf(length)
+    ]
+    return places[min(ranked)[-1]] if ranked else None
 
 
 def _travel_looking(
@@ -100,6 +118,7 @@ def _travel_looking(
 def _look_around(hospital: Hospital, thing: str) -> Behaviour[bool]:
     """Whether one is here; goes and stands by it."""
     sights = [sight for sight in in_view(hospital, thing) if _is_free(sight)]
+    remember(hospital, thing, sights)
     for sight in sights:
         reached = yield from approach(hospital, sight)
         if reached:

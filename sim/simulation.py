@@ -18,7 +18,7 @@ from typing import Any, TypeVar
 
 import msgspec
 
-from sim import company, driving, handling, perception, searching, talking
+from sim import company, driving, handling, likely, perception, searching, talking
 from sim.hospital import Hospital, Listener, chart_of
 from sim.perception import Seen
 from sim.physics import STEP
@@ -176,6 +176,7 @@ class Simulation:
         """What the robot sees of such things or people where it is, the nearest first: "stapler",
         "red cup", "person waving", "people", "objects", "leftmost bottle"."""
         with self._runner.turn:
+            likely.remember(self._hospital, thing, perception.in_view(self._hospital, thing))
             return perception.visible(self._hospital, thing)
 
     def describe(self, thing: str) -> str:

@@ -40,7 +40,8 @@ def running(served: Served):
         run = runs(robot, ROUND)
         yield run
         robot.stop()
-        robot.request("program.wait", {"run": run})
+        present = robot.request("program.state")
+        robot.request("program.wait", {"run": present["run"]})
 
 
 def stands(served: Served, run: int) -> None:

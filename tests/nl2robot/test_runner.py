@@ -253,3 +253,14 @@ def test_a_run_is_over_when_it_is_logged_and_the_next_one_may_begin(
         assert operator.wait(start(operator, "robot.battery()\n")).state == "done"
     assert states == ["running"] * 3
     assert operator.robot.request("program.state")["state"] == "done"
+
+
+def test_where_it_looked_in_vain_is_told_in_the_language_of_who_approved_it(operator, log) -> None:
+    review = operator.check('print(robot.find("unicorn"))\n')
+    parameters = {"program": review.program, "sha256": review.sha256, "by": "Kim"}
+    approval = operator.robot.request("program.approve", {**parameters, "language": "de"})
+    run = operator.robot.request("program.run", {"approval": approval["id"]})
+    assert operator.wait(run).state == "done"
+    told = log.output(run)[0]
+    assert told.startswith("Hier habe ich vergeblich gesucht: ")
+    assert "ward a" in told or "Station" in told

@@ -173,3 +173,40 @@ def test_three_visitors_are_shown_the_way(hospital, living) -> None:
         shown.append(guest.name)
         ward.does(ward.simulation.drive_to(*desk))
     assert len(set(shown)) == 3
+
+
+# --- the likeliest place first -------------------------------------------------------------------
+
+
+def test_a_person_is_looked_for_in_their_own_room_first(hospital, living) -> None:
+    ward = living(hospital)
+    ward.does(ward.simulation.find("Alice"))
+    visited = [name for name in rooms(ward) if "office" in name]
+    assert visited[:1] == ["alice's office"], rooms(ward)
+
+
+def test_medicine_is_looked_for_at_the_pharmacy_first(hospital, living) -> None:
+    ward = living(hospital)
+    kinds = {thing.kind: thing.name for thing in hospital.objects}
+    ward.does(ward.simulation.find(kinds["medicine"]))
+    reached = [name for name in rooms(ward) if name not in ("charger", "corridor")]
+    pharmacy = next(place.name for place in hospital.places if place.kind == "pharmacy")
+    assert pharmacy in reached
+
+
+def test_what_was_seen_is_looked_for_where_it_was_seen(small_ward, living) -> None:
+    ward = living(small_ward)
+    assert ward.does(ward.simulation.find("blue cup"))
+    ward.goes_to("ward a")
+    before = len(rooms(ward))
+    assert ward.does(ward.simulation.find("blue cup"))
+    assert rooms(ward)[-1] == "ward b"
+    assert len(rooms(ward)) - before <= 3
+
+
+def test_it_tells_where_it_has_looked_in_vain(small_ward, living) -> None:
+    ward = living(small_ward)
+    assert ward.does(ward.simulation.find("unicorn")) is False
+    told = [each.data for each in ward.simulation.record.happenings if each.kind == "searched"]
+    assert [each["thing"] for each in told] == ["unicorn"]
+    assert {"ward a", "ward b"} <= set(told[0]["places"])
