@@ -161,6 +161,8 @@ class Speech(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     methods: dict[str, Words]
     durations: Durations
     numbers: NumberWords
+    brief: dict[str, str]
+    """What is said of a whole plan in a breath: `grammar.summary`."""
     languages: dict[str, str] = {}
     """What languages are called, by their codes."""
     counts: tuple[Kept, ...] = ()

@@ -128,12 +128,14 @@ class Operator:
         translation: Translation | None = None,
         heard: str | None = None,
         continues: int | None = None,
+        by: str | None = None,
     ) -> Approval:
-        """Approve exactly the program that was reviewed; with `continues`, what is left of it."""
+        """Approve exactly the program that was reviewed; with `continues`, what is left of it.
+        `by`: how the log calls whoever does."""
         parameters: dict[str, Any] = {
             "program": review.program,
             "sha256": review.sha256,
-            "by": self.name,
+            "by": by or self.name,
             "heard": heard,
             **_continuing(continues),
         }

@@ -17,6 +17,7 @@ from nl2robot.answers import Sentence
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.going_on import asks_to_go_on
 from nl2robot.going_on import texts as going_on_texts
+from nl2robot.harmless import approver, needs_no_question
 from nl2robot.operator import Operator
 from nl2robot.review import Review
 from nl2robot.runner import GOING, Approval, Status
@@ -61,6 +62,7 @@ class Session:
         planner: str = "auto",
         approve_all: bool = False,
         world: World | None = None,
+        ask_always: bool = False,
     ) -> None:
         """`world` is where the robot drives, for the names of places."""
         self.operator = operator
@@ -68,6 +70,8 @@ class Session:
         self.language = language
         self.planner = planner
         self.approve_all = approve_all
+        self.ask_always = ask_always
+        """Also before what only looks or tells."""
         self.last_run: int | None = None
         self.listens = False
         """Whether what is typed while a program runs is heard at once: "stop"."""
@@ -149,8 +153,9 @@ class Session:
         continues: int | None = None,
     ) -> ExitStatus:
         """Review a program, have it approved, run it; what is left of it, if it `continues` a run.
-        A correction instead of a decision makes
-        another program of it, which is reviewed in its place."""
+        A correction instead of a decision makes another program of it, which is reviewed in its
+        place."""
+        asked = self.ask_always
         while True:
             if len(program.encode()) > MAX_PROGRAM:
                 raise UserError(
@@ -162,11 +167,16 @@ class Session:
             if self.approve_all and not review.acceptable:
                 self.terminal.console.print(self.terminal.words["cannot_be_approved"])
                 return ExitStatus.NOT_APPROVED
+            no_question = not (asked or self.approve_all or edited or continues is not None)
+            if no_question and needs_no_question(review, translation):
+                by = approver(self.operator.name, self.language)
+                return self._run(self.operator.approve(review, translation, heard, by=by))
             self.operator.reviewing(True)
             try:
                 decision, said = self._decision(review)
             finally:
                 self.operator.reviewing(False)
+            asked = True
             if decision == "approve":
                 approval = self._approve(review, translation, heard, continues)
                 if approval is not None:

@@ -150,8 +150,9 @@ class Terminal:
         if translation is not None and translation.explanation:
             explanation = _plain(translation.explanation)
             self.console.print(f"[bold]{self.words['in_words']}[/] {explanation}")
-        elif review.reading:
+        else:
             self.console.print(f"[bold]{self.words['in_words']}[/]")
+        if translation is None or len(review.reading) > 1:
             for told in review.reading:
                 self.console.print(f"[dim]{told.line:>4}[/] {'  ' * told.depth}{_plain(told.text)}")
         for finding in review.findings:

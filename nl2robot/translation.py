@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import msgspec
 
-from grammar.language import load_language
+from grammar.language import languages, load_language
+from grammar.naming import naming
 from grammar.normal import normal
 from grammar.plan import Plan, calls, methods, to_data
 from grammar.planning.planner import (
@@ -29,7 +30,9 @@ from grammar.planning.planner import (
 )
 from grammar.planning.turn import Turn
 from grammar.requests import ABOUT_RUNS, Request, agreed
+from grammar.summary import summary
 from grammar.understanding import Context
+from nl2robot.courtesies import courtesy
 from nl2robot.deliberation.deciding import Chosen, Offer, Open, between, decide
 from nl2robot.deliberation.sufficing import is_sure
 from nl2robot.errors import UserError
@@ -62,7 +65,7 @@ class Translation(msgspec.Struct, frozen=True, kw_only=True):
     confidence: float
     """How likely it is that this was meant; calibrated: of all programs at 0.9, nine in ten are."""
     explanation: str
-    """The program in plain words; empty if there is none."""
+    """What the program does, in a breath; empty if there is none."""
     message: str | None
     """Why there is no program, or the question back."""
     suggestions: Sequence[str]
@@ -156,6 +159,9 @@ def translate(
     Raises `UserError` for a language or a planner that there is not, and
     `grammar.planning.planner.Interrupted` when `watch` has ended it."""
     started, watch, talk = time.perf_counter(), watch or Watch(), talk or Talk()
+    courteous = _courtesy(utterance, knowledge, language, talk)
+    if courteous is not None:  # what was said before is as it was
+        return _answer(utterance, courteous, None, started)
     answered = _settled(utterance, knowledge, talk)
     if answered is not None:
         return _answer(utterance, answered, None, started)
@@ -177,6 +183,9 @@ def translate(
             talk.pending = reply.pending
             return _answer(utterance, reply, request, started)
         case Question() | Refusal():
+            slip = _courtesy(utterance, knowledge, turn.language.code, talk, with_slips=True)
+            if slip is not None and isinstance(answer, Refusal):
+                return _answer(utterance, slip, None, started)
             talk.context = answer.context
             message = _with_trouble(answer.message, knowledge)
             status: Status = "clarify" if isinstance(answer, Question) else "rejected"
@@ -278,8 +287,7 @@ def _chosen(utterance: str, turn: Turn, talk: Talk) -> Chosen | None:
 
 
 def _with_program(utterance: str, turn: Turn, chosen: Chosen, started: float) -> Translation:
-    from nl2robot.teaching import told
-
+    pack = turn.language
     return Translation(
         utterance=utterance,
         status="ok",
@@ -287,7 +295,7 @@ def _with_program(utterance: str, turn: Turn, chosen: Chosen, started: float) ->
         plan=to_data(chosen.plan),
         source=chosen.draft.planner,
         confidence=chosen.confidence,
-        explanation=told(chosen.plan, turn.lexicon, turn.language.code),
+        explanation=summary(chosen.plan, pack.code, naming(turn.lexicon, pack).called),
         message=None,
         suggestions=[],
         ms=_milliseconds(started),
@@ -392,6 +400,19 @@ def _replied(
             return Reply("ok" if record is not None else "rejected", happened)
         case _:
             return reply(request, knowledge, language, before)
+
+
+def _courtesy(
+    utterance: str, knowledge: Knowledge, language: str, talk: Talk, *, with_slips: bool = False
+) -> Reply | None:
+    """The answer to a courtesy; None where something else was asked back, which it may answer."""
+    from nl2robot.teaching import Reply
+
+    asked = talk.pending or talk.offers or (talk.context and talk.context.question)
+    if asked or language not in languages():
+        return None
+    said = courtesy(utterance, knowledge.lexicon(language), language, with_slips=with_slips)
+    return Reply("ok", said) if said is not None else None
 
 
 def _settled(utterance: str, knowledge: Knowledge, talk: Talk) -> Reply | None:

@@ -66,6 +66,9 @@ class Method:
     """Whether it can set the body in motion."""
     extra: bool = False
     """Whether it takes further named parameters of its own (`do`)."""
+    looks_or_tells: bool = False
+    """Whether it only looks or tells where the robot is: nothing moves, nobody is asked, called or
+    waited for, and the robot's screen and settings stay as they are."""
 
 
 # --- kinds of values -----------------------------------------------------------------------------
@@ -174,9 +177,19 @@ def _method(
     paper: int | None = None,
     moves: bool = False,
     extra: bool = False,
+    looks_or_tells: bool = False,
 ) -> Method:
     return Method(
-        name, doc, forms if forms else (form,), returns, needs, errors, paper, moves, extra
+        name,
+        doc,
+        forms if forms else (form,),
+        returns,
+        needs,
+        errors,
+        paper,
+        moves,
+        extra,
+        looks_or_tells,
     )
 
 
@@ -191,6 +204,7 @@ METHODS: Final[dict[str, Method]] = {
             P("language", _optional(LANGUAGE), 'such as "de"; the set language if left out', None),
             needs="speech",
             paper=1,
+            looks_or_tells=True,
         ),
         _method(
             "listen",
@@ -219,6 +233,7 @@ METHODS: Final[dict[str, Method]] = {
             returns=ANY_TEXT,
             needs="hearing",
             errors=("TimedOut",),
+            looks_or_tells=True,
         ),
         _method(
             "set_volume",
@@ -296,6 +311,7 @@ METHODS: Final[dict[str, Method]] = {
             needs="navigation",
             errors=("NotPossible",),
             paper=6,
+            looks_or_tells=True,
         ),
         _method(
             "localize",
@@ -314,6 +330,7 @@ METHODS: Final[dict[str, Method]] = {
             P("kind", _optional(NAME), 'only those of a kind: "office", "ward", "lab"', None),
             returns=NAMES,
             needs=CORE,
+            looks_or_tells=True,
         ),
         # --- body
         _method(
@@ -347,6 +364,7 @@ METHODS: Final[dict[str, Method]] = {
             returns=LINES,
             needs=CORE,
             paper=11,
+            looks_or_tells=True,
         ),
         # --- telepresence, scanner, screen
         _method(
@@ -420,6 +438,7 @@ METHODS: Final[dict[str, Method]] = {
             THING,
             returns=YES_NO,
             needs="vision",
+            looks_or_tells=True,
         ),
         _method(
             "count",
@@ -427,12 +446,21 @@ METHODS: Final[dict[str, Method]] = {
             THING,
             returns=COUNT,
             needs="vision",
+            looks_or_tells=True,
         ),
         _method(
-            "objects", "List the objects the robot sees where it is.", returns=NAMES, needs="vision"
+            "objects",
+            "List the objects the robot sees where it is.",
+            returns=NAMES,
+            needs="vision",
+            looks_or_tells=True,
         ),
         _method(
-            "people", "List the people the robot sees where it is.", returns=NAMES, needs="vision"
+            "people",
+            "List the people the robot sees where it is.",
+            returns=NAMES,
+            needs="vision",
+            looks_or_tells=True,
         ),
         _method(
             "describe",
@@ -441,6 +469,7 @@ METHODS: Final[dict[str, Method]] = {
             returns=ANY_TEXT,
             needs="vision",
             errors=("NotFound",),
+            looks_or_tells=True,
         ),
         _method(
             "find",
@@ -507,8 +536,20 @@ METHODS: Final[dict[str, Method]] = {
             moves=True,
         ),
         # --- itself
-        _method("clock", "Tell the time, the weekday and the date.", returns=CLOCK, needs=CORE),
-        _method("battery", "Tell the battery's charge in percent.", returns=PERCENT, needs=CORE),
+        _method(
+            "clock",
+            "Tell the time, the weekday and the date.",
+            returns=CLOCK,
+            needs=CORE,
+            looks_or_tells=True,
+        ),
+        _method(
+            "battery",
+            "Tell the battery's charge in percent.",
+            returns=PERCENT,
+            needs=CORE,
+            looks_or_tells=True,
+        ),
         _method(
             "do",
             "Use a skill of this robot's own, listed in its capabilities.",

@@ -14,6 +14,7 @@ import yaml
 
 from nl2robot import planners
 from nl2robot.commands.options import (
+    add_asking,
     add_language,
     add_planner,
     add_robot,
@@ -49,6 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--device", metavar="NAME", help="the microphone, by a part of its name")
     parser.add_argument("--hot-word", metavar="WORDS", help='instead of "hey robot"')
+    add_asking(parser)
     add_language(parser)
     add_planner(parser)
 

@@ -182,6 +182,15 @@ def add_robot_file(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_asking(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--ask-always",
+        action="store_true",
+        default=bool(os.environ.get("NL2ROBOT_ASK_ALWAYS")),
+        help="ask also before a program that only looks or tells (or set NL2ROBOT_ASK_ALWAYS=1)",
+    )
+
+
 def add_robot(parser: argparse.ArgumentParser) -> None:
     add_address(parser)
     parser.add_argument("--token", help="the token that the robot server printed at its start")

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nl2robot.commands.options import (
+    add_asking,
     add_language,
     add_planner,
     add_robot,
@@ -51,6 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--picture", metavar="FILE", help="save a picture of the run (.svg, .png, .webp, .gif)"
     )
     parser.add_argument("-y", "--yes", action="store_true", help="approve without being asked")
+    add_asking(parser)
     add_language(parser)
     add_planner(parser)
 
@@ -100,6 +102,7 @@ def open_session(
                 planner=options.planner,
                 approve_all=approve_all,
                 world=world,
+                ask_always=options.ask_always,
             ),
             station,
         )

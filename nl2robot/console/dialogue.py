@@ -18,7 +18,6 @@ import msgspec
 
 from grammar.planning.planner import Interrupted
 from nl2robot.answers import answer
-from nl2robot.console.harmless import is_harmless
 from nl2robot.console.part import Backstage
 from nl2robot.console.thought import Thought
 from nl2robot.console.visitor import texts
@@ -26,6 +25,7 @@ from nl2robot.errors import UserError
 from nl2robot.going_on import asks_to_go_on
 from nl2robot.going_on import texts as going_on_texts
 from nl2robot.going_on import told as rest_told
+from nl2robot.harmless import approver, needs_no_question
 from nl2robot.review import Review, digest
 from nl2robot.session import STOP
 from nl2robot.translation import Translation, translate
@@ -134,7 +134,8 @@ class Dialogue:
     # --- understand
 
     def say(self, words: str, language: str, who: str, harmless: bool = False) -> None:
-        """Take what somebody typed. `harmless`: what does no harm need not be approved."""
+        """Take what somebody typed. `harmless`: what only looks or tells needs no
+        question."""
         if asks_to_go_on(words, language) and self._goes_on(words, language):
             return
         thought = self._begin(Thought(words, self._grown), language)
@@ -362,8 +363,11 @@ class Dialogue:
 
     def _let_through(self, language: str, who: str, harmless: bool) -> None:
         draft = self.draft
-        if harmless and draft and draft.review and is_harmless(draft.review):
-            self.approve(draft.program, who, language, draft.review.sha256)
+        if harmless and draft and draft.review:
+            made = None if draft.edited else draft.translation
+            if draft.may_run and needs_no_question(draft.review, made):
+                by = approver(who, language)
+                self.approve(draft.program, by, language, draft.review.sha256)
 
     def approve(
         self, program: str, who: str, language: str, shown: str, insists: bool = False

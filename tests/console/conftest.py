@@ -147,6 +147,7 @@ def look(chromium: Browser, served: Served) -> Iterator[Look]:
         dark: bool = False,
         language: str = "en",
         url: str | None = None,
+        asks_always: bool = True,
         **more: Any,
     ) -> Page:
         context = chromium.new_context(
@@ -159,6 +160,8 @@ def look(chromium: Browser, served: Served) -> Iterator[Look]:
         context.set_default_timeout(SOON)
         opened.append(context)
         page = context.new_page()
+        if asks_always:  # so that stories may end with a decision, whatever is said in them
+            page.add_init_script("localStorage.setItem('harmless', 'no')")
         page.goto((url or served.url) + path)
         return page
 

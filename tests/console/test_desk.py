@@ -196,13 +196,36 @@ def test_a_correction_makes_another_program_in_its_place(page: Page) -> None:
     expect(page.locator(".cm-content")).to_have_text('robot.goto("radiology")')
 
 
-def test_harmless_commands_may_go_through_where_somebody_chose_so(page: Page) -> None:
-    page.get_by_text("Options", exact=True).click()
-    page.get_by_label(re.compile("Do harmless things at once")).check()
-    say(page, "say good morning")
-    expect(page.locator("#run-panel .chip[role=status]")).to_have_text("Done")
+def test_what_only_looks_or_tells_needs_no_question(look: Look, served: Served) -> None:
+    page = look(asks_always=False)
+    last = page.locator(".said.by-robot").last
+    say(page, "what time is it?")
+    expect(last).to_have_text(re.compile(r"It is \d\d:\d\d\. See run \d+"))
+    last.get_by_role("link").click()
+    expect(page.locator("main")).to_contain_text("needed no question (it only looks or tells)")
+    page.go_back()
     say(page, "go to the pharmacy")
     expect(page.get_by_role("button", name="Approve and run")).to_be_enabled()
+    page.get_by_role("button", name="Reject").click()
+    page.get_by_text("Options", exact=True).click()
+    page.get_by_label(re.compile("Do what only looks or tells at once")).uncheck()
+    say(page, "what time is it?")
+    expect(page.get_by_role("button", name="Approve and run")).to_be_enabled()
+
+
+def test_a_poll_is_answered_in_the_conversation_by_person(look: Look, served: Served) -> None:
+    page = look(language="de")
+    page.get_by_label("Sagen Sie dem Roboter, was er tun soll").fill(
+        "frag alle in der Lobby, ob sie Tee möchten, und sag mir das Ergebnis"
+    )
+    page.keyboard.press("Enter")
+    robot = page.locator(".said.by-robot")
+    expect(robot.last).to_contain_text("alle, die ich sehe, „Möchten Sie Tee?“ fragen")
+    page.get_by_role("button", name="Freigeben und starten").click()
+    expect(robot.last).to_contain_text(
+        re.compile(r"Tom: (ja|nein).*Rosa: (ja|nein)", re.DOTALL), timeout=60_000
+    )
+    expect(robot.last).to_contain_text("Das sind die Antworten")
 
 
 def test_a_program_from_elsewhere_is_only_laid_before_the_operator(

@@ -9,6 +9,7 @@ import {RunPanel} from '/static/desk/run_panel.js';
 const {words, role, language} = pageData;
 const LONGEST_PROGRAM = 64_000; // as the sandbox has it
 const OPTIONS = {harmless: 'option-harmless', at_once: 'option-at-once'};
+const CHOSEN = {harmless: 'yes', at_once: 'no'}; // where nobody has chosen
 
 /** Tell the server's side of this page. */
 const tell = (name, data = {}) => window.emitEvent(name, data);
@@ -74,7 +75,7 @@ function openComposer(form) {
   });
   for (const [name, id] of Object.entries(OPTIONS)) {
     const box = document.getElementById(id);
-    box.checked = localStorage.getItem(name) === 'yes';
+    box.checked = (localStorage.getItem(name) ?? CHOSEN[name]) === 'yes';
     box.addEventListener('change', () => localStorage.setItem(name, box.checked ? 'yes' : 'no'));
   }
   const heard = sessionStorage.getItem('say'); // on another page

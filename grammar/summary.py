@@ -1,0 +1,548 @@
+"""What a plan comes to, in a breath: what a colleague repeats before setting off.
+
+    "In every office I will say “Good morning” and, if I see a person, ask “Do you want coffee?”"
+
+The line-by-line reading (`grammar.explain`) says everything that a program does; this leaves out
+what the robot notes for itself, and folds what belongs together: going somewhere in each round of a
+loop, coming back and reporting, searching a thing and taking it. Nothing that moves, speaks, asks,
+gives or calls is left out: each such call that is put into words is ticked off, and where one is
+not, or where it would not be shorter, the full reading is given instead.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Final, TypeGuard
+
+from grammar import plan as p
+from grammar.explain import explain
+from grammar.inference import truth
+from grammar.language import load_language
+from grammar.pauses import may_end
+from grammar.reading import CodeStep, Function
+from grammar.speech import Speech, fill, speech
+from grammar.telling import Teller
+from grammar.told_values import as_call
+from grammar.traversal import nodes
+from robot_api.methods import METHODS
+
+LOOKS: Final = frozenset(
+    method.name
+    for method in METHODS.values()
+    if not method.moves and method.returns.annotation != "None" and method.capability == "vision"
+) - {"wait_for"}
+"""They only look at what is there."""
+QUIET: Final = LOOKS | {"location", "places", "clock", "battery", "log", "wait"}
+"""What may go without saying."""
+NAMED: Final = ("person", "place", "thing")
+"""Parameters that take a name."""
+ENDLESS: Final = frozenset({"while", "repeat until", "again", "forever"})
+"""Loops that go on for as long as it takes."""
+LONGEST: Final = 5
+"""Sentences; what needs more is not said in a breath."""
+
+
+def summary(plan: p.Plan, language: str = "en", called: Callable[[str], str] | None = None) -> str:
+    """The plan in a few sentences; its full reading where it cannot be told in fewer words.
+    `called` as for `grammar.explain.explain`."""
+    full = explain(plan, language, called)
+    words = speech(language)
+    teller = _Brief(words, plan, called or str)
+    try:
+        items = list(teller.items(plan.steps))
+    except _TooMuch:
+        return full
+    if not items or teller.untold():
+        return full
+    sentences = list(_sentences(items, words))
+    told = words.joined_up(" ".join(sentences))
+    if plan.background:
+        said = "; ".join(plan.background)
+        told = f"{told} {load_language(language).phrase('background', said=said)}"
+    return told if len(told) < len(full) and len(sentences) <= LONGEST else full
+
+
+class _TooMuch(Exception):
+    """It cannot be said in a breath."""
+
+
+# --- what is told --------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Deed:
+    text: str
+
+
+@dataclass(frozen=True)
+class _Clause:
+    """Something done under a condition, or several times."""
+
+    text: str
+    items: tuple[_Item, ...]
+    adverb: bool = False
+    """Whether it stands in its sentence without a comma: "in every office"."""
+
+
+_Item = _Deed | _Clause
+
+
+@dataclass
+class _Brief(Teller):
+    """Puts the steps of a plan into items."""
+
+    left: bool = field(init=False, default=False)
+    """Whether the robot has gone from where it was sent."""
+    back: bool = field(init=False, default=False)
+    """Whether it has come back."""
+    _starts: set[str] = field(init=False, default_factory=set)
+    _told: set[int] = field(init=False, default_factory=set)
+    _met: dict[str, bool] = field(init=False, default_factory=dict)
+    """The variables that stand for somebody, each with whether they were spoken of already."""
+    _found: p.Value | None = field(init=False, default=None)
+    """Whom or what it has just looked for."""
+
+    def untold(self) -> list[str]:
+        """The methods that are called and may not be left out, and were."""
+        return [
+            call.method
+            for call in p.calls(self.plan)
+            if call.method not in QUIET and id(call) not in self._told
+        ]
+
+    # --- steps
+
+    def items(self, steps: Sequence[p.Step]) -> Iterator[_Item]:
+        at = 0
+        while at < len(steps):
+            step, later = steps[at], steps[at + 1 :]
+            folded = self._fetched(step, later)
+            if folded is not None:
+                yield _Deed(folded)
+                at += 2
+                continue
+            yield from self._item(step)
+            at += 1
+
+    def _fetched(self, step: p.Step, later: Sequence[p.Step]) -> str | None:
+        """Looking for a thing somewhere and taking it, or for somebody and giving it to them."""
+        match (step, *later[:1]):
+            case (
+                p.Call(method="find", arguments={"thing": one, "place": place}) as first,
+                p.Call(method="grab", arguments={"thing": other}) as then,
+            ) if one == other:
+                pattern, values = self.words.brief["fetch"], {"thing": one, "place": place}
+            case (
+                p.Call(method="find", arguments={"thing": one}) as first,
+                p.Call(method="grab", arguments={"thing": other}) as then,
+            ) if one == other:
+                pattern, values = self.words.brief["fetch anywhere"], {"thing": one}
+            case (
+                p.Call(method="find", arguments={"thing": one}) as first,
+                p.Call(method="give", arguments={"thing": thing, "person": other}) as then,
+            ) if one == other and "place" not in first.arguments:
+                pattern, values = self.words.brief["bring"], {"thing": thing, "person": one}
+            case _:
+                return None
+        self._tick(first, then)
+        self.left, self.back, self._found = True, False, None
+        return self.filled(pattern, values)
+
+    def _item(self, step: p.Step) -> Iterator[_Item]:
+        if isinstance(step, p.Remember) and isinstance(step.value, p.Ask):
+            self._told.add(id(step.value))  # told as the call that it is
+        told = as_call(step)
+        match told:
+            case Function() | CodeStep():
+                raise _TooMuch
+            case p.Call():
+                self._tick(step)
+                yield from self._call(told)
+            case p.Remember() | p.Collect() | p.Increase() | p.SetItem():
+                yield from self._asked_in(told)
+            case p.If():
+                yield from self._branches(told)
+            case p.ForEach():
+                yield from self._each(told)
+            case p.Repeat(times=times) if not isinstance(times, p.Number | p.Recall | p.NumberIn):
+                raise _TooMuch
+            case p.Repeat(times=times, steps=steps):
+                known = isinstance(times, p.Number)
+                yield from self._loop("repeat", steps, known, times=self.times(times))
+            case p.While(steps=(p.Call(method="wait"),) | ()):
+                until = self.condition(told.condition, holds=False)
+                yield _Deed(fill(self.words.steps["wait until"], {"condition": until}))
+            case p.While():
+                yield from self._loop("while", told.steps, condition=self.condition(told.condition))
+            case p.RepeatUntil():
+                until = self.condition(told.condition)
+                yield from self._loop("repeat until", told.steps, condition=until)
+            case p.Forever():
+                leaves = any(map(may_end, told.steps))
+                yield from self._loop("again" if leaves else "forever", told.steps, leaves)
+            case p.Try():
+                yield from self.items(told.steps)
+                otherwise = tuple(self.items(told.otherwise))
+                if otherwise:
+                    yield _Clause(self.words.clauses["failed"], otherwise)
+            case p.End():
+                yield _Deed(self.words.steps["end"])
+            case p.Continue():
+                yield _Deed(self.words.steps["continue"])
+
+    # --- single calls
+
+    def _call(self, call: p.Call) -> Iterator[_Item]:
+        brief = self.words.brief
+        match call:
+            case p.Call(method="location", save_as=str() as name):
+                if not self.left:
+                    self._starts.add(name)
+            case p.Call(method="wait"):
+                if call.arguments.get("seconds") != p.Number(1):
+                    yield _Deed(self.call(call))
+            case p.Call(method=method, save_as=str()) if method in QUIET and self._is_used(call):
+                pass
+            case p.Call(method="goto", arguments={"place": p.Recall(name=name)}) if (
+                name in self._starts
+            ):
+                self.back = True
+                yield _Deed(brief["back"])
+                return
+            case p.Call(method="say", arguments={"text": text}) if self._tells(text):
+                yield _Deed(fill(brief["tell"], {"values": self._values(text)}))
+            case p.Call(method="find"):
+                arguments = dict(call.arguments)
+                pattern = brief["search there" if "place" in arguments else "search"]
+                yield _Deed(self.filled(pattern, arguments))
+            case p.Call(method="ask"):
+                wanted = {"question": call.arguments["question"]}
+                if "person" in call.arguments and call.arguments["person"] != self._found:
+                    wanted["person"] = call.arguments["person"]
+                yield _Deed(self.call(replace_arguments(call, wanted)))
+            case _:
+                yield _Deed(self.call(replace_arguments(call, call.arguments)))
+        self._found = call.arguments.get("thing") if call.method == "find" else None
+        if METHODS[call.method].moves:
+            self.left, self.back = True, False
+
+    @property
+    def _is_home(self) -> bool:
+        """Whether what is said now is said to whoever asked."""
+        return self.back or not self.left
+
+    def _is_used(self, call: p.Call) -> bool:
+        return any(
+            isinstance(node, p.Recall) and node.name == call.save_as
+            for node in nodes(self.plan.steps)
+        )
+
+    def _tells(self, text: p.Value) -> bool:
+        """Whether it is a report to whoever asked, with something in it that was found out."""
+        match text:
+            case p.Sentence():
+                return self._is_home and not any(isinstance(node, p.Choice) for node in nodes(text))
+            case p.Recall(name=name):
+                return self._is_home and isinstance(self.makers.get(name), p.Call)
+            case _:
+                return False
+
+    def _values(self, text: p.Value) -> str:
+        """What a report tells: the one thing that is put into its words, or else "the result"."""
+        parts = text.parts if isinstance(text, p.Sentence) else (text,)
+        values = [part for part in parts if not isinstance(part, p.Text)]
+        self._tick(*nodes(text))
+        match values:
+            case [p.Ask() as value]:
+                return self.value(value)
+            case [p.Recall(name=name)] if isinstance(maker := self.makers.get(name), p.Call):
+                if maker.method not in ("location", "find"):
+                    return self.recall(name)
+        return self.words.brief["result"]
+
+    def _asked_in(self, step: p.Step) -> Iterator[_Item]:
+        """What the robot does to know a value that it notes."""
+        for node in nodes(step):
+            if isinstance(node, p.Ask) and node.method not in QUIET - LOOKS:
+                self._told.add(id(node))
+                yield from self._call(p.Call(node.method, node.arguments))
+
+    # --- branches
+
+    def _branches(self, step: p.If) -> Iterator[_Item]:
+        report = self._report(step)
+        if report is not None:
+            yield from report
+            return
+        match step.condition:
+            case p.Holds(value=p.Ask(method="find") as find):
+                yield from self._searched(find, step)
+                return
+            case p.Not(condition=p.Holds(value=p.Ask(method="find") as find)):
+                yield from self._searched(find, p.If(step.condition, step.otherwise, step.then))
+                return
+        self._tick(*nodes(step.condition))
+        before = (self.left, self.back)
+        then = tuple(self.items(step.then))
+        after, (self.left, self.back) = (self.left, self.back), before
+        otherwise = tuple(self.items(step.otherwise))
+        self.left, self.back = after[0] or self.left, after[1] and self.back
+        if then:
+            yield _Clause(self.condition_clause(step.condition), then)
+        elif otherwise:
+            yield _Clause(self.condition_clause(step.condition, holds=False), otherwise)
+            return
+        else:
+            yield from self._asked_in(p.Remember("", step.condition))
+            return
+        match otherwise:
+            case (_Clause(adverb=False) as inner, *rest):  # "otherwise, if ..."
+                outer = {"outer": self.words.clauses["otherwise"], "inner": inner.text}
+                yield replace(inner, text=fill(self.words.joining["clauses"], outer))
+                yield from rest
+            case (_, *_):
+                yield _Clause(self.words.clauses["otherwise"], otherwise, adverb=True)
+
+    def condition_clause(self, condition: p.Condition, holds: bool = True) -> str:
+        return fill(self.words.clauses["if"], {"condition": self.condition(condition, holds)})
+
+    def _searched(self, find: p.Ask, step: p.If) -> Iterator[_Item]:
+        """Looking for something, and what is done when it is found; "..., come back and tell you"
+        where that is what is done either way."""
+        self._told.add(id(find))
+        yield from self._call(p.Call("find", find.arguments))
+        then, otherwise = self._reported(step.then), self._reported(step.otherwise)
+        if then and otherwise and then[0] and otherwise[0]:
+            self._tick(*nodes(step.then), *nodes(step.otherwise))
+            yield _Deed(self.words.brief["back"])
+            self.back = True
+            yield _Deed(fill(self.words.brief["tell"], {"values": self.words.brief["result"]}))
+            return
+        yield from self.items(step.then)
+        missed = p.Holds(find)
+        if otherwise:
+            self._tick(*nodes(step.otherwise))
+            so: list[_Item] = [_Deed(self.words.brief["back"])] if otherwise[0] else []
+            failed: tuple[_Item, ...] = (*so, _Deed(self.words.brief["so"]))
+        else:
+            failed = tuple(self.items(step.otherwise))
+        if failed:
+            yield _Clause(self.condition_clause(missed, holds=False), failed)
+
+    def _report(self, step: p.If) -> list[_Item] | None:
+        """Both branches of it only tell whoever asked: "tell you whether ..."."""
+        then, otherwise = self._reported(step.then), self._reported(step.otherwise)
+        if not (self.back and then and otherwise) or then[0] or otherwise[0]:
+            return None
+        brief = self.words.brief
+        self._tick(*nodes(step))
+        for inserted in (then[1], otherwise[1]):
+            if inserted:
+                return [_Deed(fill(brief["tell"], {"values": self._values(inserted[0])}))]
+        if not _is_plain(step.condition, self):
+            return [_Deed(fill(brief["tell"], {"values": brief["result"]}))]
+        condition = self.condition(step.condition)
+        return [_Deed(fill(brief["whether"], {"condition": condition}))]
+
+    def _reported(self, steps: Sequence[p.Step]) -> tuple[bool, list[p.Sentence]] | None:
+        """Whether the robot comes back before it tells something, and what it tells of what it has
+        found out; None where the steps do anything else."""
+        comes, said = False, False
+        told: list[p.Sentence] = []
+        for step in map(as_call, steps):
+            match step:
+                case p.Call(method="location") | p.Remember() | p.Collect() | p.Increase():
+                    if any(isinstance(node, p.Ask) for node in nodes(step)):
+                        return None
+                case p.Call(method="goto", arguments={"place": p.Recall(name=name)}) if (
+                    name in self._starts and not said
+                ):
+                    comes = True
+                case p.Call(method="say", arguments={"text": p.Text()}):
+                    said = True
+                case p.Call(method="say", arguments={"text": p.Sentence() as text}):
+                    said = True
+                    told.append(text)
+                case _:
+                    return None
+        return (comes, told) if said else None
+
+    # --- loops
+
+    def _loop(
+        self, kind: str, steps: Sequence[p.Step], adverb: bool = False, **values: str
+    ) -> Iterator[_Item]:
+        items = tuple(self.items(steps))
+        if items:
+            yield _Clause(fill(self.words.clauses[kind], values), items, adverb)
+        elif kind in ENDLESS:  # what it waits for would go untold
+            raise _TooMuch
+
+    def _each(self, step: p.ForEach) -> Iterator[_Item]:
+        if any(isinstance(node, p.Ask) and node.method not in QUIET for node in nodes(step.items)):
+            raise _TooMuch
+        match step:
+            case p.ForEach(
+                items=p.Ask(method="places") as places,
+                steps=(
+                    p.Call(method="goto", arguments={"place": p.Recall(name=name)}) as go,
+                    *rest,
+                ),
+            ) if name == step.variable:
+                self._tick(go)
+                self.left, self.back = True, False
+                kind = places.arguments.get("kind", p.Text(""))
+                if not isinstance(kind, p.Text):
+                    raise _TooMuch
+                items = tuple(self.items(rest))
+                form = "each place" if kind.value else "each place at all"
+                if not items:
+                    form = f"go to {form}"
+                noun = self.words.nouns.the(self.called(kind.value))
+                text = fill(self.words.brief[form], {"kind": noun, "noun": self.called(kind.value)})
+                yield _Clause(text, items, adverb=True) if items else _Deed(text)
+            case p.ForEach(items=p.Ask(method="people") | p.Recall()) if self._is_somebody(step):
+                self._met[step.variable] = False
+                items = tuple(self.items(step.steps))
+                if any(isinstance(item, _Clause) for item in items) or not self._met[step.variable]:
+                    yield _Clause(self.words.brief["for everybody"], items, adverb=True)
+                else:
+                    yield from items
+            case p.ForEach(items=p.Range(stop=stop, start=p.Number(value=0))):
+                known = isinstance(stop, p.Number)
+                yield from self._loop("repeat", step.steps, known, times=self.times(stop))
+            case p.ForEach(items=p.Items(items=named)) if self._is_named(step):
+                names = [self.called(item.value) for item in named if isinstance(item, p.Text)]
+                them = self.listed([self.words.nouns.the(name) for name in names], "and")
+                yield from self._loop("for each", step.steps, True, items=them)
+            case _:
+                yield from self._loop("for each", step.steps, True, items=self.each_of(step))
+
+    def _is_named(self, step: p.ForEach) -> bool:
+        """Whether a loop goes over names of people, places or things, for the robot to go to."""
+        assert isinstance(step.items, p.Items)
+        used = p.Recall(step.variable)
+        return all(isinstance(item, p.Text) for item in step.items.items) and any(
+            isinstance(node, p.Call | p.Ask) and used in map(node.arguments.get, NAMED)
+            for node in nodes(step.steps)
+        )
+
+    def _is_somebody(self, step: p.ForEach) -> bool:
+        if isinstance(step.items, p.Recall):
+            maker = self.makers.get(step.items.name)
+            return isinstance(maker, p.Call) and maker.method == "people"
+        return True
+
+    # --- words
+
+    def recall(self, name: str) -> str:
+        if name in self._met:
+            known, self._met[name] = self._met[name], True
+            return self.words.brief["them" if known else "everybody"]
+        return super().recall(name)
+
+    def value(self, value: p.Value) -> str:
+        match value:
+            case p.Text(value=text) if text.endswith(".") and not text.endswith(".."):
+                return super().value(p.Text(text[:-1]))
+            case p.Sentence(parts=(*first, p.Text(value="."))) if first:
+                return super().value(p.Sentence(tuple(first)))
+        return super().value(value)
+
+    def asked(self, ask: p.Ask) -> str:
+        self._told.add(id(ask))
+        return super().asked(ask)
+
+    def _tick(self, *told: object) -> None:
+        self._told.update(map(id, told))
+
+
+def replace_arguments(call: p.Call, arguments: dict[str, p.Value]) -> p.Call:
+    """The call with other arguments, its result not remembered."""
+    return p.Call(call.method, arguments)
+
+
+def _is_plain(condition: p.Condition, teller: Teller) -> bool:
+    """Whether a condition is one that is said in words of its own: "I saw somebody"."""
+    match condition:
+        case p.Holds(value=value):
+            return not isinstance(truth(value, teller.types.of(value)), p.Compare)
+        case p.Not(condition=inner):
+            return _is_plain(inner, teller)
+        case _:
+            return False
+
+
+# --- sentences -----------------------------------------------------------------------------------
+
+
+def _sentences(items: Iterable[_Item], words: Speech) -> Iterator[str]:
+    brief = words.brief
+    simple: list[_Item] = []
+    closing = re.escape(words.values["quoted"][-1])
+
+    def sentence(pattern: str, **values: str) -> str:
+        text = fill(brief[pattern], values)
+        text = re.sub(rf"([.!?…]\s?{closing})\.$", r"\1", text)
+        return text[:1].upper() + text[1:]
+
+    said = False
+    for item in items:
+        if _is_deed(item):
+            simple.append(item)
+            continue
+        assert isinstance(item, _Clause)
+        if simple:
+            yield sentence("next" if said else "first", steps=_joined(simple, words))
+            simple, said = [], True
+        steps = _joined(item.items, words)
+        yield sentence("adverb" if item.adverb else "clause", clause=item.text, steps=steps)
+        said = True
+    if simple:
+        yield sentence("next" if said else "first", steps=_joined(simple, words))
+
+
+def _is_deed(item: _Item) -> TypeGuard[_Deed]:
+    return isinstance(item, _Deed)
+
+
+def _joined(items: Sequence[_Item], words: Speech) -> str:
+    """Items within a sentence: "a, b and, if so, c; otherwise d"."""
+    brief = words.brief
+    parts: list[list[str]] = [[]]
+    for number, item in enumerate(items):
+        if isinstance(item, _Deed):
+            if number and isinstance(items[number - 1], _Clause):
+                parts.append([])
+            parts[-1].append(item.text)
+            continue
+        steps = _joined(item.items, words)
+        pattern = brief["inner adverb" if item.adverb else "inner clause"]
+        if number and isinstance(items[number - 1], _Clause):
+            parts.append([])
+        parts[-1].append(fill(pattern, {"clause": item.text, "steps": steps}))
+    told = [_listed(part, items_of, brief) for part, items_of in _with_items(parts, items)]
+    return brief["semicolon"].join(told)
+
+
+def _with_items(
+    parts: Sequence[list[str]], items: Sequence[_Item]
+) -> Iterator[tuple[list[str], _Item]]:
+    """Each part with the item that it ends with."""
+    at = -1
+    for part in parts:
+        at += len(part)
+        yield part, items[at]
+
+
+def _listed(texts: list[str], last: _Item, brief: dict[str, str]) -> str:
+    if len(texts) == 1:
+        return texts[0]
+    comma = isinstance(last, _Clause) and not last.adverb
+    joint = brief["and clause" if comma else "and"]
+    return brief["comma"].join(texts[:-1]) + joint + texts[-1]
+
+
+__all__ = ["summary"]
