@@ -170,7 +170,9 @@ class Session:
             no_question = not (asked or self.approve_all or edited or continues is not None)
             if no_question and needs_no_question(review, translation):
                 by = approver(self.operator.name, self.language)
-                return self._run(self.operator.approve(review, translation, heard, by=by))
+                approval = self._approve(review, translation, heard, by=by)
+                if approval is not None:
+                    break
             self.operator.reviewing(True)
             try:
                 decision, said = self._decision(review)
@@ -210,11 +212,12 @@ class Session:
         review: Review,
         translation: Translation | None,
         heard: str | None,
-        continues: int | None,
+        continues: int | None = None,
+        by: str | None = None,
     ) -> Approval | None:
         """None while another program runs, which is said."""
         try:
-            return self.operator.approve(review, translation, heard, continues)
+            return self.operator.approve(review, translation, heard, continues, by)
         except NotPossible:
             if self.approve_all:
                 raise
