@@ -158,9 +158,8 @@ class Session:
         asked = self.ask_always
         while True:
             if len(program.encode()) > MAX_PROGRAM:
-                raise UserError(
-                    f"The program is longer than {MAX_PROGRAM // 1000} kB. Make it shorter."
-                )
+                words = self.terminal.words["program_too_long"]
+                raise UserError(words.format(kilobytes=MAX_PROGRAM // 1000))
             review = self.operator.check(program, self.language, continues)
             edited = translation is None or program != translation.program
             self.terminal.show_review(review, None if edited else translation)
@@ -241,14 +240,12 @@ class Session:
             status, interrupted = self._finish(approval)
             self._told_end.wait(LAST_WORDS)
         except LostConnection as error:
-            raise UserError(
-                f"{error} If the robot still moves, stop it by its own button."
-                " Then see whether its server is running.",
-                ExitStatus.NO_ROBOT,
-            ) from error
+            words = self.terminal.words["lost_while_running"].format(because=error)
+            raise UserError(words, ExitStatus.NO_ROBOT) from error
         finally:
             self._watching.clear()
-        self.terminal.show_answer(self._answer(status), status.state, status.message)
+        answer = self._answer(status)
+        self.terminal.show_answer(answer, status.state, status.message, status.error)
         if interrupted:
             return ExitStatus.INTERRUPTED
         if status.error in (LostConnection.__name__, StopNotConfirmed.__name__):

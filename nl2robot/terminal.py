@@ -31,9 +31,10 @@ from nl2robot.plain import visible
 from nl2robot.rehearsal import DryRun
 from nl2robot.review import Review
 from nl2robot.translation import Translation
+from nl2robot.trouble import told as told_of
 from nl2robot.waiting import Waiting
-from nl2robot.words import authorship, words_in
-from robot_api.errors import InvalidCall
+from nl2robot.words import authorship, decimal, words_in
+from robot_api.errors import InvalidCall, RobotError
 
 if TYPE_CHECKING:
     from nl2robot.answers import Sentence
@@ -158,7 +159,8 @@ class Terminal:
         for finding in review.findings:
             style, word = ("red", "error") if finding.severity == "error" else ("yellow", "note")
             where = f"{self.words[word]}, {self.words['line']} {finding.line}"
-            self.console.print(f"[{style}]{where}:[/] {_plain(finding.message)}")
+            message = told_of(finding.code, finding.message, self.language)
+            self.console.print(f"[{style}]{where}:[/] {_plain(message)}")
         for risk in review.risks:
             where = f"{self.words['risk']}, {self.words['line']} {risk.line}"
             self.console.print(f"[yellow]{where}:[/] {_plain(risk.text)}")
@@ -173,10 +175,11 @@ class Terminal:
             "limit": "would_be_ended",
             "unfinished": "would_go_on",
         }[dry_run.status]
-        time, metres = duration(dry_run.seconds), f"{dry_run.metres:g}"
+        time, metres = duration(dry_run.seconds), decimal(dry_run.metres, self.language)
         text = self.words[ends].format(time=time, metres=metres, line=dry_run.line)
         heading = self.words["dry_run"]
-        self.console.print(f"[bold]{heading}[/] {text} {_plain(dry_run.message or '')}".rstrip())
+        why = told_of(dry_run.error, dry_run.message or "", self.language)
+        self.console.print(f"[bold]{heading}[/] {text} {_plain(why)}".rstrip())
         self._way.plan(dry_run.path)
         if dry_run.places:
             way = " → ".join(self.called(place) for place in dry_run.places)
@@ -284,7 +287,9 @@ class Terminal:
         elif kind == "program" and data["what"] == "result":
             self._way.end()
             if data.get("error"):
-                self.console.print(f"     [red]{_plain(str(data['error']))}[/]")
+                kind, _, message = str(data["error"]).partition(": ")
+                why = told_of(kind, message, self.language) if message else kind
+                self.console.print(f"     [red]{_plain(why)}[/]")
             elif data.get("result") is not None:
                 self.console.print(f"     [green]→ {_plain(_short(data['result']))}[/]")
         elif kind == "program" and data["what"] == "print":
@@ -321,7 +326,14 @@ class Terminal:
             self._live.leave()
             self.console.print(f"[yellow]{_plain(told)}[/]")
 
-    def show_answer(self, answer: Sequence[Sentence], state: str, message: str | None) -> None:
+    def show_error(self, error: RobotError) -> None:
+        """What the robot could not do."""
+        why = told_of(type(error).__name__, str(error), self.language)
+        self.console.print(why, markup=False)
+
+    def show_answer(
+        self, answer: Sequence[Sentence], state: str, message: str | None, error: str | None = None
+    ) -> None:
         """What came of a run; how it ended only where that was not as it should, or nothing did."""
         self._live.leave()
         self._way.end()
@@ -329,16 +341,18 @@ class Terminal:
             for sentence in answer:
                 self.console.print(f"[bold green]{_plain(sentence.text)}[/]")
         if state != "done" or not answer:
-            self.show_end(state, message)
+            self.show_end(state, message, error)
 
-    def show_end(self, state: str, message: str | None) -> None:
+    def show_end(self, state: str, message: str | None, error: str | None = None) -> None:
+        """How a run ended, and why; `error` is the name of what it failed with."""
         self._live.leave()
         self._way.end()
         style = {"done": "green", "stopped": "yellow"}.get(state, "red")
         told = f"[{style}]{self.words.get(state, state)}[/]"
         # The reader of a pipe may have left; how it ended is in the exit status, too.
         with contextlib.suppress(BrokenPipeError):
-            self.console.print(f"{told} {_plain(message or '')}".rstrip())
+            why = told_of(error, message or "", self.language)
+            self.console.print(f"{told} {_plain(why)}".rstrip())
 
     @staticmethod
     def plain(text: str) -> str:

@@ -23,6 +23,11 @@ def words_in(language: str) -> Mapping[str, Any]:
     return found
 
 
+def decimal(value: float, language: str) -> str:
+    """A number as it is written in a language: "12.5", "12,5"."""
+    return f"{value:g}".replace(".", words_in(language)["decimal_point"])
+
+
 def authorship(translation: Translation, language: str) -> Iterator[str]:
     """What to know of a program that a language model has written, in sentences; nothing of one
     that the rules have made, who heed every word."""

@@ -144,4 +144,4 @@ def _answer(session: Session, words: str) -> None:
     except LostConnection:
         raise
     except RobotError as error:
-        session.terminal.console.print(str(error), markup=False)
+        session.terminal.show_error(error)

@@ -19,6 +19,7 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.plain import visible
 from nl2robot.routines import open_routines
 from nl2robot.translation import Translation, translate
+from nl2robot.words import decimal, words_in
 from robot_api.methods import METHODS
 
 if TYPE_CHECKING:
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from rich.tree import Tree
 
 STYLES = {"ok": "green", "clarify": "yellow", "rejected": "red"}
-VERDICTS = {"ok": "understood", "clarify": "needs an answer", "rejected": "not understood"}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -57,22 +57,23 @@ def run(options: argparse.Namespace) -> int:
 def _show(translation: Translation, understood: Understanding, language: str) -> None:
     from nl2robot.terminal import Terminal
 
-    terminal = Terminal()
-    console, plain = terminal.console, terminal.plain
+    terminal = Terminal(language=language)
+    console, plain, words = terminal.console, terminal.plain, terminal.words["explained"]
     if understood.utterance != translation.utterance:
-        console.print(f"{plain(translation.utterance)}\n[dim]in other words[/]")
+        console.print(f"{plain(translation.utterance)}\n[dim]{words['in_other_words']}[/]")
     console.print(_marked(understood), end="\n\n")
     if understood.parts:
         console.print(_tree(understood, language), end="\n\n")
-    style, verdict = STYLES[translation.status], VERDICTS[translation.status]
-    sure = f", {translation.confidence:.0%} sure" if translation.status == "ok" else ""
-    console.print(f"[{style}]{verdict}[/]{sure}, in {translation.ms:.1f} ms")
+    style, verdict = STYLES[translation.status], words[translation.status]
+    sure = f", {words['sure'].format(share=round(100 * translation.confidence))}"
+    took = words["took"].format(time=decimal(round(translation.ms, 1), language))
+    console.print(f"[{style}]{verdict}[/]{sure if translation.status == 'ok' else ''}, {took}")
     if translation.program is None:
         console.print(plain(translation.message or ""))
         for phrase in translation.suggestions:
             console.print(f"  [bold]{plain(phrase)}[/]")
         return
-    console.print(f"[bold]In words:[/] {plain(translation.explanation)}")
+    console.print(f"[bold]{terminal.words['in_words']}[/] {plain(translation.explanation)}")
     terminal.show_program(translation.program)
 
 
@@ -110,7 +111,8 @@ def _tree(understood: Understanding, language: str) -> Tree:
     from rich.text import Text
     from rich.tree import Tree
 
-    root = Tree(Text("read as", "dim"), guide_style="dim")
+    words = words_in(language)["explained"]
+    root = Tree(Text(words["read_as"], "dim"), guide_style="dim")
     branches = [(-1, root)]
     parts = understood.parts
     for number, part in enumerate(parts):
@@ -119,7 +121,7 @@ def _tree(understood: Understanding, language: str) -> Tree:
         if _hands_on(parts, number, language):
             continue
         line = Text()
-        line.append(visible(part.words) or "(left out)", "bold" if part.depth == 0 else "")
+        line.append(visible(part.words) or words["left_out"], "bold" if part.depth == 0 else "")
         line.append("  ")
         line.append(part.meaning.replace("_", " "), "magenta")
         if part.value is not None:

@@ -12,6 +12,7 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.routines import open_routines
 from nl2robot.teaching import topic_of
 from nl2robot.terminal import Terminal
+from nl2robot.words import words_in
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -27,9 +28,8 @@ def run(options: argparse.Namespace) -> int:
     if options.topic:
         found = topic_of(options.topic, list(topics))
         if found is None:
-            raise UserError(
-                f"There is no topic {options.topic!r}. The topics are: {', '.join(topics)}."
-            )
+            told = words_in(options.lang)["no_topic"]
+            raise UserError(told.format(topic=options.topic, topics=", ".join(topics)))
         topics = {found: topics[found]}
     if options.json:
         print(json.dumps(topics, ensure_ascii=False))

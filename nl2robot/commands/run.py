@@ -35,6 +35,7 @@ from nl2robot.station import (
     simulated_station,
 )
 from nl2robot.terminal import Terminal
+from nl2robot.words import words_in
 from robot_api.capabilities.sound import SILENT
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     if (options.words is None) == (options.program is None):
-        raise UserError('Say what to do: nl2robot run "go to the pharmacy", or --program FILE.')
+        raise UserError(words_in(options.lang)["say_what"])
     program = _read(options.program) if options.program is not None else None
     picture = Path(options.picture) if options.picture is not None else None
     robot = robot_of(options)
@@ -76,7 +77,8 @@ def run(options: argparse.Namespace) -> int:
             status = session.perform_program(program)
         if picture is not None and session.last_run is not None:
             station.picture(session.last_run, picture)
-            session.terminal.console.print(f"Picture: {picture}", soft_wrap=True, markup=False)
+            told = session.terminal.words["picture"].format(file=picture)
+            session.terminal.console.print(told, soft_wrap=True, markup=False)
         return status
 
 
