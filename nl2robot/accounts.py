@@ -79,7 +79,8 @@ CREATE TABLE IF NOT EXISTS invitations (
 CREATE TABLE IF NOT EXISTS failures (
     time REAL NOT NULL,
     name TEXT NOT NULL COLLATE NOCASE,
-    address TEXT NOT NULL
+    address TEXT NOT NULL,
+    counts INTEGER NOT NULL DEFAULT 1  -- 0 once they have signed in after all
 );
 CREATE TABLE IF NOT EXISTS facts (name TEXT PRIMARY KEY, value TEXT NOT NULL);
 """
@@ -192,7 +193,7 @@ class Accounts:
                 self._failed(name, address)
                 return None
         with self._changing() as database:
-            database.execute("DELETE FROM failures WHERE name = ?", (name,))
+            database.execute("UPDATE failures SET counts = 0 WHERE name = ?", (name,))
         return self._begin(account[1], account[0], label, account[0])
 
     def sign_out(self, secret: str) -> None:
@@ -253,12 +254,24 @@ class Accounts:
 
     # --- administering
 
-    def add(self, name: str, role: Role, password: str) -> None:
-        """Make an account. Raises `UserError`."""
+    def check_new(self, name: str) -> str:
+        """The name as an account can have it. Raises `UserError` if it is none, or taken."""
         name = _checked_name(name)
-        _check_role(role)
         if self._row("SELECT 1 FROM accounts WHERE name = ?", name):
             raise UserError(f"There is an account of {name} already. Choose another name.")
+        return name
+
+    def check_known(self, name: str) -> None:
+        """Raises `UserError` if there is no such account."""
+        if not self._row("SELECT 1 FROM accounts WHERE name = ?", name):
+            raise UserError(
+                f"There is no account of {name}. `nl2robot accounts list` says which there are."
+            )
+
+    def add(self, name: str, role: Role, password: str) -> None:
+        """Make an account. Raises `UserError`."""
+        name = self.check_new(name)
+        _check_role(role)
         hashed = passwords.hashed(password)
         with self._changing() as database:
             database.execute(
@@ -267,13 +280,13 @@ class Accounts:
 
     def remove(self, name: str) -> None:
         """End an account and all that somebody came in by with it. Raises `UserError`."""
-        self._check_known(name)
+        self.check_known(name)
         with self._changing() as database:
             database.execute("DELETE FROM accounts WHERE name = ?", (name,))
 
     def set_password(self, name: str, password: str) -> None:
         """Who is signed in with the old one has to sign in again. Raises `UserError`."""
-        self._check_known(name)
+        self.check_known(name)
         hashed = passwords.hashed(password)
         with self._changing() as database:
             database.execute("UPDATE accounts SET password = ? WHERE name = ?", (hashed, name))
@@ -281,7 +294,7 @@ class Accounts:
 
     def set_role(self, name: str, role: Role) -> None:
         """Raises `UserError`."""
-        self._check_known(name)
+        self.check_known(name)
         _check_role(role)
         with self._changing() as database:
             database.execute("UPDATE accounts SET role = ? WHERE name = ?", (role, name))
@@ -425,7 +438,8 @@ class Accounts:
         longest = 0.0
         for column, value in (("name", name), ("address", address)):
             count, newest = self._rows(
-                f"SELECT COUNT(*), MAX(time) FROM failures WHERE {column} = ? AND time > ?",
+                f"SELECT COUNT(*), MAX(time) FROM failures WHERE {column} = ? AND counts"
+                " AND time > ?",
                 *(value, since),
             )[0]
             if count >= FREE_FAILURES:
@@ -437,19 +451,13 @@ class Accounts:
     def _failed(self, name: str, address: str) -> None:
         with self._changing() as database:
             database.execute(
-                "INSERT INTO failures VALUES (?, ?, ?)",
+                "INSERT INTO failures (time, name, address) VALUES (?, ?, ?)",
                 (self._clock(), name[:LONGEST_NAME], address),
             )
             database.execute(
                 "DELETE FROM failures WHERE rowid NOT IN"
                 " (SELECT rowid FROM failures ORDER BY time DESC LIMIT ?)",
                 (FAILURES_KEPT,),
-            )
-
-    def _check_known(self, name: str) -> None:
-        if not self._row("SELECT 1 FROM accounts WHERE name = ?", name):
-            raise UserError(
-                f"There is no account of {name}. `nl2robot accounts list` says which there are."
             )
 
     @contextlib.contextmanager

@@ -134,7 +134,6 @@ class LocalCertificate(Certificate):
         self._names = names
         self._addresses = addresses
         self._now = now
-        self._authority: x509.Certificate | None = None
         folder.chmod(0o700)
         self.renew()
 
@@ -144,9 +143,7 @@ class LocalCertificate(Certificate):
 
     @property
     def fingerprint(self) -> str | None:
-        if self._authority is None:
-            return None
-        return self._authority.fingerprint(hashes.SHA256()).hex(":").upper()
+        return fingerprint_of(self._file("authority.crt"))
 
     def renew(self) -> None:
         """Make the certificate anew if it is about to end, or this machine has another address."""
@@ -157,7 +154,6 @@ class LocalCertificate(Certificate):
         addresses = [each for each in addresses if _allows(authority, each)]
         if not self._holds(authority, names, addresses):
             self._issue(authority, key, names, addresses)
-        self._authority = authority
         super().renew()
 
     def _kept_authority(self) -> tuple[x509.Certificate | None, ec.EllipticCurvePrivateKey | None]:
@@ -261,6 +257,13 @@ class LocalCertificate(Certificate):
             with os.fdopen(os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as file:
                 file.write(content)
             new.replace(self._file(name))
+
+
+def fingerprint_of(authority: Path) -> str:
+    """Of an authority's certificate. Raises `UserError`."""
+    with _told(authority):
+        certificate = x509.load_pem_x509_certificate(authority.read_bytes())
+    return certificate.fingerprint(hashes.SHA256()).hex(":").upper()
 
 
 @contextlib.contextmanager

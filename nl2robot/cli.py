@@ -30,6 +30,7 @@ COMMANDS = {
     "listen": "turn what is said, or a recording, into a program or an answer",
     "routines": "commands with a name: list, explain, learn, change, forget, export, import",
     "serve": "the robot server on one port, a simulated hospital by default",
+    "accounts": "who may come in to the server here: people, and tablets by a QR code",
     "robots": "the kinds of robots there are drivers for, and a check of one robot",
     "log": "show past runs, and replay them in the simulator",
     "world": "begin a world from a robot's map, check one, put what was drawn into its file",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import socket
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -30,10 +31,12 @@ class Entrance:
         """Whether nobody but this machine can come in."""
         return access.is_loopback(self.host)
 
-    def url(self, port: int) -> str:
-        """Where others find the pages, with a slash at its end."""
+    def url(self, port: int, *, by_address: bool = False) -> str:
+        """Where others find the pages, with a slash at its end. `by_address`: also those who know
+        this machine by no name, as most tablets."""
         scheme = "https" if self.certificate else "http"
-        return f"{scheme}://{reachable(self.host)}:{port}/"
+        name = own_address if by_address else socket.gethostname
+        return f"{scheme}://{reachable(self.host, name)}:{port}/"
 
 
 def reachable(host: str, name: Callable[[], str] = socket.gethostname) -> str:
@@ -46,3 +49,14 @@ def reachable(host: str, name: Callable[[], str] = socket.gethostname) -> str:
     ):  # every address of this machine, and none of a client's
         return name()
     return f"[{host}]" if ":" in host and not host.startswith("[") else host
+
+
+def own_address() -> str:
+    """The address of this machine in its network; its name, if it is in none."""
+    with contextlib.closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as asking:
+        try:
+            # Nothing is sent: only the way there is looked up, to an address that nobody has.
+            asking.connect(("192.0.2.1", 9))
+        except OSError:
+            return socket.gethostname()
+        return str(asking.getsockname()[0])

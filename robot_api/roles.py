@@ -18,6 +18,8 @@ face: be touched, typed at and called in the robot's place. operate: have progra
 approved and run, draw on the map. drive: call the robot's own methods. administer: accounts."""
 
 ROLES: Final[tuple[Role, ...]] = get_args(Role)
+PAIRED: Final[tuple[Role, ...]] = ("face", "observer", "operator")
+"""The roles that a device can have by itself; to administer takes a person."""
 RIGHTS: Final[dict[Role, frozenset[Right]]] = {
     "face": frozenset({"know", "face"}),
     "observer": frozenset({"know", "look"}),

@@ -151,7 +151,7 @@ def _certificate(options: argparse.Namespace) -> Certificate | None:
 def _say_where(server: Server, entrance: Entrance, options: argparse.Namespace) -> None:
     port = int(server.address.rpartition(":")[2])
     accounts, page = entrance.accounts, entrance.url(port)
-    accounts.note(PAGES_AT, page)
+    accounts.note(PAGES_AT, entrance.url(port, by_address=True))
     wire = page.replace("http", "ws", 1).rstrip("/")
     print(f"The robot is at {wire} (page: {page}).")
     if not entrance.local:

@@ -124,8 +124,10 @@ def _routes(entrance: Entrance) -> list[BaseRoute]:
         invitation = await run_in_threadpool(accounts.invitation, code)
         words = texts("door", visitor_of(request).language)
         if invitation is None:
+            about: dict[str, Any] = {"invitation": None, "first": False}
+            trouble = words["join_over"]
             title = words["join_title"]
-            return page(request, "door_join.html", title, trouble=words["join_over"], status=410)
+            return page(request, "door_join.html", title, status=410, trouble=trouble, **about)
         first = invitation.role == "administrator"
         trouble, name = "", ""
         if request.method == "POST" and first:

@@ -69,7 +69,7 @@ def frame(backstage: Backstage, page: str) -> Iterator[Visit]:
     ui.page_title(f"{words[page]} · {name}")
     ui.dark_mode({"auto": None, "light": False, "dark": True}[visitor.look])
     ui.add_head_html(_head(visitor, words))
-    ui.add_body_html(_header(page, name, visitor, words))
+    ui.add_body_html(_header(page, name, visitor, words, backstage.entrance is not None))
     with ui.element("div").props('id="main" tabindex="-1"').classes(f"page page-{page}"):
         if page != "runs":  # whose pages have headings of their own
             ui.html(f'<h1 class="sr">{escape(words[page])}</h1>', sanitize=False)
@@ -108,7 +108,9 @@ def _data(name: str, data: Mapping[str, Any]) -> str:
     return f'<script type="application/json" id="{name}">{written}</script>'
 
 
-def _header(page: str, name: str, visitor: Visitor, words: Mapping[str, str]) -> str:
+def _header(
+    page: str, name: str, visitor: Visitor, words: Mapping[str, str], entrance: bool
+) -> str:
     def said(key: str) -> str:
         return escape(words[key], quote=True)
 
@@ -160,13 +162,35 @@ def _header(page: str, name: str, visitor: Visitor, words: Mapping[str, str]) ->
     <h2>{said("settings")}</h2>
     <label>{said("language")}<select id="language" class="field">{languages}</select></label>
     <label>{said("look")}<select id="look" class="field">{looks}</select></label>
-    <label>{said("who")}<input id="who" class="field" maxlength="{LONGEST_NAME}"
-      autocomplete="name" value="{escape(visitor.name, quote=True)}">
-      <small class="muted">{said("who_hint")}</small></label>
+    {_who(visitor, words)}
     <button class="button primary">{said("close")}</button>
   </form>
+  {_door(visitor, words) if entrance else ""}
 </dialog>
 """
+
+
+def _who(visitor: Visitor, words: Mapping[str, str]) -> str:
+    """Where people say who they are, unless that is known."""
+    name = escape(visitor.name, quote=True)
+    if visitor.signed_in:
+        told = escape(words["signed_in"].format(name=visitor.name))
+        return f'<p>{told}</p><input type="hidden" id="who" value="{name}">'
+    hint = escape(words["who_hint"])
+    return (
+        f'<label>{escape(words["who"])}<input id="who" class="field" maxlength="{LONGEST_NAME}"'
+        f' autocomplete="name" value="{name}"><small class="muted">{hint}</small></label>'
+    )
+
+
+def _door(visitor: Visitor, words: Mapping[str, str]) -> str:
+    """The ways in and out."""
+    devices = f'<a class="button" href="/devices">{escape(words["devices"])}</a>'
+    out = f'<button class="button quiet">{escape(words["sign_out"])}</button>'
+    return '<div class="row">{}{}</div>'.format(
+        devices if visitor.operates else "",
+        f'<form method="post" action="/sign-out">{out}</form>' if visitor.signed_in else "",
+    )
 
 
 _GEAR: Final = (
