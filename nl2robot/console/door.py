@@ -219,6 +219,7 @@ def _denied(request: HTTPConnection, guest: Guest) -> Response:
         words["denied_title"],
         status=403,
         sentence=words["denied"],
+        stop=True,
         links=[("/sign-in", words["sign_in"])],
     )
 

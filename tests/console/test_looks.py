@@ -26,6 +26,7 @@ READY = {
     "/map": ".floor-told",
     "/drive": "#drive .floor-told",
     "/runs": "[data-part=found]",
+    "/devices": "#devices .card",
 }
 
 

@@ -82,7 +82,7 @@ function row(device) {
     element(
       'span', {},
       element('strong', {}, named(device)),
-      element('span', {class: 'muted'}, `${words[device.role]}${paired} · ${words.used}: ${moment(device.used)}`),
+      element('span', {class: 'muted'}, `${words[`is_${device.role}`]}${paired} · ${words.used}: ${moment(device.used)}`),
     ),
     button,
   );
@@ -100,7 +100,7 @@ async function show() {
   const cards = [pair, list(words.devices, devices.map(row))];
   if (accounts) {
     const people = accounts.map(({name, role}) =>
-      element('li', {}, element('strong', {}, name), element('span', {class: 'muted'}, words[role])));
+      element('li', {}, element('strong', {}, name), element('span', {class: 'muted'}, words[`is_${role}`])));
     cards.push(list(words.accounts, people, element('p', {class: 'muted'}, words.accounts_told)));
   }
   if (failures.length) {
