@@ -15,14 +15,15 @@ NEAR = 0.6
 _STEP, _AROUND = 0.05, 24
 
 
-def room_near(world: World, x: float, y: float) -> Spot | None:
-    """The spot, or one near it where the robot has room; None if there is none."""
+def room_near(world: World, x: float, y: float, within: float = NEAR) -> Spot | None:
+    """The spot, or the nearest within so many metres where the robot has room; None if there is
+    none."""
     chart = chart_of(world)
     free = chart.nearest_free(x, y)
-    if free is not None and math.dist(free, (x, y)) <= NEAR:
+    if free is not None and math.dist(free, (x, y)) <= within:
         return free
     # It is in a wall, or just beyond one.
-    for ring in range(1, round(NEAR / _STEP) + 1):
+    for ring in range(1, round(within / _STEP) + 1):
         for number in range(_AROUND):
             angle = math.tau * number / _AROUND
             spot = (x + ring * _STEP * math.cos(angle), y + ring * _STEP * math.sin(angle))

@@ -47,12 +47,15 @@ def part(backstage: Backstage) -> Part:
     def pages() -> None:
         from nicegui import ui
 
+        from nl2robot.console import map_page
         from nl2robot.console.frame import frame
 
         @ui.page("/")
         def desk() -> None:
             with frame(backstage, "desk") as visit:
-                _Desk(backstage, dialogues, visit)
+                Desk(backstage, dialogues, visit)
+
+        map_page.pages(backstage, dialogues)
 
     def close() -> None:
         unsubscribe()
@@ -72,22 +75,29 @@ def part(backstage: Backstage) -> Part:
     )
 
 
-class _Desk:
-    """The page in one browser window."""
+class Desk:
+    """Talk, review, approve and watch, in one browser window.
 
-    def __init__(self, backstage: Backstage, dialogues: Dialogues, visit: Visit) -> None:
+    Without `talks` it is the review and the run alone, for a page of something else: of the same
+    conversation, so that what waits on one page waits on the other.
+    """
+
+    def __init__(
+        self, backstage: Backstage, dialogues: Dialogues, visit: Visit, *, talks: bool = True
+    ) -> None:
         from nicegui import ui
 
         request = ui.context.client.request
         assert request is not None
         self.backstage = backstage
         self.visit = visit
-        self.words = visit.words
+        self.words = texts("desk", visit.language)
+        self.talks = talks
         self.dialogues = dialogues
         self.dialogue = dialogues.of(_name(request.cookies.get("desk", "")), visit.language)
         visit.hand_over(
             {
-                "words": dict(visit.words),
+                "words": dict(self.words),
                 "microphone": dict(texts("microphone", visit.language)),
                 "desk": self.dialogue.name,
                 "history": [line.text for line in self.dialogue.lines if line.by == "you"],
@@ -101,6 +111,8 @@ class _Desk:
         """The program in the editor, as it was last set here or typed there."""
         self._path: list[list[float]] | None = None
         self._dropped = self.dialogue.dropped
+        self._read = len(self.dialogue.lines)
+        """How many lines of the conversation were there when the page was opened."""
         self._ponders = False
         """Whether the microphone here has heard what was then thought about."""
         self._build()
@@ -129,7 +141,8 @@ class _Desk:
                 loop.call_soon_threadsafe(self._draw)
 
         client.on_delete(self.dialogue.watch(changed))
-        client.on_delete(self.dialogue.look_on(self.thought.grown))
+        if self.talks:
+            client.on_delete(self.dialogue.look_on(self.thought.grown))
 
     def _attend(self) -> None:
         """Be there for the dialogue as long as the browser is, and a little longer: a connection
@@ -156,6 +169,11 @@ class _Desk:
     def _build(self) -> None:
         from nicegui import ui
 
+        if not self.talks:
+            with ui.element("div").classes("desk-program"):
+                self.told = ui.html("", sanitize=False).props('role="status"')
+                self._build_program()
+            return
         with ui.element("div").classes(f"desk {self.visit.role}"):
             with (
                 ui.element("section")
@@ -169,35 +187,37 @@ class _Desk:
                     self.thought = ThoughtView(self.dialogue, self.words, _loop())
                 ui.html(_page("composer.html", visit=self.visit), sanitize=False)
             with ui.element("div").classes("desk-program"):
-                ui.html('<section id="run-panel" hidden></section>', sanitize=False)
-                with (
-                    ui.element("section")
-                    .classes("desk-review card")
-                    .props(f'aria-label="{self.words["review"]}"') as self.panel
-                ):
-                    self.head = ui.html("", sanitize=False).props('aria-live="polite"')
-                    with ui.element("div").classes("desk-editor") as self.editor_box:
-                        self.editor = ui.codemirror(
-                            language="Python", line_wrapping=True, theme="basicLight"
-                        )
-                        self.editor.on_value_change(lambda event: self._edited(event.value or ""))
-                    self.foot = ui.html("", sanitize=False)
+                self._build_program()
             ui.html(
                 '<section id="desk-map" class="floor-hugging"></section>', sanitize=False
             ).classes("desk-map")
 
+    def _build_program(self) -> None:
+        from nicegui import ui
+
+        ui.html('<section id="run-panel" hidden></section>', sanitize=False)
+        with (
+            ui.element("section")
+            .classes("desk-review card")
+            .props(f'aria-label="{self.words["review"]}"') as self.panel
+        ):
+            self.head = ui.html("", sanitize=False).props('aria-live="polite"')
+            with ui.element("div").classes("desk-editor") as self.editor_box:
+                self.editor = ui.codemirror(
+                    language="Python", line_wrapping=True, theme="basicLight"
+                )
+                self.editor.on_value_change(lambda event: self._edited(event.value or ""))
+            self.foot = ui.html("", sanitize=False)
+
     def _draw(self) -> None:
         """Show the dialogue as it stands now."""
-        if self.conversation.is_deleted:
+        if self.panel.is_deleted:
             return
+        if self.talks:
+            self._draw_talk()
+        else:
+            self._draw_told()
         dialogue = self.dialogue
-        self.conversation.set_content(
-            _page("conversation.html", dialogue=dialogue, words=self.words, visit=self.visit)
-        )
-        self.thought.draw()
-        if dialogue.dropped is not self._dropped:
-            self._dropped = dialogue.dropped
-            self._dispatch("thought-dropped", self._dropped and self._dropped.words)
         draft = dialogue.draft
         review = draft.review if draft else None
         language, knowledge = self.visit.language, self.backstage.runner.knowledge
@@ -221,6 +241,24 @@ class _Desk:
             # Not by the property: that sends the text with it, over what is typed meanwhile.
             self.editor.run_method("setDecorations", decorations)
         self._show_path([list(point) for point in seen.path] if seen else None)
+
+    def _draw_talk(self) -> None:
+        dialogue = self.dialogue
+        self.conversation.set_content(
+            _page("conversation.html", dialogue=dialogue, words=self.words, visit=self.visit)
+        )
+        self.thought.draw()
+        if dialogue.dropped is not self._dropped:
+            self._dropped = dialogue.dropped
+            self._dispatch("thought-dropped", self._dropped and self._dropped.words)
+
+    def _draw_told(self) -> None:
+        """Where the conversation is not in view, what the robot said last since the page was
+        opened."""
+        lines = self.dialogue.lines
+        last = lines[-1] if len(lines) > self._read else None
+        said = last if last is not None and last.by == "robot" else None
+        self.told.set_content(_page("told.html", said=said))
 
     def _show_path(self, path: list[list[float]] | None) -> None:
         if path == self._path:
@@ -277,7 +315,8 @@ class _Desk:
 
         async def propose(event: GenericEventArguments) -> None:
             program, at_once = str(event.args["program"]), bool(event.args["at_once"])
-            await self._do(dialogue.propose, program, language, who, at_once)
+            said, note = event.args.get("said"), str(event.args.get("note", ""))
+            await self._do(dialogue.propose, program, language, who, at_once, said, note)
 
         async def go_on(event: GenericEventArguments) -> None:
             await self._do(dialogue.go_on, int(event.args["run"]), language)

@@ -64,6 +64,8 @@ class Draft:
     """Of exactly this program; None while it is being reviewed."""
     continues: int | None = None
     """The run that was broken off, with which it goes on."""
+    said: str | None = None
+    """What somebody would have said who wants this, where they clicked on the map instead."""
 
     @property
     def edited(self) -> bool:
@@ -291,11 +293,24 @@ class Dialogue:
 
     # --- review
 
-    def propose(self, program: str, language: str, who: str = "", at_once: bool = False) -> None:
+    def propose(
+        self,
+        program: str,
+        language: str,
+        who: str = "",
+        at_once: bool = False,
+        said: str | None = None,
+        note: str = "",
+    ) -> None:
         """Lay a program before the operator that came from elsewhere: the map, a run to be done
-        again. `at_once`: they chose not to be asked if there is nothing against it."""
+        again. `at_once`: they chose not to be asked if there is nothing against it. `said` puts
+        what they did into words, `note` is what the robot has to say to that."""
         with self._turn:
-            self._review(Draft(program), language)
+            if said:
+                self._tell(Line("you", said))
+            if note:
+                self._tell(Line("robot", note))
+            self._review(Draft(program, said=said), language)
             draft = self.draft
             if at_once and draft and draft.review and draft.may_run and not draft.review.risks:
                 self.approve(draft.program, who, language, draft.review.sha256)
@@ -342,7 +357,8 @@ class Dialogue:
                 return
             if draft.continues is not None:
                 self._tell(Line("robot", going_on_texts(language)["changed"]))
-            self._review(Draft(program, draft.translation, draft.heard), language)
+            changed = replace(draft, program=program, review=None, continues=None)
+            self._review(changed, language)
 
     def review(self, language: str) -> None:
         """Review the program that waits, where that was never finished."""
@@ -396,7 +412,7 @@ class Dialogue:
                     program,
                     digest(program),
                     who,
-                    utterance=translation.utterance if translation else None,
+                    utterance=translation.utterance if translation else draft.said,
                     heard=draft.heard,
                     language=language,
                     plan=msgspec.json.encode(plan).decode() if plan is not None else None,

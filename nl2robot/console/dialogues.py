@@ -37,6 +37,7 @@ class _Waiting(msgspec.Struct):
     translation: Translation | None
     heard: str | None
     continues: int | None = None
+    said: str | None = None
 
 
 class _Kept(msgspec.Struct):
@@ -144,9 +145,13 @@ class Dialogues:
             return
         dialogue.lines = kept.lines
         if kept.draft:
-            draft = kept.draft
+            waiting = kept.draft
             dialogue.draft = Draft(
-                draft.program, draft.translation, draft.heard, continues=draft.continues
+                waiting.program,
+                waiting.translation,
+                waiting.heard,
+                continues=waiting.continues,
+                said=waiting.said,
             )
         dialogue.runs = set(kept.runs)
         for run in kept.runs:
@@ -169,3 +174,7 @@ class Dialogues:
         files = sorted(self._folder.glob("*.json"), key=lambda file: file.stat().st_mtime)
         for old in files[:-IN_FILES]:
             old.unlink(missing_ok=True)
+
+
+def _waiting(draft: Draft) -> _Waiting:
+    return _Waiting(draft.program, draft.translation, draft.heard, draft.said)

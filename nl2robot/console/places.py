@@ -16,6 +16,7 @@ from typing import Any, Final
 import msgspec
 
 from nl2robot.console.floor_plan import place_plan
+from nl2robot.console.goals import free_spot
 from nl2robot.console.part import Backstage, Part
 from nl2robot.console.zones import DrawnZones
 from nl2robot.errors import UserError
@@ -30,8 +31,8 @@ MOST_PLACES: Final = 200
 MOST_ALIASES: Final = 10
 """Of a place, in one language."""
 LONGEST_NAME: Final = 60
-FARTHEST: Final = 1000.0
-"""Metres from the origin."""
+ASIDE: Final = 0.6
+"""Metres that a place is put aside at most, to where the robot has room."""
 
 _NUMBER = {"type": "number"}
 _NAME = {"type": "string", "maxLength": 1000}
@@ -171,31 +172,8 @@ class Naming:
 
     def _where(self, x: float, y: float) -> tuple[float, float, float]:
         """Where the robot has room, and how many metres that is from there. Raises `UserError`."""
-        if not (abs(x) <= FARTHEST and abs(y) <= FARTHEST):  # nor is NaN
-            raise UserError("That is no spot on this map. Click on the map.")
         simulation = self._backstage.simulation
-        world = simulation.world if simulation is not None else self._bare
-        if not world.has_geometry:
-            return x, y, 0.0  # a robot with a map of its own, of which nothing is known here
-        from sim.spots import is_reached, room_near, zone_around
-
-        spot = room_near(world, x, y)
-        if spot is None:
-            raise UserError(
-                "There the robot has no room: it is a wall, or where the map shows no floor. Click"
-                " on free floor."
-            )
-        if not is_reached(world, *spot):
-            raise UserError(
-                "There is no way there for the robot. Click on floor that it can reach."
-            )
-        zone = zone_around(world, *spot)
-        if zone is not None:
-            raise UserError(
-                f'There the robot may not go: it is in the keep-out zone "{zone}". Click outside'
-                " of it, or remove the zone first."
-            )
-        return (*spot, math.dist(spot, (x, y)))
+        return free_spot(simulation.world if simulation else self._bare, x, y, ASIDE)
 
 
 def _as_its_file_has_it(world: World, named: tuple[NamedByHand, ...]) -> World:

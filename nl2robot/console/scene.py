@@ -45,8 +45,6 @@ EVENTS: Mapping[str, str] = {
 
 def part(backstage: Backstage) -> Part:
     """The floor and what moves on it, for maps."""
-    from nl2robot.console.map_page import pages
-
     stage = Scene(backstage)
     return Part(
         services={
@@ -59,7 +57,6 @@ def part(backstage: Backstage) -> Part:
             )
         },
         events=EVENTS,
-        pages=lambda: pages(backstage),
         close=stage.close,
     )
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import Any
-from urllib.parse import unquote
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -44,12 +42,11 @@ def robot_pose(page: Page) -> list[float]:
     return found
 
 
-@contextmanager
-def sent(page: Page) -> Iterator[Callable[[], str]]:
-    """Something in here opens the desk with a program; gives that."""
-    with page.expect_request(lambda request: "/?program=" in request.url) as asked:
-        yield lambda: unquote(asked.value.url).split("/?program=")[1]
-    page.wait_for_url("**/")  # the desk has taken it
+def proposed(page: Page, program: str) -> None:
+    """The review is there, on the same page, and is of this program."""
+    expect(page.get_by_role("button", name="Approve and run")).to_be_enabled()
+    expect(page.locator(".desk-editor .cm-content")).to_have_text(program)
+    assert page.url.endswith("/map")
 
 
 def choose(page: Page, mode: str) -> None:
@@ -79,18 +76,51 @@ def test_the_map_shows_and_says_where_the_robot_is(
 def test_a_click_on_a_name_sends_there_after_a_review(floor: Callable[..., Page]) -> None:
     page = floor()
     choose(page, "Send")
-    with sent(page) as program:
-        page.mouse.click(*pixel(page, *place(page, "ward a")[:2]))
-    assert program() == 'robot.goto("ward a")'
+    page.mouse.click(*pixel(page, *place(page, "ward a")[:2]))
+    proposed(page, 'robot.goto("ward a")')
+    expect(page.locator(".understood")).to_have_text("Go to ward a.")
 
 
-def test_a_click_on_the_floor_sends_to_that_spot(floor: Callable[..., Page]) -> None:
+@pytest.mark.parametrize("size", [{}, {"width": 390, "height": 844}])
+def test_a_click_on_the_floor_is_reviewed_and_run_without_leaving_the_map(
+    floor: Callable[..., Page], served: Served, picture: Picture, size: dict[str, int]
+) -> None:
+    with served.robot() as robot:
+        robot.localize("waiting room")
+    page = floor(**size)
+    choose(page, "Send")
+    page.mouse.click(*pixel(page, 5.5, 6.5))  # in the wall between pharmacy and corridor
+    expect(page.locator(".understood")).to_have_text("Go to the spot by the door of the pharmacy.")
+    expect(page.get_by_role("status").filter(has_text="nearest free spot, 0.")).to_be_visible()
+    program = page.locator(".desk-editor .cm-content")
+    expect(program).to_contain_text("# by the door of the pharmacy")
+    expect(page.get_by_text("It would take")).to_be_visible()
+    drawn = "document.querySelector('#map').floorMap"
+    page.get_by_role("button", name="Approve and run").click()
+    expect(page.locator(".run-panel")).to_have_attribute("data-state", "running")
+    picture(page, f"map-send-{page.viewport_size['width']}")  # type: ignore[index]
+    expect(page.locator(".run-panel")).to_have_attribute("data-state", "done")
+    x, y, _ = page.evaluate(f"{drawn}.robotPose()")
+    assert abs(x - 5.5) < 0.3 and 6.7 < y < 7.2
+    assert page.url.endswith("/map")
+    with served.robot() as robot:
+        kept = robot.request("runs.list", {})["runs"][0]
+    assert kept["utterance"] == "Go to the spot by the door of the pharmacy."
+
+
+def test_where_nobody_can_stand_nothing_is_proposed(
+    floor: Callable[..., Page], served: Served
+) -> None:
+    with served.robot() as robot:
+        around = [[27, 1], [30, 1], [30, 4], [27, 4]]
+        robot.request("zones.set", {"name": "wet floor", "polygon": around})
     page = floor()
     choose(page, "Send")
-    with sent(page) as program:
-        page.mouse.click(*pixel(page, 3.0, 7.7))
-    x, y = program().removeprefix("robot.goto(").rstrip(")").split(", ")
-    assert abs(float(x) - 3.0) < 0.1 and abs(float(y) - 7.7) < 0.1
+    page.mouse.click(*pixel(page, 28.5, 2.5))
+    expect(page.get_by_role("alert").filter(has_text='zone "wet floor"')).to_be_visible()
+    expect(page.get_by_role("button", name="Approve and run")).to_be_hidden()
+    with served.robot() as robot:
+        robot.request("zones.remove", {"name": "wet floor"})
 
 
 def test_a_keyboard_moves_the_view_and_sends_the_robot(floor: Callable[..., Page]) -> None:
@@ -109,9 +139,8 @@ def test_a_keyboard_moves_the_view_and_sends_the_robot(floor: Callable[..., Page
     page.keyboard.press("ArrowRight")
     expect(page.get_by_text("Click where the robot should go.")).to_be_visible()
     page.get_by_role("button", name="pharmacy", exact=True).focus()
-    with sent(page) as program:
-        page.keyboard.press("Enter")
-    assert program() == 'robot.goto("pharmacy")'
+    page.keyboard.press("Enter")
+    proposed(page, 'robot.goto("pharmacy")')
 
 
 def test_the_robot_is_dragged_to_where_it_stands(

@@ -179,9 +179,12 @@ async function openMap(element) {
   const map = await mountFloorMap(element, {wire, language, operator, places});
   document.addEventListener('dry-run', (event) => map.showPath(event.detail));
   if (waitingPath) map.showPath(waitingPath);
-  element.addEventListener('go', ({detail: {x, y, place}}) => {
-    const where = place ? JSON.stringify(place) : `${x.toFixed(2)}, ${y.toFixed(2)}`;
-    tell('desk-propose', {program: `robot.goto(${where})\n`, at_once: options().at_once});
+  const {proposeClicks} = await import('/static/floor/sending.js');
+  proposeClicks(map, {
+    wire,
+    language,
+    propose: ({program, said, note}) =>
+      tell('desk-propose', {program, said, note, at_once: options().at_once}),
   });
   element.addEventListener('localise', ({detail}) =>
     wire.request('robot.localize', detail).catch((error) => alertOf(error)),

@@ -202,10 +202,18 @@ function errandLine() {
 /** The floor plan; with `run`, a click sends the robot and a drag says where it is. */
 export async function mountMap(place, language, run) {
   const {mountFloorMap} = await import('/static/floor/floor_map.js');
-  place.addEventListener('go', ({detail: {x, y}}) => doing(run('goto', {x, y})));
+  const {proposeClicks} = await import('/static/floor/sending.js');
   place.addEventListener('localise', ({detail: {x, y, theta}}) =>
     doing(helm.call('localize', {x, y, theta})),
   );
   const modes = ['look', 'send', 'localise'];
-  await mountFloorMap(place, {wire, language, operator: Boolean(run), modes, places: false});
+  const map = await mountFloorMap(place, {wire, language, operator: Boolean(run), modes, places: false});
+  proposeClicks(map, {
+    wire,
+    language,
+    propose: ({place: name, x, y, note}) => {
+      map.showNote(note);
+      doing(run('goto', name ? {place: name} : {x, y}));
+    },
+  });
 }

@@ -105,6 +105,7 @@ export class FloorMap {
     this.hint.textContent = this.words[`hint_${mode}`] ?? '';
     this.help.hidden = mode === 'look';
     this.tip.hidden = true;
+    this.showNote('');
     this.listTitle.textContent = this.words[`places_${mode}`];
     this.zones.panel.hidden = mode !== 'zone';
     this.zones.stage('nothing');
@@ -305,9 +306,10 @@ export class FloorMap {
       this.placeList,
     );
     this.error = element('p', {class: 'floor-error', role: 'alert', hidden: true});
+    this.note = element('p', {class: 'floor-note', role: 'status', hidden: true});
     root.classList.add('floor');
     this.help = element('div', {class: 'floor-help'}, this.hint, this.zones.panel, this.places.panel);
-    root.replaceChildren(bar, this.error, this.help, this.stage, list);
+    root.replaceChildren(bar, this.error, this.note, this.help, this.stage, list);
     this.palette = new Palette(root);
     this.teller = new Teller((text) => this.#say(text));
     this.#undo.push(() => this.teller.close());
@@ -495,6 +497,17 @@ export class FloorMap {
   showError(text) {
     this.error.textContent = text;
     this.error.hidden = !text;
+  }
+
+  /** Say something about what was done; an empty text: nothing any more. */
+  showNote(text) {
+    this.note.textContent = text;
+    this.note.hidden = !text;
+  }
+
+  /** The robot was sent to a spot {x, y}, beside where somebody clicked perhaps; null: it was not. */
+  sentTo(spot) {
+    this.#tool.sentTo?.(spot);
   }
 }
 

@@ -1,22 +1,31 @@
-/** The page `/map`. */
+/** The page `/map`. Review and run beside the map are the desk's own. */
 
 import {appears, pageData} from '/static/page.js';
 import {wire} from '/static/wire.js';
 import {mountFloorMap} from './floor_map.js';
+import {proposeClicks} from './sending.js';
 
 const {language, role} = pageData;
-const root = await appears('#map');
-const map = await mountFloorMap(root, {
-  wire,
-  language,
-  operator: role === 'operator',
-  places: true,
+
+// The server may say before the map is there what path it is to show.
+let path = null;
+let map = null;
+document.addEventListener('dry-run', ({detail}) => {
+  path = detail;
+  map?.showPath(path);
 });
 
-root.addEventListener('go', ({detail: {x, y, place}}) => {
-  // The desk reviews it like any other program.
-  const goal = place === null ? `${x}, ${y}` : JSON.stringify(place);
-  location.href = `/?program=${encodeURIComponent(`robot.goto(${goal})`)}`;
+const root = await appears('#map');
+map = await mountFloorMap(root, {wire, language, operator: role === 'operator', places: true});
+if (path) map.showPath(path);
+
+proposeClicks(map, {
+  wire,
+  language,
+  propose: ({program, said, note}) => {
+    const at_once = localStorage.getItem('at_once') === 'yes'; // as chosen at the desk
+    window.emitEvent('desk-propose', {program, said, note, at_once});
+  },
 });
 
 root.addEventListener('localise', async ({detail}) => {
@@ -27,3 +36,14 @@ root.addEventListener('localise', async ({detail}) => {
     map.showError(error.message);
   }
 });
+
+// On a phone the review is below the map: who has sent the robot sees it.
+const program = await appears('.map-desk .desk-program');
+let waits = false;
+new MutationObserver(() => {
+  const now = program.querySelector('#approve') !== null;
+  if (now && !waits && matchMedia('(max-width: 1099px)').matches) {
+    program.scrollIntoView({block: 'start', behavior: 'smooth'});
+  }
+  waits = now;
+}).observe(program, {childList: true, subtree: true});

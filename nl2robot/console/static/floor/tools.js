@@ -66,6 +66,12 @@ export class Send extends Look {
     }
   }
 
+  /** It was sent there, beside where it was aimed perhaps; null: nowhere. */
+  sentTo(spot) {
+    this.#sent = spot;
+    this.map.draw();
+  }
+
   #go(target) {
     this.#sent = target;
     this.map.draw();
