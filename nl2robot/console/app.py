@@ -20,8 +20,8 @@ from robot_api.server import Service
 
 STATIC: Final = Path(__file__).parent / "static"
 PARTS: Final = (
-    *("desk", "scene", "zones", "places", "goals", "helm_services", "codes", "camera", "drive"),
-    *("face", "runs", "door", "devices"),
+    *("desk", "scene", "zones", "places", "goals", "localising", "helm_services", "codes"),
+    *("camera", "drive", "face", "runs", "door", "devices"),
 )
 """The modules of the parts; each has `part(backstage) -> Part`."""
 

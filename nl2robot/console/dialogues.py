@@ -50,7 +50,7 @@ msgspec.json.Decoder(_Kept)  # learned before there are threads, see `robot_api.
 
 
 def _waiting(draft: Draft) -> _Waiting:
-    return _Waiting(draft.program, draft.translation, draft.heard, draft.continues)
+    return _Waiting(draft.program, draft.translation, draft.heard, draft.continues, draft.said)
 
 
 class Dialogues:
@@ -174,7 +174,3 @@ class Dialogues:
         files = sorted(self._folder.glob("*.json"), key=lambda file: file.stat().st_mtime)
         for old in files[:-IN_FILES]:
             old.unlink(missing_ok=True)
-
-
-def _waiting(draft: Draft) -> _Waiting:
-    return _Waiting(draft.program, draft.translation, draft.heard, draft.said)

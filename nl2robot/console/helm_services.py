@@ -16,6 +16,7 @@ from typing import Any, Final
 import msgspec
 
 from nl2robot.console.helm import HOLDS, Helm, State
+from nl2robot.console.localising import localise
 from nl2robot.console.part import Backstage, Part
 from nl2robot.wire import an_object
 from robot_api.driver import Event, StopFlag
@@ -36,6 +37,7 @@ class Controls:
     """The helm of one robot, and what can be done with it."""
 
     def __init__(self, backstage: Backstage) -> None:
+        self._backstage = backstage
         self._driver = backstage.driver
         self._stop = backstage.stop
         self._runner = backstage.runner
@@ -76,6 +78,9 @@ class Controls:
             raise InvalidCall("Drive with helm.drive, which stops by itself.")
         with self.helm.calling(context.connection, context.stop):
             self._check_no_program()
+            if name == "localize":  # which others may want to take back
+                who = self.helm.state().who or ""
+                return localise(self._backstage, arguments, who, context.stop)
             return msgspec.to_builtins(self._driver.call(name, arguments, context.stop))
 
     def drive(self, parameters: Mapping[str, Any], context: Context) -> None:

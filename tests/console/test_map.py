@@ -157,6 +157,11 @@ def test_the_robot_is_dragged_to_where_it_stands(
         drag(page, robot_pose(page)[:2], (0.05, 0.05))
         expect(page.get_by_role("alert").filter(has_text="There is no room")).to_be_visible()
         assert abs(robot.location().x - 10.0) < 0.2
+        changes = page.locator(".floor-changes li:visible")
+        expect(changes.first).to_contain_text("robot set from lobby to main corridor")
+        changes.first.get_by_role("button", name="Undo").click()
+        expect(changes.first).to_contain_text("taken back: from main corridor to lobby")
+        assert robot.location().place == "lobby"
 
 
 def test_a_zone_is_drawn_and_kept_and_removed(floor: Callable[..., Page], picture: Picture) -> None:
@@ -174,6 +179,14 @@ def test_a_zone_is_drawn_and_kept_and_removed(floor: Callable[..., Page], pictur
     page.get_by_role("button", name="Remove wet floor").click()
     expect(page.get_by_text("No keep-out zones yet")).to_be_visible()
     expect(other.get_by_text("No keep-out zones yet")).to_be_visible()
+    other.get_by_text("Who changed what").locator("visible=true").click()
+    changes = other.locator(".floor-changes li:visible")
+    expect(changes.first).to_contain_text("“wet floor” removed")
+    picture(other, "map-undo")
+    changes.first.get_by_role("button", name="Undo").click()
+    expect(changes.first).to_contain_text("“wet floor” brought back")
+    expect(page.get_by_role("button", name="Remove wet floor")).to_be_visible()
+    page.get_by_role("button", name="Remove wet floor").click()
 
 
 def test_a_run_is_watched_again_frame_by_frame(floor: Callable[..., Page]) -> None:

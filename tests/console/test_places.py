@@ -206,7 +206,7 @@ def test_a_damaged_file_is_left_alone_and_told_to_who_names(start, tmp_path, cap
 def test_observers_only_look(start) -> None:
     services = start(load_world("ward")).services
     observed = {name for name, service in services.items() if service.observes}
-    assert observed == {"zones.list", "places.list", "places.export"}
+    assert observed == {"zones.list", "zones.history", "places.list", "places.export"}
 
 
 def stop() -> threading.Event:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -58,7 +59,7 @@ def test_a_zone_that_is_drawn_holds_at_once_and_after_a_new_start(start) -> None
     assert console("zones.list") == []
     told = console("zones.set", name=" wet  floor ", polygon=SQUARE)
     assert told == [{"name": "wet floor", "polygon": SQUARE, "removable": True}]
-    assert console.published == [("zones", {"zones": told})]
+    assert console.published == [("zones", {"zones": told, "history": console("zones.history")})]
     assert console.simulation.world.zone_at(5, 1.5).name == "wet floor"
 
     again = start(world)
@@ -167,6 +168,46 @@ def test_a_robot_that_goes_by_no_map_is_kept_out_by_its_own_software(start) -> N
         console("zones.set", name="x", polygon=SQUARE)
 
 
+def test_who_did_what_is_kept_and_taken_back_after_a_new_start(start) -> None:
+    world = load_world("ward")
+    console = start(world)
+    console("zones.set", name="wet floor", polygon=SQUARE, who="Ruth")
+    console("zones.set", name="wet floor", polygon=[[1, 1], [2, 1], [2, 2]], who="Karim")
+    console("zones.remove", name="Wet Floor", who="Lea")
+    console = start(world)
+    told = console("zones.history")
+    assert [(each["who"], each["what"], each["undoable"]) for each in told] == [
+        ("Lea", "removed", True),
+        ("Karim", "changed", False),
+        ("Ruth", "drawn", False),
+    ]
+    assert all(abs(each["when"] - time.time()) < 60 for each in told)
+
+    removed, changed, drawn = (each["number"] for each in told)
+    with pytest.raises(InvalidCall, match="changed again since"):
+        console("zones.undo", change=drawn, who="Ruth")
+    assert console("zones.undo", change=removed, who="Ruth")[0]["polygon"][0] == [1, 1]
+    assert console.simulation.world.zone_at(1.9, 1.5).name == "wet floor"
+    assert console("zones.undo", change=changed, who="Ruth")[0]["polygon"] == SQUARE
+    assert console("zones.undo", change=drawn, who="Ruth") == []
+    last = console("zones.history")[0]
+    assert (last["who"], last["what"], last["undoes"]) == ("Ruth", "removed", drawn)
+    assert console("zones.undo", change=last["number"])[0]["name"] == "wet floor", "undone itself"
+    with pytest.raises(InvalidCall, match="too long ago"):
+        console("zones.undo", change=99)
+
+
+def test_only_the_newest_changes_are_kept(start) -> None:
+    console = start(load_world("ward"))
+    for _ in range(zones.CHANGES_KEPT):
+        console("zones.set", name="wet floor", polygon=SQUARE)
+        console("zones.remove", name="wet floor")
+    told = console("zones.history")
+    assert len(told) == zones.CHANGES_KEPT
+    assert told[0]["number"] == 2 * zones.CHANGES_KEPT
+
+
 def test_observers_only_look(start) -> None:
     services = start(load_world("ward")).part.services
-    assert {name for name, service in services.items() if service.observes} == {"zones.list"}
+    observed = {name for name, service in services.items() if service.observes}
+    assert observed == {"zones.list", "zones.history"}

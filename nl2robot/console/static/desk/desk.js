@@ -6,7 +6,7 @@ import {wire} from '/static/wire.js';
 import {ReviewSeen} from '/static/desk/review_seen.js';
 import {RunPanel} from '/static/desk/run_panel.js';
 
-const {words, role, language} = pageData;
+const {words, role, language, who} = pageData;
 const LONGEST_PROGRAM = 64_000; // as the sandbox has it
 const OPTIONS = {harmless: 'option-harmless', at_once: 'option-at-once'};
 const CHOSEN = {harmless: 'yes', at_once: 'no'}; // where nobody has chosen
@@ -176,7 +176,7 @@ async function openMap(element) {
   const {mountFloorMap} = await import('/static/floor/floor_map.js');
   const operator = role === 'operator';
   const places = matchMedia('(min-width: 1280px)').matches; // below it, there is room for its list
-  const map = await mountFloorMap(element, {wire, language, operator, places});
+  const map = await mountFloorMap(element, {wire, language, who, operator, places});
   document.addEventListener('dry-run', (event) => map.showPath(event.detail));
   if (waitingPath) map.showPath(waitingPath);
   const {proposeClicks} = await import('/static/floor/sending.js');
@@ -186,9 +186,6 @@ async function openMap(element) {
     propose: ({program, said, note}) =>
       tell('desk-propose', {program, said, note, at_once: options().at_once}),
   });
-  element.addEventListener('localise', ({detail}) =>
-    wire.request('robot.localize', detail).catch((error) => alertOf(error)),
-  );
 }
 
 const alertOf = async (error) => (await import('/static/console.js')).notice(error.message, {alarm: true});

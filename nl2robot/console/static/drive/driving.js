@@ -1,6 +1,6 @@
 /** Who drives, how the robot is, the joystick, and where to go. */
 
-import {element} from '/static/page.js';
+import {element, pageData} from '/static/page.js';
 import {wire} from '/static/wire.js';
 import {helm} from './helm.js';
 import {Joystick, SPEEDS} from './joystick.js';
@@ -203,11 +203,11 @@ function errandLine() {
 export async function mountMap(place, language, run) {
   const {mountFloorMap} = await import('/static/floor/floor_map.js');
   const {proposeClicks} = await import('/static/floor/sending.js');
-  place.addEventListener('localise', ({detail: {x, y, theta}}) =>
-    doing(helm.call('localize', {x, y, theta})),
-  );
   const modes = ['look', 'send', 'localise'];
-  const map = await mountFloorMap(place, {wire, language, operator: Boolean(run), modes, places: false});
+  const map = await mountFloorMap(place, {
+    ...{wire, language, modes, who: pageData.who, operator: Boolean(run), places: false},
+    localise: (pose) => doing(helm.call('localize', pose)),
+  });
   proposeClicks(map, {
     wire,
     language,

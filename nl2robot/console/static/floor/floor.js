@@ -25,6 +25,12 @@ export class Floor {
     return thing ? this.nameOf(thing) : name;
   }
 
+  /** A spot {x, y, place} in few words. */
+  spotName({x, y, place}) {
+    const named = this.places.find(({name}) => name === place);
+    return named ? this.nameOf(named) : (place ?? `${x.toFixed(1)}, ${y.toFixed(1)}`);
+  }
+
   /** The place that a spot is in: of several areas the smallest. */
   placeAt(x, y) {
     let best = null;

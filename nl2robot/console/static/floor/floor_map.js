@@ -6,12 +6,13 @@
  *   map.showPath([[1, 2], [3, 4]]);
  *   element.addEventListener("go", ({ detail }) => ... detail.x, detail.y, detail.place);
  *
- * The element hears of "go" {x, y, place}, "localise" {x, y, theta}, "zone" {polygon, name} and
- * "zone-remove" {name}. Zones and places are kept and removed by the map itself; the rest is the page's.
+ * The element hears of "go" {x, y, place}, "zone" {polygon, name} and "zone-remove" {name}. Where the
+ * robot is, zones and places are changed by the map itself; where it goes is the page's.
  */
 
 import {element, filled} from '/static/page.js';
 import {Camera} from './camera.js';
+import {Corrections} from './corrections.js';
 import {layerMenu, modeChoice, placeList, zoomButtons} from './controls.js';
 import {Floor} from './floor.js';
 import {listen} from './gestures.js';
@@ -68,9 +69,11 @@ export class FloorMap {
   /**
    * @param {HTMLElement} root
    * @param {{wire: object, words?: object, language?: string, operator?: boolean,
-   *          modes?: string[], places?: boolean}} options
+   *          modes?: string[], places?: boolean, who?: string,
+   *          localise?: (pose: {x: number, y: number, theta: number}) => void}} options
    *   `words` replace the texts that the server has in the language; `modes` are those offered to
-   *   an operator, the first is the one to begin with; `places`: whether the list is open.
+   *   an operator, the first is the one to begin with; `places`: whether the list is open;
+   *   `who` changes things here, for people; `localise` tells the robot where it is, if not the map.
    */
   constructor(root, options) {
     this.root = root;
@@ -109,6 +112,7 @@ export class FloorMap {
     this.listTitle.textContent = this.words[`places_${mode}`];
     this.zones.panel.hidden = mode !== 'zone';
     this.zones.stage('nothing');
+    this.corrections.panel.hidden = mode !== 'localise';
     this.places.panel.hidden = mode !== 'place';
     this.places.discard();
     this.draw();
@@ -191,6 +195,12 @@ export class FloorMap {
     return {x: px, y: py, place: place.name};
   }
 
+  /** The robot really stands there: {x, y, theta}. */
+  localise(pose) {
+    if (this.#options.localise) this.#options.localise(pose);
+    else this.corrections.set(pose);
+  }
+
   /** Let the page know. */
   tell(kind, detail) {
     this.root.dispatchEvent(new CustomEvent(kind, {detail, bubbles: true}));
@@ -234,7 +244,7 @@ export class FloorMap {
     this.mode = this.modes[0];
     this.motion.set(early ?? floor.now);
     this.#tellInWords();
-    await Promise.all([this.zones.fetch(), this.places.fetch()]);
+    await this.#fetch();
     let connected = wire.connected;
     this.#undo.push(
       wire.onChange((now) => {
@@ -250,8 +260,13 @@ export class FloorMap {
     if (!floor || !this.floor) return;
     this.motion.trail = floor.trail;
     this.motion.set(floor.now);
-    await Promise.all([this.zones.fetch(), this.places.fetch()]);
+    await this.#fetch();
     this.draw();
+  }
+
+  /** What others may have changed. */
+  async #fetch() {
+    await Promise.all([this.zones.fetch(), this.places.fetch(), this.corrections.fetch()]);
   }
 
   #build() {
@@ -281,7 +296,10 @@ export class FloorMap {
     if (this.modes.length > 1) bar.append(modeChoice(this.modes, words, choose));
     this.told = element('p', {class: 'floor-told', 'aria-live': 'polite'});
     bar.append(this.told, buttons, layers);
-    this.zones = new Zones(this.#options.wire, words, {
+    const {wire, language, who = ''} = this.#options;
+    this.zones = new Zones(wire, words, {
+      language,
+      who,
       changed: () => this.#repaint(),
       drawn: () => this.#tool.corners,
       clear: () => this.#tool.clear?.(),
@@ -290,7 +308,14 @@ export class FloorMap {
       tell: (kind, detail) => this.tell(kind, detail),
     });
     this.#undo.push(() => this.zones.end());
-    this.places = new Places(this.#options.wire, words, this.#options.language, {
+    this.corrections = new Corrections(wire, words, {
+      language,
+      who,
+      nameOf: (spot) => this.floor.spotName(spot),
+      failed: (sentence) => this.showError(sentence),
+    });
+    this.#undo.push(() => this.corrections.end());
+    this.places = new Places(wire, words, language, {
       changed: (places) => this.#placesChanged(places),
       clear: () => this.#tool.clear?.(),
       failed: (sentence) => this.showError(sentence),
@@ -308,7 +333,11 @@ export class FloorMap {
     this.error = element('p', {class: 'floor-error', role: 'alert', hidden: true});
     this.note = element('p', {class: 'floor-note', role: 'status', hidden: true});
     root.classList.add('floor');
-    this.help = element('div', {class: 'floor-help'}, this.hint, this.zones.panel, this.places.panel);
+    this.help = element(
+      'div',
+      {class: 'floor-help'},
+      ...[this.hint, this.corrections.panel, this.zones.panel, this.places.panel],
+    );
     root.replaceChildren(bar, this.error, this.note, this.help, this.stage, list);
     this.palette = new Palette(root);
     this.teller = new Teller((text) => this.#say(text));

@@ -5,7 +5,7 @@ import {wire} from '/static/wire.js';
 import {mountFloorMap} from './floor_map.js';
 import {proposeClicks} from './sending.js';
 
-const {language, role} = pageData;
+const {language, role, who} = pageData;
 
 // The server may say before the map is there what path it is to show.
 let path = null;
@@ -16,7 +16,7 @@ document.addEventListener('dry-run', ({detail}) => {
 });
 
 const root = await appears('#map');
-map = await mountFloorMap(root, {wire, language, operator: role === 'operator', places: true});
+map = await mountFloorMap(root, {wire, language, who, operator: role === 'operator', places: true});
 if (path) map.showPath(path);
 
 proposeClicks(map, {
@@ -26,15 +26,6 @@ proposeClicks(map, {
     const at_once = localStorage.getItem('at_once') === 'yes'; // as chosen at the desk
     window.emitEvent('desk-propose', {program, said, note, at_once});
   },
-});
-
-root.addEventListener('localise', async ({detail}) => {
-  try {
-    await wire.request('robot.localize', detail);
-    map.showError('');
-  } catch (error) {
-    map.showError(error.message);
-  }
 });
 
 // On a phone the review is below the map: who has sent the robot sees it.

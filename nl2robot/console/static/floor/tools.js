@@ -145,7 +145,7 @@ export class Localise extends Look {
   }
 
   #tell([x, y, theta]) {
-    this.map.tell('localise', {x: round(x), y: round(y), theta});
+    this.map.localise({x: round(x), y: round(y), theta});
   }
 }
 

@@ -2,15 +2,16 @@
 
 import {element, filled} from '/static/page.js';
 import {button, listening} from './controls.js';
+import {History} from './history.js';
 
 export class Zones {
   /** @type {{name: string, polygon: number[][], removable: boolean}[]} */
   list = [];
 
-  /** `changed` is called with news, `drawn` gives the outline that is being drawn, `clear` forgets
+  /** `who` draws them, for the history. `changed` is called with news, `drawn` gives the outline that is being drawn, `clear` forgets
    * it, `close` ends it, `failed` takes why something did not work, `tell` the events. */
-  constructor(wire, words, {changed, drawn, clear, close, failed, tell}) {
-    Object.assign(this, {wire, words, changed, drawn, clear, failed, tell});
+  constructor(wire, words, {language, who, changed, drawn, clear, close, failed, tell}) {
+    Object.assign(this, {wire, words, who, changed, drawn, clear, failed, tell});
     this.unsubscribe = null;
     this.name = element('input', {class: 'field', maxlength: 60, autocomplete: 'off'});
     this.form = element(
@@ -30,15 +31,27 @@ export class Zones {
       button({class: 'button small'}, close, words.zone_close),
     );
     this.items = element('ul', {class: 'floor-zone-list', 'aria-label': words.zones});
-    this.panel = element('div', {class: 'floor-zones'}, this.outline, this.form, this.items);
+    this.history = new History(words, language, {
+      describe: ({what, undoes, name}) => filled(words[`zone_${what}${undoes ? '_back' : ''}`], {name}),
+      undo: (change) => this.#call('zones.undo', {change}),
+    });
+    this.panel = element(
+      'div',
+      {class: 'floor-zones'},
+      ...[this.outline, this.form, this.items, this.history.panel],
+    );
   }
 
   /** Ask which zones there are, and be told of others from then on. */
   async fetch() {
     const zones = await this.wire.request('zones.list').catch(() => null);
     if (!zones) return; // a robot that knows no zones
-    this.unsubscribe ??= this.wire.subscribe('zones', (event) => this.show(event.zones));
+    this.unsubscribe ??= this.wire.subscribe('zones', (event) => {
+      this.show(event.zones);
+      this.history.show(event.history);
+    });
     this.show(zones);
+    this.history.show(await this.wire.request('zones.history').catch(() => []));
   }
 
   end() {
@@ -85,7 +98,7 @@ export class Zones {
   /** Whether the server did it. */
   async #call(method, params) {
     try {
-      this.show(await this.wire.request(method, params));
+      this.show(await this.wire.request(method, {...params, who: this.who}));
       this.failed('');
       return true;
     } catch (error) {
