@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import closing
 from datetime import date, datetime, timedelta
 from pathlib import Path
@@ -108,6 +108,17 @@ class Archive:
             [found] = db.execute(f"SELECT count(*) FROM runs WHERE {where}", values).fetchone()
             runs = _briefs(db, where, values, before, size + 1)
         return Page(runs=tuple(runs[:size]), more=len(runs) > size, found=found)
+
+    def times_said(self, names: Sequence[str], since: float) -> int:
+        """How many runs since then (seconds since the epoch) were asked for with one of these
+        names in the sentence."""
+        with self._reading() as db:
+            said = " OR ".join(["instr(lower(utterance), ?)"] * len(names))
+            [times] = db.execute(
+                f"SELECT count(*) FROM runs WHERE started >= ? AND ({said or 0})",
+                (since, *(name.lower() for name in names)),
+            ).fetchone()
+        return int(times)
 
     def all(self, wanted: Wanted, most: int) -> Iterator[Brief]:
         """The newest `most` runs that are wanted, read some at a time."""

@@ -10,17 +10,19 @@ All are drawn from the same scenes (`sim.pictures_scene`), with no font or progr
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from pathlib import Path
 
 from sim.pictures_animation import animate
 from sim.pictures_floor import draw_floor
 from sim.pictures_png import to_image
-from sim.pictures_run import draw_run, summary
+from sim.pictures_run import draw_run, draw_way, summary
 from sim.pictures_svg import to_svg
-from sim.record import Record
+from sim.record import Record, Sample
 from sim.world import World
 
-__all__ = ["animate", "floor_svg", "png", "svg"]
+__all__ = ["animate", "floor_svg", "png", "svg", "way_svg"]
 
 
 def floor_svg(world: World, people: bool = True) -> str:
@@ -34,6 +36,18 @@ def svg(world: World, record: Record) -> str:
     """A run on its floor as SVG."""
     scene, frame = draw_run(world, record)
     return to_svg(scene, frame, summary(record, world.name))
+
+
+def way_svg(world: World, path: Sequence[tuple[float, float]]) -> str:
+    """A way that was not driven yet on its floor, as SVG; points in metres."""
+    samples: list[Sample] = []
+    theta = 0.0
+    for at, (x, y) in enumerate(path):
+        if at + 1 < len(path):
+            theta = math.degrees(math.atan2(path[at + 1][1] - y, path[at + 1][0] - x))
+        samples.append(Sample(float(at), x, y, theta))
+    scene, frame = draw_way(world, Record(world=world.name, samples=samples))
+    return to_svg(scene, frame, world.name)
 
 
 def png(world: World, record: Record | None, path: str | Path) -> None:

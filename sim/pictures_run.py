@@ -72,6 +72,18 @@ def draw_run(world: World, record: Record) -> tuple[Scene, Frame]:
     return _with_legend(floor, leftover), floor.frame
 
 
+def draw_way(world: World, record: Record) -> tuple[Scene, Frame]:
+    """The floor with the way alone, from its start to its end; nothing is told of time."""
+    floor = draw_floor(world, [], [[(sample.x, sample.y) for sample in record.samples]])
+    _draw_path(floor, record)
+    _draw_start(floor, world, record)
+    if record.samples:
+        last = record.samples[-1]
+        robot = robot_shapes(floor.frame, last.x, last.y, last.theta, world.robot.radius)
+        floor.scene.layer("robot").extend(robot)
+    return floor.scene, floor.frame
+
+
 def summary(record: Record, name: str) -> str:
     """ "city-hospital: 1 min 42 s, 63 m"."""
     return f"{name}: {_duration(record.duration)}, {record.distance:.0f} m"

@@ -21,7 +21,7 @@ from robot_api.server import Service
 STATIC: Final = Path(__file__).parent / "static"
 PARTS: Final = (
     *("desk", "scene", "zones", "places", "goals", "localising", "helm_services", "codes"),
-    *("camera", "drive", "face", "runs", "door", "devices"),
+    *("camera", "drive", "face", "runs", "routines", "door", "devices"),
 )
 """The modules of the parts; each has `part(backstage) -> Part`."""
 

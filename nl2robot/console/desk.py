@@ -120,8 +120,14 @@ class Desk:
             self._attend()
             for name, handler in self._handlers().items():
                 ui.on(name, handler)
-            program = request.query_params.get("program")
-            if program:
+            backstage.talks.of(self.dialogue.name).who = visit.who
+            program, routine = map(request.query_params.get, ("program", "routine"))
+            if routine:
+                said_in = request.query_params.get("in", visit.language)
+                perform = self.dialogue.perform_routine
+                act = partial(self._do, perform, routine, said_in, visit.language)
+                ui.timer(0, act, once=True)
+            elif program:
                 propose = self.dialogue.propose
                 ui.timer(0, lambda: self._do(propose, program, visit.language), once=True)
             elif self.dialogue.draft and self.dialogue.draft.review is None:

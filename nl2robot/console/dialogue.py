@@ -16,6 +16,7 @@ from typing import Final, Literal
 
 import msgspec
 
+from grammar.plan import from_data
 from grammar.planning.planner import Interrupted
 from nl2robot.answers import answer
 from nl2robot.console.part import Backstage
@@ -28,6 +29,7 @@ from nl2robot.going_on import told as rest_told
 from nl2robot.harmless import approver, needs_no_question
 from nl2robot.review import Review, digest
 from nl2robot.session import STOP
+from nl2robot.teaching import told as told_in_words
 from nl2robot.translation import Translation, translate
 from nl2robot.trouble import told
 from robot_api.errors import NotPossible, RobotError
@@ -341,6 +343,23 @@ class Dialogue:
         self._tell(Line("robot", " ".join(rest_told(rest, runner.knowledge, language))))
         with self._turn:
             self._review(Draft(rest.program, continues=rest.run), language)
+
+    def perform_routine(self, name: str, said_in: str, language: str) -> None:
+        """Lay a routine before the operator, as if they had said its name in its language."""
+        self.cancel(language)
+        self._tell(Line("you", name))
+        knowledge = self._backstage.runner.knowledge
+        try:
+            translation = translate(name, knowledge, said_in, "grammar")
+        except UserError as error:
+            self._tell(Line("robot", str(error), "trouble"))
+            return
+        if translation.plan is not None and said_in != language:
+            plan = from_data(translation.plan)
+            told_here = told_in_words(plan, knowledge.lexicon(language), language)
+            translation = msgspec.structs.replace(translation, explanation=told_here)
+        with self._turn:
+            self._take(translation, None, language, "", harmless=False)
 
     def touch(self, program: str) -> None:
         """Somebody is changing the program: from now on there is nothing that could be approved."""

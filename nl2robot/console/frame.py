@@ -24,6 +24,10 @@ PAGES: Final = {
     "desk": ("/", "M4 5h16v11H9l-5 4z"),
     "map": ("/map", "M9 4 3 6.5v13L9 17l6 2.5 6-2.5V4l-6 2.5zM9 4v13M15 6.5v13"),
     "drive": ("/drive", "M12 3v18M3 12h18M12 3 9 6m3-3 3 3M12 21l-3-3m3 3 3-3M3 12l3-3m-3 3 3 3"),
+    "routines": (
+        "/routines",
+        "M4 12a8 8 0 0 1 13.7-5.6L20 9M20 4v5h-5M20 12a8 8 0 0 1-13.7 5.6L4 15M4 20v-5h5",
+    ),
     "runs": ("/runs", "M8 6h13M8 12h13M8 18h13M3.5 6h.01M3.5 12h.01M3.5 18h.01"),
     "face": ("/face", "M4 4h16v16H4zM9 10h.01M15 10h.01M8.5 14.5c2 2 5 2 7 0"),
 }
@@ -71,7 +75,7 @@ def frame(backstage: Backstage, page: str) -> Iterator[Visit]:
     ui.add_head_html(_head(visitor, words))
     ui.add_body_html(_header(page, name, visitor, words, backstage.entrance is not None))
     with ui.element("div").props('id="main" tabindex="-1"').classes(f"page page-{page}"):
-        if page != "runs":  # whose pages have headings of their own
+        if page not in ("runs", "routines"):  # whose pages have headings of their own
             ui.html(f'<h1 class="sr">{escape(words[page])}</h1>', sanitize=False)
         yield visit
 

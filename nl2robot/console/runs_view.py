@@ -32,12 +32,12 @@ Words = Mapping[str, str]
 
 def list_page(asked: Asked, page: Page | None, trouble: str | None, words: Words) -> str:
     """The whole list page."""
-    return _rendered("runs.html", **_found(asked, page, trouble, words), states=STATES, words=words)
+    return rendered("runs.html", **_found(asked, page, trouble, words), states=STATES, words=words)
 
 
 def found(asked: Asked, page: Page | None, trouble: str | None, words: Words) -> str:
     """What was found; None and what is the trouble if it could not be looked for."""
-    return _rendered("runs_found.html", **_found(asked, page, trouble, words), words=words)
+    return rendered("runs_found.html", **_found(asked, page, trouble, words), words=words)
 
 
 def _found(asked: Asked, page: Page | None, trouble: str | None, words: Words) -> dict[str, Any]:
@@ -74,7 +74,7 @@ def run_page(
         }
         for number, code in enumerate(highlighted(run.program), 1)
     ]
-    return _rendered(
+    return rendered(
         "run.html",
         **_standing(run, log, words),
         lines=lines,
@@ -87,7 +87,7 @@ def run_page(
 def run_parts(run: Run, log: RunLog, words: Words) -> dict[str, Any]:
     """What changes of a run's page while it goes on: its parts by name, its state, its line."""
     about = _standing(run, log, words)
-    parts = {name: _rendered(f"run_{name}.html", **about) for name in ("head", "watch", "calls")}
+    parts = {name: rendered(f"run_{name}.html", **about) for name in ("head", "watch", "calls")}
     return {**parts, "state": about["state"], "line": about["line"]}
 
 
@@ -189,5 +189,5 @@ def _environment() -> Environment:
     return environment
 
 
-def _rendered(template: str, **about: Any) -> str:
+def rendered(template: str, **about: Any) -> str:
     return _environment().get_template(template).render(**about)

@@ -25,6 +25,7 @@ READY = {
     "/": "#desk-map .floor-told",
     "/map": ".floor-told",
     "/drive": "#drive .floor-told",
+    "/routines": ".routines[data-ready=yes]",
     "/runs": "[data-part=found]",
     "/devices": "#devices .card",
 }
@@ -90,7 +91,7 @@ def test_nothing_that_people_write_becomes_part_of_a_page(look: Look, served: Se
     with served.robot() as robot:
         robot.request("zones.set", {"name": evil, "polygon": [[1, 1], [2, 1], [2, 2]]})
         robot.show(text=evil)
-        for path in ("/map", "/drive", "/runs", "/face"):
+        for path in ("/map", "/drive", "/routines", "/runs", "/face"):
             page.goto(served.url + path)
             expect(page.locator("body")).to_contain_text("STOP")
             page.wait_for_load_state("networkidle")
