@@ -22,12 +22,12 @@ from nl2robot.archive import Archive
 from nl2robot.console.highlight import highlighted
 from nl2robot.console.outlook import outlook
 from nl2robot.console.part import Backstage
-from nl2robot.console.trouble import told
 from nl2robot.console.visitor import texts
 from nl2robot.review import Review, review
 from nl2robot.routines import Routine
 from nl2robot.runlog import LogError
 from nl2robot.teaching import Teacher
+from nl2robot.trouble import told
 from sim.world import World
 
 CARDS_KNOWN: Final = 500
