@@ -439,7 +439,13 @@ def diagnose(program: str, stub: str, seconds: float = 60.0) -> list[Diagnostic]
     busy machine needs. Raises `Unavailable`."""
     with CHECKER as kept:
         try:
-            return _diagnosed(program, stub, kept.pool(seconds))
+            try:
+                return _diagnosed(program, stub, kept.pool(seconds))
+            except monty.MontyCrashedError as error:
+                if error.timed_out:
+                    raise
+                kept.close()  # Ctrl-C ends the worker as well, wherever it was at
+                return _diagnosed(program, stub, kept.pool(seconds))
         except monty.MontyCrashedError as error:
             kept.close()
             if not error.timed_out:

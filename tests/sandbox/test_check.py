@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import ast
+import os
 import random
+import signal
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,6 +17,7 @@ from hypothesis import strategies as st
 from grammar.program import write_program
 from robot_api.driver import Capabilities
 from robot_api.stub import stub
+from sandbox import interpreter
 from sandbox.check import Finding, check
 from sandbox.limits import MAX_PROGRAM
 from tests.grammar.random_plans import plans
@@ -372,3 +376,27 @@ def test_checks_of_several_threads_wait_for_each_other() -> None:
     with ThreadPoolExecutor(4) as threads:
         found = list(threads.map(lambda _: check("robot.dance()", stub()), range(8)))
     assert all(len(each) == 1 and each[0].severity == "error" for each in found)
+
+
+def test_a_checker_that_ctrl_c_has_ended_is_started_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The terminal interrupts all that it has started, whatever the checker is at."""
+    assert found("robot.wait(1)") == []
+    real, interrupted = interpreter._diagnosed, []
+
+    def interrupting(program: str, *more: Any) -> list[interpreter.Diagnostic]:
+        if not interrupted:
+            interrupted.extend(workers())
+            for worker in interrupted:
+                os.kill(worker, signal.SIGINT)
+        return real(program, *more)
+
+    monkeypatch.setattr(interpreter, "_diagnosed", interrupting)
+    assert found("robot.wait(1)") == []
+    assert interrupted
+
+
+def workers() -> list[int]:
+    """Those that this process has started to check programs."""
+    tasks = Path("/proc/self/task").glob("*/children")
+    children = [int(child) for task in tasks for child in task.read_text().split()]
+    return [child for child in children if b"monty" in Path(f"/proc/{child}/cmdline").read_bytes()]
