@@ -129,7 +129,7 @@ def test_a_run_is_watched_paused_stepped_and_stopped_half_way(
     expect(colleague.locator("#run-panel li.current")).to_contain_text("pharmacy")
     page.get_by_role("button", name="Pause").click()
     expect(page.locator("#run-panel .chip[role=status]")).to_have_text("Paused")
-    expect(page.locator("#run-panel")).to_contain_text("The robot finishes this call")
+    expect(page.locator("#run-panel .calls .halted")).to_contain_text("goes on later")
     expect(colleague.locator("#run-panel .chip[role=status]")).to_have_text("Paused")
     page.get_by_role("button", name="Go on").click()
     page.reload()

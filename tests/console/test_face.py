@@ -18,6 +18,8 @@ from starlette.applications import Starlette
 from nl2robot.console import face, tablet
 from nl2robot.console.part import Backstage
 from nl2robot.operator import Operator
+from nl2robot.present import Present
+from nl2robot.state import on_wire
 from robot_api import Robot, Server
 from robot_api.capabilities.sound import Asked, Sound
 from robot_api.driver import StopFlag
@@ -78,6 +80,8 @@ class Ward:
             pages=Starlette(routes=self.part.routes),
             on_left=self.part.left,
         )
+        present = Present(lambda state: backstage.tell("state", on_wire(state)))
+        backstage.subscribe(present.on_event)
         self.unsubscribe = self.driver.subscribe(backstage.tell)
         self.calls = ThreadPoolExecutor()
 
