@@ -79,6 +79,8 @@ class DryRun(msgspec.Struct, frozen=True, kw_only=True):
     calls: int
     course: tuple[Event, ...] = ()
     """All of it in the order in which it would happen."""
+    closed: tuple[str, ...] = ()
+    """The places of its rounds that it would not reach, and leave out."""
     error: str | None = None
     """The name of the error it would end with: a robot's ("NotFound") or Python's ("NameError")."""
     broke_off: BreakOff | None = None
@@ -214,7 +216,10 @@ def watched(
         total_computing=budget.real_seconds,
         rounds=budget.rounds,
     )
-    execution = Execution(program, call, seed=seed or 0, limits=limits)
+    closed: dict[str, str] = {}
+    execution = Execution(
+        program, call, seed=seed or 0, limits=limits, on_closed=closed.__setitem__
+    )
     watchdog = threading.Timer(budget.real_seconds, give_up)
     watchdog.daemon = True
     watchdog.start()
@@ -253,6 +258,7 @@ def watched(
         path=_path(way),
         calls=len(calls),
         course=events,
+        closed=tuple(closed),
         error=None if broke_off else outcome.error,
         broke_off=broke_off,
     )

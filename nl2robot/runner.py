@@ -371,12 +371,20 @@ class Runner:
         """Where the robot has looked in vain (the data of the event `searched`): the program's
         people are told, in the language of whoever approved it."""
         activity = self._activity
-        if activity is None or activity.outcome is not None or not search["places"]:
-            return
+        if activity is not None and activity.outcome is None and search["places"]:
+            self._report(activity, "looked_in", places=search["places"])
+
+    def _report(self, activity: _Activity, phrase: str, **about: Any) -> None:
+        """Tell something that the program itself does not, in the language of whoever approved it.
+        Lists are of places."""
         code = activity.approval.language or "en"
         pack = load_language(code if code in languages() else "en")
         called = naming(self.knowledge.lexicon(pack.code), pack).called
-        text = pack.phrase("looked_in", places=", ".join(map(called, search["places"])))
+        gaps = {
+            name: ", ".join(map(called, value)) if isinstance(value, list | tuple) else value
+            for name, value in about.items()
+        }
+        text = pack.phrase(phrase, **gaps)
         with contextlib.suppress(Stopped):  # the next call finds that the log is full
             self._logged(self.log.printed, activity.run, f"{text}\n")
         self._tell(activity, "print", text=f"{text}\n")
@@ -422,6 +430,8 @@ class Runner:
 
     def _execute(self, activity: _Activity, robot: Robot) -> Outcome:
         recall = activity.recall
+        closed: list[tuple[str, str]] = []
+        """The places of its rounds that could not be reached, each with the robot's sentence."""
 
         def on_line(line: int) -> None:
             activity.line = line
@@ -446,12 +456,15 @@ class Runner:
             on_line=on_line,
             on_print=on_print,
             on_hold=lambda: self._holds(activity),
+            on_closed=lambda place, why: closed.append((place, why)),
         )
         activity.execution = execution
         self._tell(activity, "state")
         if activity.stop_because is not None:  # stopped before it began
             execution.stop(activity.stop_because)
         outcome = execution.run()
+        for place, why in closed:
+            self._report(activity, "was_closed", place=[place], reason=why)
         if recall is not None and recall.deviation is not None:
             return dataclasses.replace(
                 outcome, status="failed", message=recall.deviation, error="Deviates"

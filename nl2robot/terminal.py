@@ -184,6 +184,9 @@ class Terminal:
         if dry_run.places:
             way = " → ".join(self.called(place) for place in dry_run.places)
             self.console.print(f"  {self.words['way']}: {_plain(way)}")
+        if dry_run.closed:
+            closed = _plain(", ".join(self.called(place) for place in dry_run.closed))
+            self.console.print(f"  [yellow]{self.words['closed']}: {closed}[/]")
         for words in dict.fromkeys(dry_run.says):
             self.console.print(f"  {self.words['says']}: {_plain(words)}")
 

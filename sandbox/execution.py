@@ -34,6 +34,7 @@ from sandbox.interpreter import (
 )
 from sandbox.limits import MAX_PROGRAM, Limits
 from sandbox.sentences import UNAVAILABLE, problem
+from sandbox.visits import CLOSED, METHOD, going_on
 
 __all__ = ["CallRecord", "Execution", "Limits", "Outcome"]
 
@@ -98,10 +99,12 @@ class Execution:
         on_print: Callable[[str], None] | None = None,
         on_call: Callable[[CallRecord], None] | None = None,
         on_hold: Callable[[], None] | None = None,
+        on_closed: Callable[[str, str], None] | None = None,
     ) -> None:
         """`on_line(line)` is called before each robot call and before a pause at it, `on_call`
         after it, `on_hold()` when the program waits again after a step, `on_print` with what the
-        program prints; all on the thread of `run`. With a `stub`, a program that does not pass
+        program prints, `on_closed(place, why)` when a place of a round is left out (see
+        `sandbox.visits`); all on the thread of `run`. With a `stub`, a program that does not pass
         `sandbox.check` against it fails before it begins.
         With a `seed`, `random` gives the same numbers in every run.
         """
@@ -112,6 +115,8 @@ class Execution:
         self._on_line = on_line
         self._on_call = on_call
         self._on_hold = on_hold
+        self._on_closed = on_closed
+        self._rounds: frozenset[int] = frozenset()
         self._interpreter = Interpreter(self._limits, on_print or _ignore, seed)
         self._changed = threading.Condition()
         self._started = False
@@ -173,7 +178,8 @@ class Execution:
             return unfit
         try:
             with self._interpreter as interpreter:
-                event = interpreter.start(self._program)
+                program, self._rounds = going_on(self._program)
+                event = interpreter.start(program)
                 while not isinstance(event, Ended):
                     event = self._handle(interpreter, event)
         except Stopped as error:
@@ -243,6 +249,10 @@ class Execution:
             name, message = type(error).__name__, str(error)
             self._record(asked, arguments, begun, error=name, message=message)
             self._check_stopped()
+            if asked.line in self._rounds and asked.method == METHOD and type(error) in CLOSED:
+                if self._on_closed is not None:
+                    self._on_closed(str(arguments.get("place")), message)
+                return interpreter.answer(False)
             self._raised = (name, message)
             return interpreter.fail(_python_error(error, asked.method), message)
         except Stopped as error:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
@@ -85,6 +85,7 @@ def outlook(
     asks = tuple(dict.fromkeys(dry_run.asks))
     facts = [
         (words["way"], (way,) if way else ()),
+        (words["closed"], tuple(map(_called(knowledge, language), dry_run.closed))),
         (words["says"], tuple(text for text in dict.fromkeys(dry_run.says) if text not in asks)),
         (words["asks"], asks),
         (words["shows"], tuple(dict.fromkeys(dry_run.shows))),
@@ -103,11 +104,16 @@ def _number(number: float, language: str) -> str:
     return written if language == "en" else written.replace(".", ",")
 
 
+def _called(knowledge: Knowledge, language: str) -> Callable[[str], str]:
+    """What places are called in a language."""
+    return naming(knowledge.lexicon(language), load_language(language)).called
+
+
 def _way(places: Sequence[str], knowledge: Knowledge, language: str) -> str:
     """The places in order; of a long way, where it begins and where it ends; empty if it stays."""
     if len(places) < 2:
         return ""
-    called = naming(knowledge.lexicon(language), load_language(language)).called
+    called = _called(knowledge, language)
     if len(places) > MOST_PLACES:
         places = [*places[: MOST_PLACES // 2], "…", *places[-MOST_PLACES // 2 :]]
     return " → ".join(map(called, places))

@@ -7,6 +7,7 @@ import pytest
 
 from nl2robot.runlog import LogError
 from robot_api.errors import AccessDenied, NotPossible
+from sim.world import Zone
 
 ROUND = 'robot.goto("ward a")\nrobot.say("Good night.")\nrobot.goto("ward b")\n'
 ENDLESS = 'while True:\n    robot.goto("ward a")\n    robot.goto("ward b")\n'
@@ -264,3 +265,18 @@ def test_where_it_looked_in_vain_is_told_in_the_language_of_who_approved_it(oper
     told = log.output(run)[0]
     assert told.startswith("Hier habe ich vergeblich gesucht: ")
     assert "ward a" in told or "Station" in told
+
+
+def test_a_round_goes_on_when_a_place_is_closed_and_says_so(operator, station, log) -> None:
+    place = station.simulation.world.place("ward b")
+    x, y = place.pose.x, place.pose.y
+    around = ((x - 1, y - 1), (x + 1, y - 1), (x + 1, y + 1), (x - 1, y + 1))
+    station.simulation.set_zones((Zone(name="wet floor", polygon=around),))
+    program = 'for place in ["ward b", "ward a"]:\n    robot.goto(place)\n    robot.say(place)\n'
+    review = operator.check(program)
+    assert review.dry_run.closed == ("ward b",)
+    run = operator.run(operator.approve(review))
+    assert operator.wait(run).state == "done"
+    assert log.output(run)[0].startswith("ward b was closed to me. (")
+    assert "wet floor" in log.output(run)[0]
+    assert [call.method for call in log.calls(run)] == ["goto", "goto", "say"]
