@@ -61,6 +61,8 @@ class Brief(msgspec.Struct, frozen=True, kw_only=True):
     utterance: str | None
     program: str
     approved_by: str
+    proposed: str | None
+    changed_by: str | None
     world: str | None
     robot: str | None
     status: str | None

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import msgspec
 
-from nl2robot.canned import Result, difference
+from nl2robot.canned import Result
+from nl2robot.changes import difference
 from nl2robot.errors import UserError
 from robot_api.errors import cause
 

@@ -43,6 +43,7 @@ import msgspec
 import yaml
 
 from grammar.plan import calls, from_data
+from nl2robot.changes import difference
 from nl2robot.errors import UserError
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.rehearsal import Budget, EventKind, rehearse
@@ -202,16 +203,6 @@ def _failures(test: Test, translation: Translation, knowledge: Knowledge) -> Ite
             yield f"expected the calls {' '.join(test.calls)}, got {' '.join(methods)}"
     if test.effects is not None:
         yield from _missing_effects(test.effects, translation.program, knowledge.world)
-
-
-def difference(before: str, now: str, before_is: str, now_is: str) -> str:
-    """What changed in a program, as a unified diff."""
-    from difflib import unified_diff
-
-    lines = unified_diff(
-        before.strip().splitlines(), now.strip().splitlines(), before_is, now_is, lineterm=""
-    )
-    return "\n".join(lines)
 
 
 def _missing_effects(effects: Effects, program: str, world: World) -> Iterable[str]:

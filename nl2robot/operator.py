@@ -129,9 +129,11 @@ class Operator:
         heard: str | None = None,
         continues: int | None = None,
         by: str | None = None,
+        proposed: str | None = None,
     ) -> Approval:
         """Approve exactly the program that was reviewed; with `continues`, what is left of it.
-        `by`: how the log calls whoever does."""
+        `by`: how the log calls whoever does. `proposed`: the program from before, if it was changed
+        here by hand."""
         parameters: dict[str, Any] = {
             "program": review.program,
             "sha256": review.sha256,
@@ -140,9 +142,12 @@ class Operator:
             **_continuing(continues),
         }
         if translation is not None:
+            proposed = proposed or translation.program
             parameters["utterance"] = translation.utterance
             if review.program == translation.program:  # edited, it is no longer what was planned
                 parameters["plan"] = msgspec.json.encode(translation.plan).decode()
+        if proposed is not None and proposed != review.program:
+            parameters |= {"proposed": proposed, "changed_by": self.name}
         return self._request("program.approve", parameters, Approval)
 
     def run(self, approval: Approval) -> int:

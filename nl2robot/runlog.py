@@ -44,7 +44,9 @@ CREATE TABLE IF NOT EXISTS runs (
     picture TEXT,                    -- path of the picture of the run
     start TEXT,                      -- JSON: x, y (metres), theta (degrees) of a simulated robot
     process INTEGER,                 -- that runs it
-    continues INTEGER                -- the run that was broken off, with which this one goes on
+    continues INTEGER,               -- the run that was broken off, with which this one goes on
+    proposed TEXT,                   -- the program that was proposed, if somebody changed it
+    changed_by TEXT                  -- who did
 );
 CREATE TABLE IF NOT EXISTS calls (
     run INTEGER NOT NULL REFERENCES runs(id),
@@ -75,8 +77,14 @@ CREATE TABLE IF NOT EXISTS movements (
 );
 """
 
-_VERSION = 6
-_ADDED = {"start": "TEXT", "process": "INTEGER", "continues": "INTEGER"}
+_VERSION = 7
+_ADDED = {
+    "start": "TEXT",
+    "process": "INTEGER",
+    "continues": "INTEGER",
+    "proposed": "TEXT",
+    "changed_by": "TEXT",
+}
 """Columns of `runs` that a log of an older version has not got."""
 
 
@@ -107,6 +115,8 @@ class Run(msgspec.Struct, frozen=True, kw_only=True):
     start: str | None
     process: int | None
     continues: int | None = None
+    proposed: str | None = None
+    changed_by: str | None = None
 
     @property
     def going_on(self) -> bool:
@@ -176,6 +186,8 @@ class RunLog:
         seed: int | None = None,
         robot: str | None = None,
         continues: int | None = None,
+        proposed: str | None = None,
+        changed_by: str | None = None,
     ) -> int:
         """Note that an approved program starts; returns the run's number."""
         values = {
@@ -193,6 +205,8 @@ class RunLog:
             "seed": seed,
             "robot": robot,
             "continues": continues,
+            "proposed": proposed,
+            "changed_by": changed_by,
         }
         cursor = self._write(
             f"INSERT INTO runs ({', '.join(values)}) VALUES ({', '.join('?' * len(values))})",

@@ -98,6 +98,9 @@ class Approval(msgspec.Struct, frozen=True, kw_only=True):
     plan: str | None = None
     continues: int | None = None
     """The run that was broken off, with which it goes on; what was done there is not done again."""
+    proposed: str | None = None
+    """The program that was proposed, if somebody changed it by hand."""
+    changed_by: str | None = None
 
 
 class Status(msgspec.Struct, frozen=True, kw_only=True):
@@ -219,9 +222,13 @@ class Runner:
         language: str | None = None,
         plan: str | None = None,
         continues: int | None = None,
+        proposed: str | None = None,
+        changed_by: str | None = None,
     ) -> Approval:
-        """Approve exactly this program. Raises `AccessDenied` if the hash is that of another text,
-        or if the review finds an error in it, `NotPossible` while another program runs."""
+        """Approve exactly this program. `proposed` is what lay before them first, where somebody
+        has changed it (`changed_by`; else who approves it); kept with the run. Raises
+        `AccessDenied` if the hash is that of another text, or if the review finds an error in it,
+        `NotPossible` while another program runs."""
         self._check_free()
         if digest(program) != sha256:
             raise AccessDenied(
@@ -238,6 +245,7 @@ class Runner:
             )
         if continues is not None:
             self._recall(continues, program)
+        changed = proposed is not None and proposed != program
         approval = Approval(
             id=secrets.token_urlsafe(16),
             program=program,
@@ -249,6 +257,8 @@ class Runner:
             language=language,
             plan=plan,
             continues=continues,
+            proposed=proposed if changed else None,
+            changed_by=(changed_by or by) if changed else None,
         )
         with self._lock:
             self._approvals[approval.id] = approval
@@ -402,6 +412,8 @@ class Runner:
                 heard=approval.heard,
                 language=approval.language,
                 plan=approval.plan,
+                proposed=approval.proposed,
+                changed_by=approval.changed_by,
                 world=_where_from(self.knowledge.world),
                 seed=self._seed,
                 robot=self.knowledge.capabilities.name if self.knowledge.capabilities else None,

@@ -156,7 +156,9 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
         "program.approve": service_of_call(
             approved,
             "Approve exactly the program with this SHA-256 for one run. With `continues`, the"
-            " number of a run that was broken off, what was done there is not done again.",
+            " number of a run that was broken off, what was done there is not done again. Where it"
+            " was changed by hand, `proposed` is the program from before; the log keeps both, and"
+            " who did.",
             {
                 "program": _PROGRAM,
                 "sha256": {"type": "string", "pattern": "^[0-9a-f]{64}$"},
@@ -166,6 +168,8 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
                 "language": {"type": ["string", "null"], "maxLength": 5},
                 "plan": _MAYBE,
                 "continues": _MAYBE_RUN,
+                "proposed": _MAYBE,
+                "changed_by": {"type": ["string", "null"], "minLength": 1, "maxLength": 200},
             },
             "program sha256 by",
         ),

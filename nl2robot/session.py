@@ -155,7 +155,7 @@ class Session:
         """Review a program, have it approved, run it; what is left of it, if it `continues` a run.
         A correction instead of a decision makes another program of it, which is reviewed in its
         place."""
-        asked = self.ask_always
+        asked, proposed = self.ask_always, program
         while True:
             if len(program.encode()) > MAX_PROGRAM:
                 words = self.terminal.words["program_too_long"]
@@ -179,7 +179,7 @@ class Session:
                 self.operator.reviewing(False)
             asked = True
             if decision == "approve":
-                approval = self._approve(review, translation, heard, continues)
+                approval = self._approve(review, translation, heard, continues, proposed=proposed)
                 if approval is not None:
                     break
                 continue  # it waits here until the other program is over
@@ -198,6 +198,7 @@ class Session:
                     continue
                 if changed.program is not None and changed.program != STOP:
                     translation, program, continues = changed, changed.program, None
+                    proposed = program
                     continue
                 if not self._is_dropped(changed):
                     self._show_answer(changed)
@@ -213,10 +214,11 @@ class Session:
         heard: str | None,
         continues: int | None = None,
         by: str | None = None,
+        proposed: str | None = None,
     ) -> Approval | None:
         """None while another program runs, which is said."""
         try:
-            return self.operator.approve(review, translation, heard, continues, by)
+            return self.operator.approve(review, translation, heard, continues, by, proposed)
         except NotPossible:
             if self.approve_all:
                 raise

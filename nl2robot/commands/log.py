@@ -8,6 +8,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+from nl2robot.changes import difference
 from nl2robot.commands.options import open_log, whole
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.plain import visible
@@ -73,6 +74,7 @@ def _show(log: RunLog, row: Run, terminal: Terminal) -> None:
         "heard": row.heard,
         "understood": row.utterance,
         "approved": f"by {row.approved_by} at {_when(row.approved_at)}",
+        "changed": f"by hand by {row.changed_by}" if row.changed_by else None,
         "robot": f"{row.robot} in {row.world}",
         "message": row.message,
         "picture": row.picture,
@@ -82,6 +84,9 @@ def _show(log: RunLog, row: Run, terminal: Terminal) -> None:
         if value:
             line = visible(f"{name + ':':<12}{value}")
             terminal.console.print(line, markup=False, soft_wrap=True)
+    if row.proposed is not None:
+        changed = difference(row.proposed, row.program, "proposed", "approved")
+        terminal.console.print(visible(changed), markup=False, soft_wrap=True)
     terminal.show_program(row.program)
     table = terminal.table("", "line", "call", "result", "seconds")
     for call in log.calls(row.id):
@@ -117,8 +122,8 @@ def _replay(log: RunLog, row: Run, terminal: Terminal, picture: str | None) -> i
 
     again = replay(row, log.calls(row.id), simulation, on_call)
     terminal.show_end(again.status, again.message)
-    for difference in again.differences:
-        terminal.console.print(difference, style="yellow", markup=False)
+    for each in again.differences:
+        terminal.console.print(each, style="yellow", markup=False)
     if not again.differences:
         terminal.console.print("Every call came out as it did the first time.")
     if picture is not None:

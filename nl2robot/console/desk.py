@@ -290,10 +290,10 @@ class Desk:
         if draft is None or program == self._shown:
             return
         self._shown = program
-        self.dialogue.touch(program)
+        self.dialogue.touch(program, self.visit.who)
         await asyncio.sleep(EDITED_AFTER)
         if self._shown == program:  # nobody typed on
-            await self._do(self.dialogue.edit, program, self.visit.language)
+            await self._do(self.dialogue.edit, program, self.visit.language, self.visit.who)
 
     def _handlers(self) -> dict[str, Callable[[GenericEventArguments], Any]]:
         dialogue, language, who = self.dialogue, self.visit.language, self.visit.who

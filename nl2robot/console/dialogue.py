@@ -68,6 +68,9 @@ class Draft:
     """The run that was broken off, with which it goes on."""
     said: str | None = None
     """What somebody would have said who wants this, where they clicked on the map instead."""
+    proposed: str | None = None
+    """The program as it was laid before them, if somebody has changed it since."""
+    changed_by: str | None = None
 
     @property
     def edited(self) -> bool:
@@ -361,14 +364,14 @@ class Dialogue:
         with self._turn:
             self._take(translation, None, language, "", harmless=False)
 
-    def touch(self, program: str) -> None:
+    def touch(self, program: str, who: str) -> None:
         """Somebody is changing the program: from now on there is nothing that could be approved."""
         draft = self.draft
         if draft is not None:
-            self.draft = replace(draft, program=program, review=None)
+            self.draft = _changed_by_hand(draft, program, who)
             self._changed()
 
-    def edit(self, program: str, language: str) -> None:
+    def edit(self, program: str, language: str, who: str) -> None:
         """Review the program as somebody has changed it."""
         with self._turn:
             draft = self.draft
@@ -376,7 +379,7 @@ class Dialogue:
                 return
             if draft.continues is not None:
                 self._tell(Line("robot", going_on_texts(language)["changed"]))
-            changed = replace(draft, program=program, review=None, continues=None)
+            changed = replace(_changed_by_hand(draft, program, who), continues=None)
             self._review(changed, language)
 
     def review(self, language: str) -> None:
@@ -436,6 +439,8 @@ class Dialogue:
                     language=language,
                     plan=msgspec.json.encode(plan).decode() if plan is not None else None,
                     continues=draft.continues,
+                    proposed=draft.proposed,
+                    changed_by=draft.changed_by,
                 )
                 self.runs.add(runner.run(approval.id))
             except (RobotError, UserError) as error:
@@ -476,6 +481,12 @@ class Dialogue:
     def _changed(self) -> None:
         for watcher in tuple(self._watchers):
             watcher()
+
+
+def _changed_by_hand(draft: Draft, program: str, who: str) -> Draft:
+    """It needs a new review; the program that was proposed is not forgotten."""
+    proposed = draft.program if draft.proposed is None else draft.proposed
+    return replace(draft, program=program, review=None, proposed=proposed, changed_by=who)
 
 
 def _said(key: str, language: str) -> str:

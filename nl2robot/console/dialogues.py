@@ -38,6 +38,15 @@ class _Waiting(msgspec.Struct):
     heard: str | None
     continues: int | None = None
     said: str | None = None
+    proposed: str | None = None
+    changed_by: str | None = None
+
+    @classmethod
+    def of(cls, draft: Draft) -> _Waiting:
+        return cls(*(getattr(draft, name) for name in cls.__struct_fields__))
+
+    def draft(self) -> Draft:
+        return Draft(**{name: getattr(self, name) for name in self.__struct_fields__})
 
 
 class _Kept(msgspec.Struct):
@@ -47,10 +56,6 @@ class _Kept(msgspec.Struct):
 
 
 msgspec.json.Decoder(_Kept)  # learned before there are threads, see `robot_api.schema`
-
-
-def _waiting(draft: Draft) -> _Waiting:
-    return _Waiting(draft.program, draft.translation, draft.heard, draft.continues, draft.said)
 
 
 class Dialogues:
@@ -120,7 +125,7 @@ class Dialogues:
 
     def _keep(self, dialogue: Dialogue) -> None:
         draft = dialogue.draft
-        waiting = _waiting(draft) if draft else None
+        waiting = _Waiting.of(draft) if draft else None
         kept = msgspec.json.encode(_Kept(dialogue.lines, sorted(dialogue.runs), waiting))
         with self._writing:
             if self._written.get(dialogue.name) == kept:
@@ -145,14 +150,7 @@ class Dialogues:
             return
         dialogue.lines = kept.lines
         if kept.draft:
-            waiting = kept.draft
-            dialogue.draft = Draft(
-                waiting.program,
-                waiting.translation,
-                waiting.heard,
-                continues=waiting.continues,
-                said=waiting.said,
-            )
+            dialogue.draft = kept.draft.draft()
         dialogue.runs = set(kept.runs)
         for run in kept.runs:
             self._tell_end(dialogue, run, language)

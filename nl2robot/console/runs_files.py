@@ -182,6 +182,7 @@ def _floor(world: str) -> str | None:
 
 _COLUMNS: Final = (
     *("id", "started", "finished", "state", "utterance", "heard", "program", "approved_by"),
+    *("proposed", "changed_by"),
     *("robot", "world", "message", "calls"),
 )
 

@@ -16,6 +16,7 @@ from grammar.explain import LineTold, explain_program
 from grammar.language import load_language
 from grammar.naming import naming
 from nl2robot.archive import STATES, Page, state_of
+from nl2robot.changes import changes
 from nl2robot.console.highlight import highlighted
 from nl2robot.console.runs_asked import Asked
 from nl2robot.knowledge import Knowledge
@@ -78,6 +79,7 @@ def run_page(
         "run.html",
         **_standing(run, log, words),
         lines=lines,
+        changes=changes(run.proposed, run.program) if run.proposed is not None else (),
         role=role,
         older=neighbours[0],
         newer=neighbours[1],

@@ -16,7 +16,19 @@ def say(page: Page, words: str) -> None:
     page.keyboard.press("Enter")
 
 
+def read_all(page: Page) -> None:
+    """Look at all that is laid before one, as far as the screen shows it at once."""
+    expect(page.locator("#decide[data-review]")).to_be_attached()
+    for _ in range(60):
+        if not page.get_by_role("button", name="Read on").is_visible():
+            return
+        page.evaluate("document.querySelector('#read-on:not([hidden])')?.click()")
+        page.wait_for_timeout(60)
+    raise AssertionError("there is no end of reading on")
+
+
 def approve(page: Page) -> None:
+    read_all(page)
     button = page.get_by_role("button", name="Approve and run")
     expect(button).to_be_enabled()
     button.click()
@@ -93,7 +105,15 @@ def test_what_is_approved_is_what_is_seen(page: Page, served: Served) -> None:
     page.locator(".cm-content").click()
     page.keyboard.press("Control+End")
     page.keyboard.insert_text('robot.say("two")')
-    button.click()
+    expect(button).to_be_disabled()
+    # Whoever gets round that is asked by the server.
+    page.evaluate(
+        """() => window.emitEvent('desk-approve', {
+            program: 'robot.say("One.")\\nrobot.say("two")',
+            sha256: document.getElementById('decide').dataset.review,
+            all_the_same: false,
+        })"""
+    )
     expect(page.locator(".said").last).to_contain_text("The program has changed since its review.")
     with served.robot() as robot:
         state = robot.request("program.state")
@@ -270,7 +290,7 @@ def test_what_goes_wrong_and_where_it_goes_is_told_in_german_too(look: Look) -> 
     outlook = page.locator(".outlook")
     expect(outlook).to_contain_text("Der Roboter findet es hier nicht. (")
     expect(page.locator(".facts")).to_contain_text("Hauptflur → Apotheke")
-    page.get_by_role("button", name="Freigeben und starten").click()
+    page.get_by_role("button", name="Trotzdem starten").click()
     expect(page.locator("#run-panel li.current")).to_contain_text("pharmacy")
     page.get_by_role("button", name="STOPP").click()
     expect(page.locator(".run-message")).to_have_text("Der Roboter wurde angehalten.")
@@ -279,14 +299,16 @@ def test_what_goes_wrong_and_where_it_goes_is_told_in_german_too(look: Look) -> 
 
 def test_what_is_said_of_a_line_is_said_once(look: Look) -> None:
     page = look("/?program=while True:%0A    robot.ask(%22Tea%3F%22, [%22yes%22, %22no%22])")
-    expect(page.locator(".mark")).to_have_count(1)
-    expect(page.locator(".mark")).to_contain_text("until somebody stops it")
+    expect(page.locator(".mark")).to_have_count(2)
+    expect(page.locator(".mark").first).to_contain_text("until somebody stops it")
+    expect(page.locator(".mark").last).to_contain_text("What comes then was not tried.")
     expect(page.locator(".facts").get_by_text("Tea?", exact=True)).to_have_count(1)
 
 
 def test_on_a_phone_in_the_dark_everything_is_there(look: Look, picture: Picture) -> None:
     page = look(width=390, height=844, dark=True)
     say(page, "go to the pharmacy and say hello")
+    read_all(page)
     button = page.get_by_role("button", name="Approve and run")
     expect(button).to_be_enabled()
     button.scroll_into_view_if_needed()

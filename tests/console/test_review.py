@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from tests.console.conftest import Look, Picture, Served
-from tests.console.test_desk import say
+from tests.console.test_desk import approve, read_all, say
 
 SIZES = [
     (1440, 900, 1.0),
@@ -46,15 +46,6 @@ def laid_before(look: Look, size: tuple[float, float, float], program: str, **mo
 
 def read_on(page: Page) -> Locator:
     return page.get_by_role("button", name="Read on")
-
-
-def read_all(page: Page) -> None:
-    for _ in range(60):
-        if not read_on(page).is_visible():
-            return
-        page.evaluate("document.querySelector('#read-on:not([hidden])')?.click()")
-        page.wait_for_timeout(60)
-    raise AssertionError("there is no end of reading on")
 
 
 def lines_in_view(page: Page) -> set[str]:
@@ -213,3 +204,29 @@ def test_the_server_takes_no_other_program_than_was_shown(page: Page, served: Se
     page.evaluate(tell, [shown, False])
     expect(page.locator(".said.trouble").last).to_contain_text("Run it all the same")
     expect(page.locator("#run-panel")).to_be_hidden()
+
+
+def test_what_was_changed_by_hand_is_kept_with_who_changed_it(look: Look, served: Served) -> None:
+    page = look()
+    page.get_by_label("Settings").first.click()
+    page.get_by_label("Your name").fill("Nurse Kim")
+    page.get_by_role("button", name="Close").click()
+    say(page, "say good morning")
+    expect(page.locator("#decide[data-review]")).to_be_attached()
+    page.locator(".cm-content").click()
+    page.keyboard.press("Control+End")
+    page.keyboard.insert_text('robot.say("Tea?")')
+    expect(page.locator(".review-head .chip")).to_have_text("changed by hand")
+    approve(page)
+    expect(page.locator("#run-panel .chip[role=status]")).to_have_text("Done")
+    page.goto(
+        served.url
+        + (page.get_by_role("link", name=re.compile("See run")).first.get_attribute("href") or "")
+    )
+    expect(page.locator(".run-facts")).to_contain_text("Changed by hand byNurse Kim")
+    expect(page.locator(".run-changes .kept")).to_contain_text("Good morning")
+    expect(page.locator(".run-changes .added")).to_contain_text('robot.say("Tea?")')
+    number = page.url.rpartition("/")[2]
+    data = page.request.get(f"{served.url}/runs/{number}/run.json").json()
+    assert (data["utterance"], data["changed_by"]) == ("say good morning", "Nurse Kim")
+    assert "Tea" in data["program"] and "Tea" not in data["proposed"]

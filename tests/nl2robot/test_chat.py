@@ -135,6 +135,7 @@ def test_an_edited_program_is_reviewed_again_and_logged_as_it_ran(start, home) -
     [row] = log.runs()
     assert row.program == 'robot.say("Good night.")\n'
     assert (row.utterance, row.plan) == ("go to ward a", None)
+    assert (row.proposed, row.changed_by) == ('robot.goto("ward a")\n', row.approved_by)
     assert [call.method for call in log.calls(row.id)] == ["say"]
     log.close()
 

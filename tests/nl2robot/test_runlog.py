@@ -102,3 +102,30 @@ def test_two_processes_write_side_by_side(tmp_path) -> None:
         len(sqlite3.connect(tmp_path / "runs.sqlite").execute("SELECT 1 FROM runs").fetchall()) == 4
     )
     assert one.runs()[0].started <= time.time()
+
+
+def test_what_was_proposed_is_kept_beside_what_was_approved(log) -> None:
+    run = log.begin(**ROUND, proposed='robot.say("Hello.")\n', changed_by="Student Noor")
+    [row] = log.runs()
+    assert (row.proposed, row.changed_by) == ('robot.say("Hello.")\n', "Student Noor")
+    assert log.whole(row)["changed_by"] == "Student Noor"
+    plain = log.begin(**ROUND)
+    assert (log.run(plain).proposed, log.run(plain).changed_by) == (None, None)
+    assert run != plain
+
+
+def test_a_log_from_before_changes_were_kept_is_read_and_goes_on(tmp_path) -> None:
+    old = RunLog(tmp_path / "runs.sqlite")
+    old.begin(**ROUND)
+    old.close()
+    database = sqlite3.connect(tmp_path / "runs.sqlite")
+    for column in ("proposed", "changed_by"):
+        database.execute(f"ALTER TABLE runs DROP COLUMN {column}")
+    database.execute("PRAGMA user_version = 4")
+    database.commit()
+    database.close()
+    log = RunLog(tmp_path / "runs.sqlite")
+    assert log.run(1).proposed is None
+    log.begin(**ROUND, proposed="x", changed_by="Kim")
+    assert log.run(2).changed_by == "Kim"
+    log.close()

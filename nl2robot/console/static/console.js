@@ -1,5 +1,6 @@
 /** What every page of the console does: STOP, the sign of the connection, the settings. */
 
+import '/static/focus.js';
 import {element, filled, keep, timeOfDay} from '/static/page.js';
 import {present} from '/static/state.js';
 import {mountStop} from '/static/stop.js';

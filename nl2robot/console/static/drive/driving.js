@@ -142,6 +142,7 @@ export function goPanel(body) {
   const has = (method) => body.methods.includes(method);
   const list = element('div', {class: 'choices places', role: 'radiogroup'});
   list.setAttribute('aria-label', say('places'));
+  list.tabIndex = 0; // it scrolls, also while nothing in it can be chosen
   const filter = element('input', {class: 'field', type: 'search', placeholder: say('filter')});
   const group = newId('place');
   const rows = body.places.map((place) => {
