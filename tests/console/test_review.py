@@ -122,8 +122,12 @@ def test_by_keyboard_alone_nothing_is_approved_unseen(look: Look, served: Served
     page = laid_before(look, (1280, 720, 1.0), LONG)
     expect(read_on(page)).to_be_visible()
     read_on(page).focus()
-    for _ in range(40):  # who leans on the key
+    for _ in range(200):  # who leans on the key
+        if not read_on(page).is_visible():
+            break
+        assert page.evaluate("document.activeElement.id") == "read-on"
         page.keyboard.press("Enter")
+        page.wait_for_timeout(30)
     expect(page.locator("#approve")).to_be_enabled()
     expect(page.locator("#left-to-see")).to_be_focused()
     page.keyboard.press("Enter")

@@ -69,7 +69,9 @@ export class ReviewSeen {
     const {left, right} = view.contentDOM.getBoundingClientRect();
     for (let number = 1; number <= this.lines.length; number++) {
       if (this.lines[number - 1] === BOTH) continue;
-      const block = view.lineBlockAt(view.state.doc.line(number).from);
+      const line = view.state.doc.line(number);
+      if (line.to < view.viewport.from || line.from > view.viewport.to) continue; // not drawn yet
+      const block = view.lineBlockAt(line.from);
       const top = view.documentTop + block.top;
       if (top > innerHeight) break;
       const bottom = top + block.height;
