@@ -100,6 +100,7 @@ class Desk:
                 "words": dict(self.words),
                 "microphone": dict(texts("microphone", visit.language)),
                 "desk": self.dialogue.name,
+                "who": visit.who,
                 "history": [line.text for line in self.dialogue.lines if line.by == "you"],
             }
         )
@@ -191,6 +192,8 @@ class Desk:
                 ):
                     self.conversation = ui.html("", sanitize=False).classes("lines")
                     self.thought = ThoughtView(self.dialogue, self.words, _loop())
+                    if self.visit.role == "operator":
+                        ui.html('<div id="standing-in"></div>', sanitize=False)
                 ui.html(_page("composer.html", visit=self.visit), sanitize=False)
             with ui.element("div").classes("desk-program"):
                 self._build_program()

@@ -84,6 +84,9 @@ class FaceTablet:
         """Also while a page is loaded anew."""
         return any(self._faces.values()) or time.monotonic() < self._missed_from
 
+    helped = True
+    """Somebody at the desk may answer for whoever is asked: `touched` takes it from anywhere."""
+
     def answer(self, stop: StopFlag, asked: Asked) -> str | None:
         """See `Tablet.answer`."""
         with self._asking.mine(stop):
@@ -204,11 +207,14 @@ class FaceTablet:
             if question is None:
                 self._changed("asking", None)
                 return
-            if not self.connected:
-                question.over.set()
             asked = question.asked
             options = list(asked.options) if asked.options is not None else None
-            about = {"number": question.number, "question": asked.question, "options": options}
+            about = {
+                "number": question.number,
+                "question": asked.question,
+                "options": options,
+                "person": asked.person,
+            }
             self._changed("asking", about)
 
     def _miss(self) -> None:
@@ -222,7 +228,7 @@ class FaceTablet:
 
     def _let_go_if_alone(self) -> None:
         with self._lock:
-            if self._question is not None and not self.connected:
+            if self._question is not None and not (self.connected or self.helped):
                 self._question.over.set()
 
     def _leads(self, face: str) -> None:

@@ -140,7 +140,8 @@ class Hearing(Capability):
         person: str | None = None,
     ) -> str | Unsure | None:
         """Say it and hear the answer (`hear`), which on a real tablet may also be touched or typed,
-        whichever comes first. Simulated people leave it to whoever stands there."""
+        whichever comes first, or be given by somebody elsewhere. Simulated people leave it to
+        whoever stands there."""
 
         def heard(stop: StopFlag) -> str | Unsure | None:
             return self.hear(stop, timeout, question, options, person)
@@ -153,14 +154,16 @@ class Hearing(Capability):
             patience(stop, self.tablet, timeout)
             return None
 
-        if self._screen is None or not self.tablet.connected:
+        touchable = self._screen is not None and self.tablet.connected
+        if not (touchable or self.tablet.helped):
             return meanwhile(stop)
         asked = Asked(self.language, question, options, person)
         touched, words = answered(stop, self.tablet, asked, meanwhile)
         if touched is not None:
-            self._screen.noticed(touched)
+            if self._screen is not None:
+                self._screen.noticed(touched)
             return touched
-        gone = not self.tablet.connected and not self.hears_people
+        gone = touchable and not self.tablet.connected and not self.hears_people
         return heard(stop) if gone and words is None else words
 
     def answer(self, stop: StopFlag, question: str | None) -> str:

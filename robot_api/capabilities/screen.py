@@ -134,14 +134,22 @@ class Screen(Capability):
             if prompt and self._speech is not None:
                 self._speech.say(stop, prompt)
 
+        def by_others(stop: StopFlag) -> str | None:
+            prompted(stop)
+            return self.touched(stop, options, TOUCH_TIMEOUT)
+
         def meanwhile(stop: StopFlag) -> None:
             prompted(stop)
             patience(stop, self.tablet, TOUCH_TIMEOUT)
 
-        if not self.tablet.connected:
-            prompted(stop)
-            return self.touched(stop, options, TOUCH_TIMEOUT)
         asked = Asked(self._language(), prompt, options)
+        if not self.tablet.connected:
+            if not self.tablet.helped:
+                return by_others(stop)
+            touched, others = answered(stop, self.tablet, asked, by_others)
+            if touched is not None:
+                self.noticed(touched)
+            return touched if touched is not None else others
         touched, _ = answered(stop, self.tablet, asked, meanwhile)
         if touched is not None:
             self.noticed(touched)

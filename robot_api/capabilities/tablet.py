@@ -33,9 +33,14 @@ class Tablet(Protocol):
         """Whether somebody can see it now."""
         ...
 
+    @property
+    def helped(self) -> bool:
+        """Whether somebody elsewhere may answer for whoever is asked, also while nobody sees it."""
+        ...
+
     def answer(self, stop: StopFlag, asked: Asked) -> str | None:
         """What somebody touches or types before `stop` is set: one of the options exactly, or
-        words; None if the tablet is gone. Raises `Stopped`."""
+        words; None if the tablet is gone, and nobody helps. Raises `Stopped`."""
         ...
 
     def page(self) -> str | None:
@@ -60,6 +65,7 @@ class Tablet(Protocol):
 
 class _NoTablet:
     connected = False
+    helped = False
 
     def answer(self, stop: StopFlag, asked: Asked) -> str | None:
         return None

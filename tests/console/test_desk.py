@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from threading import Event
+from urllib.parse import quote
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -315,3 +316,42 @@ def test_on_a_phone_in_the_dark_everything_is_there(look: Look, picture: Picture
     expect(page.get_by_role("button", name="STOP")).to_be_in_viewport()
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     picture(page, "console-phone-dark")
+
+
+def test_the_desk_answers_for_a_visitor_who_is_silent(look: Look, served: Served) -> None:
+    program = (
+        'room = robot.ask("Which room?", ["x-ray", "lab"])\n'
+        'name = robot.ask("And your name?")\n'
+        'robot.say(f"{name} goes to {room}.")\n'
+    )
+    page = look(f"/?program={quote(program)}")
+    approve(page)
+    asked = page.get_by_role("form", name="Answer for them")
+    expect(asked).to_contain_text("I am asking: Which room?")
+    asked.get_by_role("button", name="lab").click()
+    expect(asked).to_contain_text("I am asking: And your name?")
+    asked.get_by_label("Answer for them").fill("Grace")
+    page.keyboard.press("Enter")
+    last = page.locator(".said.by-robot").last
+    expect(last).to_contain_text("Grace goes to lab.")
+    expect(last).to_contain_text(re.compile(r"Answered at the desk by .+: lab"))
+    expect(asked).to_have_count(0)
+    last.get_by_role("link").click()
+    expect(page.locator(".run-printed")).to_contain_text(
+        re.compile("Answered at the desk by .+: Grace")
+    )
+
+
+def test_what_is_answered_by_the_visitor_needs_nobody_at_the_desk(
+    look: Look, served: Served
+) -> None:
+    page = look(f"/?program={quote(TEA)}", language="fr", width=390, height=844)
+    page.get_by_role("button", name="Approuver et lancer").click()
+    expect(page.locator(".said.by-robot").last).to_contain_text("Tom : ", timeout=60_000)
+    expect(page.get_by_role("form", name="Répondre à leur place")).to_have_count(0)
+
+
+TEA = """\
+robot.goto("lobby")
+robot.ask("Du thé ?", ["oui", "non"], person="Tom")
+"""

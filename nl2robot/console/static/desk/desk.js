@@ -5,6 +5,7 @@ import {present} from '/static/state.js';
 import {wire} from '/static/wire.js';
 import {ReviewSeen} from '/static/desk/review_seen.js';
 import {RunPanel} from '/static/desk/run_panel.js';
+import {standIn} from '/static/desk/standing_in.js';
 
 const {words, role, language, who} = pageData;
 const LONGEST_PROGRAM = 64_000; // as the sandbox has it
@@ -204,6 +205,7 @@ appears('#run-panel').then((element) => {
 appears('#desk-map').then(openMap);
 if (role === 'operator') {
   appears('#composer').then(openComposer);
+  appears('#standing-in').then((element) => standIn(element, {wire, words, language, who: pageData.who}));
   openDecisions();
   const tellShade = () => tell('desk-shade', {dark: document.documentElement.dataset.look === 'dark'});
   appears('.desk-editor').then((editor) => {
