@@ -3,29 +3,38 @@
 import {element, filled} from '/static/page.js';
 
 const AFTER = 700; // milliseconds: who answers at once needs nobody's help
+const AGAIN = 400; // in which a question that was not understood is asked again
 
-/** Show the open question in an element, as long as it is open. */
+/** Show the open question in an element, as long as it is open; what is typed stays when it is asked again. */
 export function standIn(root, {wire, words, language, who}) {
-  let shown = null;
+  let asked = null;
+  let drawn; // the question that can be seen
   let waiting = 0;
 
   const show = (asking) => {
     clearTimeout(waiting);
-    if (asking?.number === shown) return;
-    shown = asking?.number ?? null;
-    root.replaceChildren();
-    if (asking) waiting = setTimeout(() => root.replaceChildren(form(asking)), AFTER);
+    asked = asking;
+    if (asked && drawn === asked.question) enable(true);
+    else waiting = setTimeout(draw, asked ? AFTER : AGAIN);
   };
 
-  const answer = async (number, said, controls) => {
-    for (const each of controls) each.disabled = true;
-    const given = await wire
-      .request('face.stand_in', {number, answer: said, who, language})
-      .catch(() => false);
-    if (!given) for (const each of controls) each.disabled = false;
+  const draw = () => {
+    drawn = asked ? asked.question : undefined;
+    root.replaceChildren(...(asked ? [form(asked)] : []));
   };
 
-  const form = ({number, question, options, person}) => {
+  const enable = (able) => {
+    for (const each of root.querySelectorAll('button, input')) each.disabled = !able;
+  };
+
+  const answer = async (said) => {
+    if (!asked) return;
+    enable(false);
+    const given = {number: asked.number, answer: said, who, language};
+    if (!(await wire.request('face.stand_in', given).catch(() => false))) enable(true);
+  };
+
+  const form = ({question, options, person}) => {
     const named = person && person !== 'person' ? filled(words.asks_now, {person}) : words.asks_anybody;
     const box = element('form', {class: 'said by-robot question standing-in', 'aria-label': words.answer_for});
     const field = element('input', {
@@ -37,7 +46,7 @@ export function standIn(root, {wire, words, language, who}) {
       row.append(element('span', {class: 'muted'}, words.answer_for));
       for (const option of options) {
         const button = element('button', {type: 'button', class: 'suggestion'}, option);
-        button.addEventListener('click', () => answer(number, option, row.querySelectorAll('button')));
+        button.addEventListener('click', () => answer(option));
         row.append(button);
       }
     } else {
@@ -46,7 +55,7 @@ export function standIn(root, {wire, words, language, who}) {
     box.addEventListener('submit', (event) => {
       event.preventDefault();
       const said = field.value.trim();
-      if (said && !options) answer(number, said, row.querySelectorAll('button, input'));
+      if (said && !options) answer(said);
     });
     box.append(element('p', {}, question ? `${named} ${question}` : words.listens), row);
     return box;
