@@ -19,6 +19,7 @@ from nl2robot.going_on import asks_to_go_on
 from nl2robot.going_on import texts as going_on_texts
 from nl2robot.harmless import approver, needs_no_question
 from nl2robot.operator import Operator
+from nl2robot.other_language import accepted, language_of, question
 from nl2robot.review import Review
 from nl2robot.runner import GOING, Approval, Status
 from nl2robot.terminal import Decision, Terminal
@@ -84,6 +85,8 @@ class Session:
         """While a run of this session goes on; others may use the same robot in between."""
         self._told_end = threading.Event()
         self._state: Mapping[str, Any] = {}
+        self._declined: set[str] = set()
+        """The languages that nobody wanted to go on in."""
         operator.watch(self._show, "program")
         with contextlib.suppress(InvalidCall):  # a server that tells nothing of it
             operator.watch(self._show_state, "state")
@@ -120,7 +123,7 @@ class Session:
     def understand(self, utterance: str) -> Translation:
         """Translate, asking back while a question is open and somebody is there to answer. Raises
         `GivenUp`."""
-        translation = self._translate(utterance)
+        translation = self._in_their_language(utterance, self._translate(utterance))
         if translation.status == "clarify" and translation.request and self.approve_all:
             self._show_answer(translation)
             return self._translate(translation.suggestions[0])  # "yes", and so it is learned
@@ -130,6 +133,25 @@ class Session:
             self.terminal.show_refusal(translation)
             translation = self._translate(self.terminal.ask("> "))
         return translation
+
+    def _in_their_language(self, utterance: str, translation: Translation) -> Translation:
+        """What was not understood may be in another language: then it is asked, once for each,
+        whether to go on in that."""
+        if translation.status != "rejected" or self.approve_all:
+            return translation
+        code = language_of(utterance, self.language)
+        if code is None or code in self._declined or not self.terminal.somebody_is_there:
+            return translation
+        if not accepted(
+            self.terminal.ask(f"{question(code, self.language)} "), code, self.language
+        ):
+            self._declined.add(code)
+            return translation
+        with contextlib.suppress(RobotError):  # one without a voice for it is written to in it
+            self.operator.robot.set_language(code)
+        self.language = code
+        self.terminal.speak(code)
+        return self._translate(utterance)
 
     def _show_answer(self, translation: Translation) -> None:
         """What was said instead of a program."""

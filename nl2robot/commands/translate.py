@@ -41,7 +41,19 @@ def run(options: argparse.Namespace) -> int:
         )
         if translation.status != "ok" and not options.json:
             status = ExitStatus.NOT_UNDERSTOOD
+            _show_other_language(line, options.lang)
     return status
+
+
+def _show_other_language(line: str, language: str) -> None:
+    from nl2robot.other_language import language_of
+    from nl2robot.words import words_in
+
+    code = language_of(line, language)
+    if code is not None:
+        words = words_in(language)
+        name = words["language_names"][code]
+        print(words["other_language"].format(name=name, code=code), file=sys.stderr)
 
 
 def _translated(

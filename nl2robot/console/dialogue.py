@@ -27,11 +27,14 @@ from nl2robot.going_on import asks_to_go_on
 from nl2robot.going_on import texts as going_on_texts
 from nl2robot.going_on import told as rest_told
 from nl2robot.harmless import approver, needs_no_question
+from nl2robot.other_language import accepted, language_of, question
 from nl2robot.review import Review, digest
 from nl2robot.session import STOP
 from nl2robot.teaching import told as told_in_words
 from nl2robot.translation import Translation, translate
 from nl2robot.trouble import told
+from nl2robot.words import words_in
+from robot_api.driver import StopFlag
 from robot_api.errors import NotPossible, RobotError
 
 LINES_KEPT: Final = 200
@@ -95,6 +98,10 @@ class Dialogue:
         """The last one that was cancelled, whose words somebody may want to send otherwise."""
         self.runs: set[int] = set()
         """Runs that were started here and are not over."""
+        self._offered: tuple[str, str] | None = None
+        """A language that was offered, and what was said in it."""
+        self._language: tuple[str, str] | None = None
+        """A page's language, and the one that is spoken on it instead."""
         self._backstage = backstage
         self._watchers: list[Callable[[], None]] = []
         self._onlookers: list[Callable[[], None]] = []
@@ -143,10 +150,10 @@ class Dialogue:
     def say(self, words: str, language: str, who: str, harmless: bool = False) -> None:
         """Take what somebody typed. `harmless`: what only looks or tells needs no
         question."""
-        if asks_to_go_on(words, language) and self._goes_on(words, language):
+        words, language = self._spoken_in(words, language)
+        if asks_to_go_on(words, language) and self._goes_on(language):
             return
         thought = self._begin(Thought(words, self._grown), language)
-        self._tell(Line("you", words))
         with self._words:
             try:
                 translation = self._understood(thought, language)
@@ -157,10 +164,37 @@ class Dialogue:
                 self._drop(thought, language)
                 return
             if translation.program != STOP:
+                translation = self._offering(words, translation, language)
                 with self._turn:
                     self._take(translation, None, language, who, harmless)
                 return
         self._stop(language)
+
+    def _spoken_in(self, words: str, page: str) -> tuple[str, str]:
+        """What is to be understood, and in which language: the page's, or the one that was offered
+        on it and accepted; then what was said before comes first."""
+        self._tell(Line("you", words))
+        offered, self._offered = self._offered, None
+        if offered is not None and accepted(words, offered[0], page):
+            code, words = offered
+            self._language = (page, code)
+            if self._backstage.runner.present.state.run is None:
+                with suppress(RobotError):  # one without a voice for it is written to in it
+                    self._backstage.driver.call("set_language", {"code": code}, StopFlag())
+        if self._language is not None and self._language[0] == page:
+            return words, self._language[1]
+        return words, page
+
+    def _offering(self, words: str, translation: Translation, language: str) -> Translation:
+        """What was not understood may be in another language: then that one is offered."""
+        code = language_of(words, language) if translation.status == "rejected" else None
+        if code is None:
+            return translation
+        self._offered = (code, words)
+        yes = words_in(code)["accept"]
+        return msgspec.structs.replace(
+            translation, status="clarify", message=question(code, language), suggestions=(yes,)
+        )
 
     def _understood(self, thought: Thought, language: str) -> Translation | None:
         """What was made of a sentence; None if it was dropped, and then it is as if nobody had
@@ -320,18 +354,16 @@ class Dialogue:
             if at_once and draft and draft.review and draft.may_run and not draft.review.risks:
                 self.approve(draft.program, who, language, draft.review.sha256)
 
-    def _goes_on(self, words: str, language: str) -> bool:
+    def _goes_on(self, language: str) -> bool:
         """Go on with what is paused, or propose what is left of the last run; whether there is
         any of it."""
         runner = self._backstage.runner
         if runner.present.state.state in ("pausing", "paused"):
-            self._tell(Line("you", words))
             with suppress(NotPossible):  # it was over in that very moment
                 runner.resume()
             return True
         if runner.unfinished() is None:
             return False
-        self._tell(Line("you", words))
         self.go_on(None, language)
         return True
 

@@ -1,10 +1,22 @@
 """Who wants another language asks for it in that one."""
 
+import functools
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
 import pytest
+import yaml
 
 from grammar.language import known_by_word, languages
+from nl2robot.console.dialogue import Dialogue
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
+from nl2robot.other_language import accepted, language_of, question
+from nl2robot.review import Review, review
+from nl2robot.talks import Talks
 from nl2robot.translation import translate
+from nl2robot.words import words_in
 from sim.world import load_world
 
 KNOWLEDGE = Knowledge(load_world(DEFAULT_WORLD))
@@ -63,3 +75,110 @@ def test_what_it_has_ready_is_said_in_the_language_it_is_to_speak(language, said
     program = translate(said, KNOWLEDGE, language).program
     assert program is not None
     assert told in program
+
+
+# --- offered ------------------------------------------------------------------------------------
+
+GRAMMAR = Path(__file__).parents[1] / "grammar"
+
+
+def _strings(data) -> Iterator[str]:
+    if isinstance(data, str):
+        yield data
+    elif isinstance(data, list):
+        for each in data:
+            yield from _strings(each)
+    elif isinstance(data, dict):
+        for key, value in data.items():
+            if key not in ("means", "meaning", "world"):
+                yield from _strings(value)
+
+
+@functools.cache
+def said_in(language: str) -> tuple[str, ...]:
+    """The sentences of the tests of the grammar in a language."""
+    files = [
+        *GRAMMAR.glob(f"sentences_{language}*.yaml"),
+        *GRAMMAR.glob(f"not_commands_{language}*.yaml"),
+    ]
+    read = (yaml.safe_load(file.read_text(encoding="utf-8")) for file in files)
+    return tuple(each for data in read for each in _strings(data) if each != "not yet")
+
+
+@pytest.mark.parametrize("language", languages())
+def test_hardly_anybody_is_offered_another_language_than_they_speak(language) -> None:
+    sentences = said_in(language)
+    wrong = [each for each in sentences if language_of(each, language) is not None]
+    assert len(sentences) > 500
+    assert len(wrong) < 0.01 * len(sentences), wrong
+
+
+@pytest.mark.parametrize("spoken", languages())
+@pytest.mark.parametrize("language", languages())
+def test_who_speaks_another_language_is_offered_it(language, spoken) -> None:
+    if spoken == language:
+        return
+    sentences = said_in(spoken)
+    found = [each for each in sentences if language_of(each, language) == spoken]
+    assert len(found) > 0.85 * len(sentences)
+
+
+@pytest.mark.parametrize("language", languages())
+def test_the_offer_can_be_answered_in_either_language(language) -> None:
+    for code in languages():
+        assert accepted(words_in(code)["accept"], code, language)
+        assert accepted("yes", code, "en") and not accepted("no", code, "en")
+        assert len(question(code, language).splitlines()) == 2
+
+
+def test_a_nurse_writes_german_and_goes_on_in_it(start) -> None:
+    chat = start("chat", at_terminal=True)
+    chat.until("you: ")
+    chat.type("fahr zur Apotheke\n")
+    chat.until("You wrote in German. Shall I go on in German?")
+    chat.until("Soll ich auf Deutsch weitermachen?")
+    chat.type("ja\n")
+    assert "Ich werde zur Apotheke fahren" in chat.until("erwerfen? ")
+    chat.type("v\n")
+    chat.until("Sie: ")
+    chat.type("va à la pharmacie\n")
+    chat.until("weitermachen?")
+    chat.type("nein\n")
+    assert "nicht verstanden" in chat.until("Sie: ")
+    chat.type("va à la cuisine\n")  # was declined, so nobody is asked again
+    assert "weitermachen" not in chat.until("Sie: ")
+    chat.type("ende\n")
+    assert chat.end() == 0
+
+
+def test_in_the_console_too() -> None:
+    knowledge = Knowledge(load_world(DEFAULT_WORLD))
+    dialogue = Dialogue(_backstage(knowledge), "test")
+    dialogue.say("fahr zur Apotheke", "en", "Nurse Kim")
+    line = dialogue.lines[-1]
+    assert line.tone == "question" and "You wrote in German" in line.text
+    dialogue.say(line.suggestions[0], "en", "Nurse Kim")
+    assert dialogue.lines[-1].text == "Ich werde zur Apotheke fahren."
+    dialogue.say("komm zurück zum Empfang", "en", "Nurse Kim")  # and on it goes
+    assert "Empfang" in dialogue.lines[-1].text
+    dialogue.say("va à la pharmacie", "fr", "Nurse Kim")  # the page's language was changed
+    assert dialogue.lines[-1].text == "Je vais aller à la pharmacie."
+
+
+class _Runner:
+    def __init__(self, knowledge: Knowledge) -> None:
+        self.knowledge = knowledge
+
+    def state(self) -> None:
+        return None
+
+    def last(self) -> None:
+        return None
+
+    def check(self, program: str, language: str) -> Review:
+        return review(program, self.knowledge, None, language=language)
+
+
+def _backstage(knowledge: Knowledge) -> Any:
+    heard = SimpleNamespace(call=lambda method, arguments, stop: None)
+    return SimpleNamespace(runner=_Runner(knowledge), driver=heard, talks=Talks())
