@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 import contextlib
 import json
-from collections.abc import Iterable
+import sys
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from nl2robot.commands.options import add_language, words
@@ -14,6 +15,10 @@ from nl2robot.errors import ExitStatus
 if TYPE_CHECKING:
     from nl2robot.speech.audio import Samples
     from nl2robot.speech.hotword import Detector
+    from nl2robot.speech.recording import Recording
+
+LONG = 60.0
+"""Seconds of a recording from which on a bar tells how far it is."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -24,7 +29,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--stop", action="store_true", help="listen for the language's words for stop instead"
     )
     source = parser.add_mutually_exclusive_group(required=True)
-    source.add_argument("--wav", metavar="FILE", help="in a recording (wav, flac, ogg, mp3)")
+    source.add_argument(
+        "--wav", metavar="FILE", help="in a recording of any length (wav, flac, ogg, mp3)"
+    )
     source.add_argument("--mic", action="store_true", help="at the microphone, until Ctrl-C")
     parser.add_argument(
         "--device", metavar="NAME", help="with --mic: which microphone, a part of its name"
@@ -43,12 +50,37 @@ def run(options: argparse.Namespace) -> int:
         with Microphone(options.device) as microphone, contextlib.suppress(KeyboardInterrupt):
             _listen(ears, microphone.blocks(), options.json)
         return ExitStatus.OK
-    from nl2robot.speech.audio import RATE, read
+    from nl2robot.speech.recording import opened
 
-    samples = read(options.wav).samples
-    blocks = (samples[at : at + RATE] for at in range(0, len(samples), RATE))
-    _listen(ears, blocks, options.json)
+    with opened(options.wav) as recording:
+        _listen(ears, _in_view(recording, options.lang), options.json)
     return ExitStatus.OK
+
+
+def _in_view(recording: Recording, language: str) -> Iterator[Samples]:
+    """The blocks of a recording; of a long one with a bar that tells how far it is, where somebody
+    looks on."""
+    if recording.seconds < LONG or not sys.stderr.isatty():
+        yield from recording.blocks()
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    from nl2robot.speech.audio import RATE
+    from nl2robot.words import words_in
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TimeRemainingColumn())
+    # What is found is written above the bar, unless a pipe gets it.
+    with Progress(
+        *columns,
+        console=Console(stderr=True),
+        transient=True,
+        redirect_stdout=sys.stdout.isatty(),
+    ) as progress:
+        task = progress.add_task(words_in(language)["listening"], total=recording.seconds)
+        for block in recording.blocks():
+            yield block
+            progress.update(task, advance=len(block) / RATE)
 
 
 def _listen(ears: Detector, blocks: Iterable[Samples], as_json: bool) -> None:

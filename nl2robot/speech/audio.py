@@ -8,6 +8,8 @@ wrong, and what to do about it.
 from __future__ import annotations
 
 import io
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -46,12 +48,21 @@ class Audio:
 def read(path: Path | str) -> Audio:
     """The recording in this file. Raises AudioError."""
     path = Path(path)
+    with reading(path) as file:
+        return _read(file, path.stat().st_size, str(path))
+
+
+@contextmanager
+def reading(path: Path) -> Iterator[BinaryIO]:
+    """The file of a recording, open. Raises AudioError."""
     if not path.is_file():
         what = "is a folder" if path.is_dir() else "is not there"
         raise AudioError(f"The recording {path} {what}. Check the name of the file.")
     try:
+        if path.stat().st_size == 0:
+            raise AudioError(f"The recording {path} is empty. Record it again.")
         with path.open("rb") as file:
-            return _read(file, path.stat().st_size, str(path))
+            yield file
     except OSError as error:
         raise AudioError(
             f"The recording {path} cannot be read ({error.strerror}). Check who may read it."
@@ -82,9 +93,11 @@ def _read(file: BinaryIO, size: int, name: str) -> Audio:
             cut_short = start == b"RIFF" and _is_cut_short(file, size)
             return _decoded(sound, cut_short, name)
     except (soundfile.SoundFileError, MemoryError) as error:
-        raise AudioError(
-            f"The file {name} is broken or is not a recording. Use a {FORMATS} file."
-        ) from error
+        raise no_recording(name) from error
+
+
+def no_recording(name: str) -> AudioError:
+    return AudioError(f"The file {name} is broken or is not a recording. Use a {FORMATS} file.")
 
 
 def _unwrapped(content: bytes, name: str) -> BinaryIO:
@@ -93,7 +106,7 @@ def _unwrapped(content: bytes, name: str) -> BinaryIO:
     except webm.CutShort as error:
         raise _cut_short(name) from error
     except webm.NoSound as error:
-        raise _empty(name) from error
+        raise without_sound(name) from error
     except webm.WebmError as error:
         raise AudioError(
             f"The file {name} is broken, or its sound is not of the kind that browsers record "
@@ -102,12 +115,8 @@ def _unwrapped(content: bytes, name: str) -> BinaryIO:
 
 
 def _decoded(sound: Any, cut_short: bool, name: str) -> Audio:
+    check_voice(sound, name)
     rate: int = sound.samplerate
-    if not SLOWEST <= rate <= FASTEST or sound.channels > CHANNELS:
-        raise AudioError(
-            f"The recording {name} says that it has {rate} samples a second in {sound.channels} "
-            "channels, which no voice has. It is probably broken; record it again."
-        )
     if sound.frames > LONGEST * rate:
         raise _too_long(name, sound.frames / rate)
     # In pieces, for neither what the header promises nor what is packed in it is to be trusted with
@@ -119,14 +128,24 @@ def _decoded(sound: Any, cut_short: bool, name: str) -> Audio:
             raise _too_long(name, count / rate)
         pieces.append(_whole(_resampled(resampler, _finite(frames))))
     if count == 0:
-        raise _empty(name)
+        raise without_sound(name)
     if count < sound.frames or cut_short:
         raise _cut_short(name)
     pieces.append(_whole(_resampled(resampler, np.zeros((0, sound.channels)), last=True)))
     return Audio(_loudest(np.concatenate(pieces)))
 
 
-def _empty(name: str) -> AudioError:
+def check_voice(sound: Any, name: str) -> None:
+    """Raise AudioError if no voice has the rate or the channels of an open soundfile."""
+    if not SLOWEST <= sound.samplerate <= FASTEST or sound.channels > CHANNELS:
+        raise AudioError(
+            f"The recording {name} says that it has {sound.samplerate} samples a second in "
+            f"{sound.channels} channels, which no voice has. It is probably broken; record it"
+            " again."
+        )
+
+
+def without_sound(name: str) -> AudioError:
     return AudioError(f"The recording {name} has no sound in it. Record it again.")
 
 

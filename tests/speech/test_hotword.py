@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tracemalloc
 from pathlib import Path
 from typing import cast
 
@@ -15,7 +16,7 @@ from nl2robot.errors import UserError
 from nl2robot.speech import scenes
 from nl2robot.speech.audio import RATE, Samples, read
 from nl2robot.speech.embeddings import STEP, EmbeddingStream, embed
-from nl2robot.speech.hotword import Heads, HotWord, StopWord
+from nl2robot.speech.hotword import Detection, Heads, HotWord, StopWord
 from nl2robot.speech.hotword_corpus import seeded, silence
 from nl2robot.speech.hotword_head import Head, load_head
 from nl2robot.speech.hotword_judge import Judge, judge_of
@@ -270,3 +271,54 @@ def test_the_command_says_what_is_wrong(
     wav = str(RECORDED / "seven.wav")
     assert main(["hotword", "--lang", "de", "--word", "hallo Anton", "--wav", wav]) == 2
     assert "German speech model is not installed" in capsys.readouterr().err
+
+
+# ── long recordings ──────────────────────────────────────────────────────────────────────────────
+
+
+class Counts:
+    """A detector that only counts, and hears a word at the end of each half hour."""
+
+    def __init__(self, *_: object) -> None:
+        self.samples = 0
+        self.largest = 0
+
+    def feed(self, samples: Samples) -> list[Detection]:
+        before, self.samples = self.samples, self.samples + len(samples)
+        self.largest = max(self.largest, len(samples))
+        half = 1800 * RATE
+        heard = self.samples // half > before // half
+        return [Detection("hey robot", self.samples / RATE, 1.0)] if heard else []
+
+
+def test_a_recording_of_an_hour_is_heard_in_the_memory_of_a_second(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file, minutes, rate = tmp_path / "night.wav", 61, 8_000
+    noise = np.random.default_rng(0).normal(0, 0.01, (60 * rate, 2)).astype(np.float32)
+    with soundfile.SoundFile(file, "w", rate, 2, "ULAW") as sound:
+        for _ in range(minutes):
+            sound.write(noise)
+    ears = Counts()
+    monkeypatch.setattr("nl2robot.speech.hotword.HotWord", lambda *_: ears)
+    tracemalloc.start()
+    try:
+        assert main(["hotword", "--wav", str(file)]) == 0
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert ears.samples == pytest.approx(minutes * 60 * RATE, abs=RATE)
+    assert ears.largest <= 2 * RATE
+    assert peak < 20e6  # the samples alone are 117 MB
+    assert len(capsys.readouterr().out.splitlines()) == 2
+
+
+def test_a_long_recording_that_is_none_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "night.wav").write_bytes(b"RIFF" + bytes(100))
+    assert main(["hotword", "--wav", str(tmp_path / "night.wav")]) == 2
+    assert "is not a recording" in capsys.readouterr().err
+    (tmp_path / "nothing.wav").write_bytes(b"")
+    assert main(["hotword", "--wav", str(tmp_path / "nothing.wav")]) == 2
+    assert "is empty" in capsys.readouterr().err
