@@ -119,18 +119,21 @@ def given(chain: Path, key: Path) -> Certificate:
 
 
 class LocalCertificate(Certificate):
-    """One of an authority of this machine's own, in `folder`. Raises `UserError`."""
+    """One of an authority of this machine's own, in `folder`. `more` are names and addresses that
+    others have for it. Raises `UserError`."""
 
     def __init__(
         self,
         folder: Path,
         *,
+        more: Sequence[str] = (),
         names: Callable[[], Sequence[str]] = names_here,
         addresses: Callable[[], Sequence[Address]] = addresses_here,
         now: Callable[[], datetime] = lambda: datetime.now(UTC),
     ) -> None:
         super().__init__(folder / "server.crt", folder / "server.key")
         self._folder = made(folder)
+        self._more = [each.strip("[]").lower() for each in more]
         self._names = names
         self._addresses = addresses
         self._now = now
@@ -148,6 +151,14 @@ class LocalCertificate(Certificate):
     def renew(self) -> None:
         """Make the certificate anew if it is about to end, or this machine has another address."""
         names, addresses = list(self._names()), list(self._addresses())
+        for each in self._more:
+            address = _address(each)
+            if address is not None:
+                addresses.append(address)
+            elif _is_name(each):
+                names.append(each)
+            else:
+                raise UserError(f"{each!r} is no name or address of a computer. Correct --name.")
         authority, key = self._kept_authority()
         if authority is None or key is None or not self._serves(authority, names, addresses):
             authority, key = self._new_authority(names, addresses)
@@ -323,6 +334,13 @@ def _pem(key: ec.EllipticCurvePrivateKey) -> bytes:
         serialization.PrivateFormat.PKCS8,
         serialization.NoEncryption(),
     )
+
+
+def _address(text: str) -> Address | None:
+    try:
+        return ipaddress.ip_address(text)
+    except ValueError:
+        return None
 
 
 def _is_name(name: str) -> bool:

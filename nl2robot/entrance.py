@@ -25,6 +25,8 @@ class Entrance:
     """None where nothing is encrypted here: on this machine alone, or behind a proxy."""
     host: str
     """The address that is listened at."""
+    names: tuple[str, ...] = ()
+    """By which others reach it, where this machine does not know that itself."""
 
     @property
     def local(self) -> bool:
@@ -36,7 +38,8 @@ class Entrance:
         this machine by no name, as most tablets."""
         scheme = "https" if self.certificate else "http"
         name = own_address if by_address else socket.gethostname
-        return f"{scheme}://{reachable(self.host, name)}:{port}/"
+        host = reachable(self.names[0] if self.names else self.host, name)
+        return f"{scheme}://{host}:{port}/"
 
 
 def reachable(host: str, name: Callable[[], str] = socket.gethostname) -> str:

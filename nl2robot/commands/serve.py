@@ -58,6 +58,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     encryption.add_argument("--key", metavar="FILE", help="its key (PEM, without a password)")
     encryption.add_argument(
+        "--name",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="a name or address by which others reach this server, if this machine does not know it"
+        " itself (more than once: several)",
+    )
+    encryption.add_argument(
         "--plain-http",
         action="store_true",
         help="none, because a proxy before this server encrypts",
@@ -133,7 +141,7 @@ def _entrance(options: argparse.Namespace) -> Iterator[Entrance]:
             warn = logging.getLogger(__name__).warning
             stack.enter_context(looked_after(certificate, lambda sentence: warn("%s", sentence)))
         accounts.watch()
-        yield Entrance(accounts, certificate, options.host)
+        yield Entrance(accounts, certificate, options.host, tuple(options.name))
 
 
 def _certificate(options: argparse.Namespace) -> Certificate | None:
@@ -145,7 +153,7 @@ def _certificate(options: argparse.Namespace) -> Certificate | None:
 
     if options.certificate:
         return given(Path(options.certificate), Path(options.key))
-    return LocalCertificate(authority_file().parent)
+    return LocalCertificate(authority_file().parent, more=options.name)
 
 
 def _say_where(server: Server, entrance: Entrance, options: argparse.Namespace) -> None:

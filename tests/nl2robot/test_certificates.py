@@ -101,6 +101,14 @@ def test_a_public_address_or_another_name_takes_another_authority(ward: Ward) ->
     assert ward.certificate().fingerprint != after
 
 
+def test_names_that_only_others_have_for_it_are_given(ward: Ward) -> None:
+    """A container knows neither its host's name nor its address."""
+    LocalCertificate(ward.folder, more=["Robin.Hospital.example", "10.20.30.40", "[fd00::9]"])
+    assert {"robin.hospital.example", "10.20.30.40", "fd00::9"} <= ward.names_shown()
+    with pytest.raises(UserError, match="no name or address of a computer"):
+        LocalCertificate(ward.folder, more=["https://robin"])
+
+
 def test_whoever_steals_the_authority_cannot_pretend_to_be_a_bank(
     ward: Ward, tmp_path: Path
 ) -> None:
