@@ -355,3 +355,18 @@ TEA = """\
 robot.goto("lobby")
 robot.ask("Du thé ?", ["oui", "non"], person="Tom")
 """
+
+
+def test_the_line_grows_with_a_long_command(page: Page) -> None:
+    line = page.locator("#words")
+    low = line.bounding_box()
+    line.fill("go to the pharmacy")
+    line.press("Shift+Enter")
+    line.press_sequentially("and say good morning")
+    high = line.bounding_box()
+    assert low and high and high["height"] > low["height"] * 1.3
+    line.press("Enter")
+    expect(page.locator(".cm-content")).to_contain_text('robot.say("Good morning.")')
+    expect(page.locator(".cm-content")).to_contain_text("pharmacy")
+    expect(line).to_have_value("")
+    assert line.bounding_box() == low

@@ -339,12 +339,28 @@ def test_the_microphone_is_let_go_of_when_it_is_not_used(open_page) -> None:
     assert page.evaluate("microphone._sound.open") is False
 
 
-def test_who_only_clicks_is_told_to_hold(open_page) -> None:
+def test_who_taps_is_heard_until_they_tap_again(open_page) -> None:
     page = open_page(before="window.performance.now = () => 1e6")
     hold(page)
     page.mouse.up()
-    trouble(page, "hold_longer")
+    pushed(page)
+    becomes(page, "listening")
+    expect(button(page)).to_have_attribute("title", re.compile("tap again"))
+    assert asked(page, "voice.close") == []
+    page.mouse.down()
+    page.mouse.up()
+    trouble(page, "nothing")
     assert len(asked(page, "voice.close")) == 1, "nothing stays open"
+
+
+def test_who_tapped_and_says_nothing_more_has_finished(open_page) -> None:
+    page = open_page(before="window.performance.now = () => 1e6")
+    hold(page)
+    page.mouse.up()
+    pushed(page)
+    page.evaluate("microphone._on({what: 'partial', text: 'go to'}, microphone._utterance)")
+    trouble(page, "nothing")
+    assert len(asked(page, "voice.close")) == 1
 
 
 def test_who_lets_go_while_the_browser_asks_is_told_when_it_is_ready(open_page) -> None:
@@ -359,6 +375,7 @@ def test_who_lets_go_while_the_browser_asks_is_told_when_it_is_ready(open_page) 
     button(page).hover()
     page.mouse.down()
     becomes(page, "opening")
+    page.evaluate("microphone._pressedAt -= 1000")  # no tap
     page.mouse.up()
     page.evaluate("allow()")
     trouble(page, "now_ready")

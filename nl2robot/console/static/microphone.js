@@ -1,5 +1,5 @@
 /**
- * Hold to talk: a button that hears while it is held.
+ * Hold or tap to talk: a button that hears.
  *
  *   import {mountMicrophone} from '/static/microphone.js';
  *   const microphone = mountMicrophone(button, {
@@ -12,9 +12,9 @@
  *     interrupts: false,           // true where this page plays the robot's voice: who speaks makes it silent
  *   });
  *
- * It is held with the mouse, a finger, or the space or enter key; where nothing can be held (a
- * screen reader's click) it begins with one click and ends with the next. What is said from press to
- * release is one command. Somebody who says "stop" meanwhile stops the robot at once. Its state is
+ * It is held with the mouse, a finger, or the space or enter key; or it is tapped: then it hears until
+ * the next tap, or until nothing more is said. So it is with a click of a screen reader's, where nothing
+ * can be held. What is said from press to release, or from tap to tap, is one command. Somebody who says "stop" meanwhile stops the robot at once. Its state is
  * the button's `data-state`: off, opening, listening, thinking, ready (open, but not listening).
  * `giveUp()` ends what is being thought about.
  */
@@ -24,7 +24,9 @@ import {NoSound, Sound} from '/static/microphone_sound.js';
 
 const TAIL = 300; // milliseconds for which is listened after the release: people let go early
 const LONGEST = 60_000; // milliseconds; something lies on the key
-const SHORTEST = 250; // milliseconds; who only clicked is told to hold
+const TAP = 250; // milliseconds; who holds it no longer has tapped it
+const BEGINS = 10_000; // milliseconds after a tap in which something is said
+const QUIET = 1_800; // milliseconds without another word after which who tapped has finished
 const CLICK_AFTER = 500; // milliseconds in which a browser makes a click of a press
 const AT_ONCE = 16_000; // samples in a push, at most
 const BEGUN = 100; // milliseconds after which the server is at what it was asked
@@ -62,6 +64,7 @@ class Utterance {
     this.peak = 0;
     this.heard = false;
     this.stopped = false;
+    this.text = ''; // so far
     this.early = false;
     this.pondered = false; // a language model thinks about it
     this._over = false;
@@ -154,6 +157,7 @@ class Microphone {
     this.options = options;
     this.words = options.words;
     this.held = false;
+    this._tapped = false; // held by a tap
     this._sound = new Sound({
       warm: options.warm,
       onEnded: () => this._abort('unplugged'),
@@ -204,19 +208,37 @@ class Microphone {
     utterance.open({rate: this._sound.rate, language: language(), talk, interrupts});
   }
 
+  /** The button is pressed, by whatever: it begins to listen, or ends what a tap has begun. */
+  _down() {
+    if (this._tapped) this.release();
+    else this.press();
+  }
+
+  /** It is let go: that was all, or a tap. */
+  _up() {
+    if (!this.held || this._tapped) return;
+    if (performance.now() - this._pressedAt >= TAP) return this.release();
+    this._tapped = true;
+    this._listenOn(BEGINS);
+    if (this.button.dataset.state === 'listening') this._show('listening');
+  }
+
+  /** Who tapped has so many milliseconds for the next word. */
+  _listenOn(milliseconds) {
+    clearTimeout(this._quiet);
+    if (this._tapped) this._quiet = setTimeout(() => this.release(), milliseconds);
+  }
+
   /** End to listen, a moment later; what was said is told when it is understood. */
   release(why = null) {
     if (!this.held) return;
-    this.held = false;
+    this.held = this._tapped = false;
     clearTimeout(this._longest);
+    clearTimeout(this._quiet);
     const utterance = this._utterance;
     if (!utterance.opened) {
       utterance.early = true; // before there was any sound, as while the browser asks
       this._drop();
-      return;
-    }
-    if (!why && performance.now() - this._pressedAt < SHORTEST) {
-      this._abort('hold_longer');
       return;
     }
     this._show('thinking');
@@ -259,6 +281,8 @@ class Microphone {
   _on(event, utterance) {
     if (event.what === 'stop' || event.stop) this._stop(utterance);
     if (event.what === 'partial') {
+      if (event.text !== utterance.text) this._listenOn(QUIET);
+      utterance.text = event.text;
       this.options.onPartial?.(event.text);
     } else if (event.what === 'heard' && event.text) {
       utterance.heard = true;
@@ -297,8 +321,9 @@ class Microphone {
   }
 
   _drop() {
-    this.held = false;
+    this.held = this._tapped = false;
     clearTimeout(this._longest);
+    clearTimeout(this._quiet);
     clearTimeout(this._tail);
     this._tail = null;
     const utterance = this._utterance;
@@ -351,7 +376,7 @@ class Microphone {
 
   _show(state = this._sound.open ? 'ready' : 'off') {
     const {button, words} = this;
-    const said = words[`state_${state}`];
+    const said = words[`state_${this._tapped && state === 'listening' ? 'tapped' : state}`];
     button.dataset.state = state;
     button.setAttribute('aria-pressed', String(state === 'opening' || state === 'listening'));
     button.setAttribute('aria-label', words.hold);
@@ -372,12 +397,12 @@ class Microphone {
     on(button, 'pointerdown', (event) => {
       if (event.button !== 0) return;
       button.setPointerCapture?.(event.pointerId);
-      this.press();
+      this._down();
     });
     for (const kind of ['pointerup', 'pointercancel', 'lostpointercapture']) {
       on(button, kind, () => {
         pointedAt = performance.now();
-        this.release();
+        this._up();
       });
     }
     for (const kind of ['pointerenter', 'focus']) on(button, kind, () => this._getReady());
@@ -386,17 +411,17 @@ class Microphone {
       if (event.key === 'Escape') this._abort('cancelled');
       if (!key(event)) return;
       event.preventDefault(); // no click of its own
-      if (!event.repeat) this.press();
+      if (!event.repeat) this._down();
     });
     on(button, 'keyup', (event) => {
       if (!key(event)) return;
       event.preventDefault();
-      this.release();
+      this._up();
     });
     on(button, 'click', () => {
       if (performance.now() - pointedAt < CLICK_AFTER) return;
-      if (this.held) this.release();
-      else this.press();
+      this._down();
+      this._up();
     });
     on(button, 'blur', () => this.release());
     on(window, 'blur', () => this.release());

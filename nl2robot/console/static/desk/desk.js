@@ -29,7 +29,11 @@ function openComposer(form) {
   let unsent = sessionStorage.getItem('unsent') ?? '';
   let sent = null; // from here, the last of all
   const spoken = openMicrophone(form, (text) => (sent = text));
-  line.value = unsent;
+  const write = (text) => {
+    line.value = text;
+    grow(line);
+  };
+  write(unsent);
 
   const say = (text) => {
     const said = text.trim();
@@ -43,19 +47,28 @@ function openComposer(form) {
   form.addEventListener('submit', (event) => {
     event.preventDefault();
     say(line.value);
-    line.value = unsent = '';
+    write((unsent = ''));
     sessionStorage.removeItem('unsent');
   });
   line.addEventListener('input', () => {
     unsent = line.value;
+    grow(line);
     sessionStorage.setItem('unsent', unsent);
   });
   line.addEventListener('keydown', (event) => {
+    if (event.key === 'Enter' && !event.shiftKey && !event.isComposing) {
+      event.preventDefault();
+      form.requestSubmit();
+      return;
+    }
     const by = {ArrowUp: -1, ArrowDown: 1}[event.key];
     if (!by || at + by < 0 || at + by > history.length) return;
+    // Within a text of several lines the arrow keys go from line to line.
+    const beyond = by < 0 ? line.value.slice(0, line.selectionStart) : line.value.slice(line.selectionEnd);
+    if (beyond.includes('\n')) return;
     event.preventDefault();
     at += by;
-    line.value = at === history.length ? unsent : history[at];
+    write(at === history.length ? unsent : history[at]);
     line.setSelectionRange(line.value.length, line.value.length);
   });
   document.addEventListener('click', (event) => {
@@ -69,7 +82,7 @@ function openComposer(form) {
   // Who cancels wants to say it otherwise; what they have typed since then is theirs.
   document.addEventListener('thought-dropped', ({detail: words}) => {
     if (words !== sent || line.value) return;
-    line.value = unsent = words;
+    write((unsent = words));
     sent = null;
     sessionStorage.setItem('unsent', unsent);
     if (matchMedia('(pointer: fine)').matches) line.focus({preventScroll: true});
@@ -83,6 +96,12 @@ function openComposer(form) {
   sessionStorage.removeItem('say');
   if (heard) say(heard);
   if (matchMedia('(pointer: fine)').matches) line.focus({preventScroll: true});
+}
+
+/** A field is as high as what is in it, as far as its style lets it. */
+function grow(field) {
+  field.style.height = 'auto';
+  field.style.height = `${field.scrollHeight + field.offsetHeight - field.clientHeight}px`;
 }
 
 /** `think` is told what was said, if it takes thinking. */
