@@ -20,6 +20,7 @@ from starlette.responses import HTMLResponse
 from starlette.routing import Route
 
 from nl2robot.console import video
+from nl2robot.console.forgetting import Forgetting
 from nl2robot.console.part import Backstage, Part
 from nl2robot.console.tablet import FaceTablet
 from nl2robot.console.visitor import LANGUAGES, texts, visitor_of
@@ -124,12 +125,20 @@ def part(backstage: Backstage) -> Part:
     tablet = FaceTablet(backstage.publish, face.change, calls, face.state["screen"])
     if isinstance(backstage.driver, ComposedDriver):
         backstage.driver.attach(tablet)
+    forgetting = Forgetting(
+        backstage.driver,
+        hush=lambda: face.change("speech", None),
+        typed=lambda: tablet.typed,
+        fresh=lambda: tablet.fresh,
+    )
 
     def on_event(kind: str, data: Event) -> None:
         if kind == "screen":
             tablet.shown(data)
         else:
             face.on_event(kind, data)
+        if kind == "program":
+            forgetting.on_event(data)
 
     def left(connection: str) -> None:
         calls.left(connection)
@@ -141,6 +150,7 @@ def part(backstage: Backstage) -> Part:
 
     def close() -> None:
         unsubscribe()
+        forgetting.close()
         calls.close()
 
     async def page(request: Request) -> HTMLResponse:
@@ -148,7 +158,7 @@ def part(backstage: Backstage) -> Part:
         return HTMLResponse(_page(face.state, seat, languages), headers=HEADERS)
 
     return Part(
-        services={**_services(backstage, face, tablet), **calls.services()},
+        services={**_services(backstage, face, tablet, forgetting), **calls.services()},
         events={**EVENTS, **video.EVENTS},
         routes=[Route("/face", page)],
         left=left,
@@ -156,13 +166,23 @@ def part(backstage: Backstage) -> Part:
     )
 
 
-def _services(backstage: Backstage, face: Face, tablet: FaceTablet) -> dict[str, Service]:
+def _services(
+    backstage: Backstage, face: Face, tablet: FaceTablet, forgetting: Forgetting
+) -> dict[str, Service]:
     number = {"type": "integer", "minimum": 1}
     html = {"type": ["string", "null"], "maxLength": LONGEST_PAGE}
 
     def here(p: Mapping[str, Any], context: Context) -> dict[str, Any]:
         tablet.came(context.connection, p["visible"])
         return {**face.state, "name": context.connection}
+
+    def touched(p: Mapping[str, Any], context: Context) -> bool:
+        forgetting.noticed()
+        return tablet.touched(context.connection, p["number"], p["answer"])
+
+    def told(p: Mapping[str, Any], context: Context) -> None:
+        forgetting.noticed()
+        tablet.told(context.connection, p["page"], p["html"])
 
     def language(p: Mapping[str, Any], context: Context) -> None:
         backstage.driver.call("set_language", {"code": p["code"]}, context.stop)
@@ -181,7 +201,7 @@ def _services(backstage: Backstage, face: Face, tablet: FaceTablet) -> dict[str,
             right="face",
         ),
         "face.touch": Service(
-            lambda p, context: tablet.touched(context.connection, p["number"], p["answer"]),
+            touched,
             an_object(
                 {
                     "number": number,
@@ -207,7 +227,7 @@ def _services(backstage: Backstage, face: Face, tablet: FaceTablet) -> dict[str,
             " says so, with `who`. The result says whether nobody was faster.",
         ),
         "face.page": Service(
-            lambda p, context: tablet.told(context.connection, p["page"], p["html"]),
+            told,
             an_object(
                 {"page": {"type": "integer"}, "html": {**html, "type": "string"}}, "page html"
             ),
@@ -219,6 +239,11 @@ def _services(backstage: Backstage, face: Face, tablet: FaceTablet) -> dict[str,
             an_object({"number": number, "html": html}, "number html"),
             'Tell how the page is after a "face.act"; null if it could not be done.',
             right="face",
+        ),
+        "face.used": Service(
+            lambda p, context: forgetting.noticed(),
+            an_object({}, ""),
+            "Tell that somebody touches the web page that is shown, which tells nothing itself.",
         ),
         "face.language": Service(
             language,

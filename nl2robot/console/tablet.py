@@ -73,6 +73,8 @@ class FaceTablet:
         self._question: _Question | None = None
         self._doing: dict[int, _Doing] = {}
         self._content = content
+        # What the robot showed, before anybody did anything to it.
+        self._fresh: Mapping[str, Any] = content
         # The page as one of the faces has told it, and which.
         self._page: str | None = None
         self._teller: str | None = None
@@ -132,6 +134,18 @@ class FaceTablet:
         """See `Tablet.hang_up`."""
         self._calls.hang_up()
 
+    # --- what visitors leave there
+
+    @property
+    def typed(self) -> bool:
+        """Whether somebody did something to the page that is shown."""
+        return self._page is not None
+
+    @property
+    def fresh(self) -> Mapping[str, Any]:
+        """What the robot showed last, as `show` takes it."""
+        return {kind: self._fresh[kind] for kind in ("text", "html", "url") if kind in self._fresh}
+
     # --- the tablet, as its faces see it
 
     def came(self, face: str, visible: bool) -> None:
@@ -170,6 +184,7 @@ class FaceTablet:
             derived = by is not None
             if not derived:
                 self._page = self._teller = None
+                self._fresh = content
             self._show(content, by, derived)
 
     def told(self, face: str, page: int, html: str) -> None:

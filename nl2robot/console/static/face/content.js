@@ -137,6 +137,7 @@ export class Content {
     if (what === this._what) return this._something;
     const samePage = !asking && screen.html !== undefined && this._page?.page === screen.page;
     this._what = what;
+    if (!asking && screen.html === undefined) this._page = null; // nothing of it is kept
     this._something = true;
     if (asking) this._showAsking(asking, false);
     else if (screen.options) this._showAsking({question: screen.text, options: screen.options}, true);

@@ -102,7 +102,13 @@ function speak({text}) {
   at.caption.classList.toggle('long', text.length > LONG_CAPTION);
   at.caption.classList.remove('quiet');
   clearTimeout(quiet);
-  quiet = setTimeout(() => at.caption.classList.add('quiet'), (seconds + CAPTION_STAYS) * 1000);
+  quiet = setTimeout(hush, (seconds + CAPTION_STAYS) * 1000);
+}
+
+/** What was said is no longer there, for anybody. */
+function hush() {
+  at.caption.classList.add('quiet');
+  at.caption.textContent = '';
 }
 
 function apply(change) {
@@ -113,7 +119,7 @@ function apply(change) {
   if (change.asking) face.speak(0);
   if (change.stopped || change.unconfirmed || change.lost) {
     face.speak(0);
-    at.caption.classList.add('quiet');
+    hush();
   }
   if (change.stopped) notice(words.stopped);
   if (wasLost && !state.lost) notice(words.robot_found);
@@ -124,7 +130,11 @@ function notice(sentence, stays = false) {
   at.notice.textContent = sentence;
   at.notice.hidden = false;
   clearTimeout(fading);
-  if (!stays) fading = setTimeout(() => (at.notice.hidden = true), NOTICE_FOR);
+  if (stays) return;
+  fading = setTimeout(() => {
+    at.notice.hidden = true;
+    at.notice.textContent = '';
+  }, NOTICE_FOR);
 }
 
 async function stop() {
@@ -203,6 +213,11 @@ at.fullscreen.hidden = !document.fullscreenEnabled;
 at.fullscreen.addEventListener('click', () => {
   if (document.fullscreenElement) document.exitFullscreen();
   else document.documentElement.requestFullscreen();
+});
+// A web page of others tells nothing; that somebody is in it shows in the focus.
+addEventListener('blur', () => {
+  const inside = document.activeElement?.closest?.('.site iframe');
+  if (operates && inside && wire.connected) wire.request('face.used').catch(() => {});
 });
 document.addEventListener('visibilitychange', () => {
   if (wire.connected) here();
