@@ -15,6 +15,8 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 from nl2robot.console.helm import HOLDS, IDLE, Helm, Operator, State
 from nl2robot.console.helm_services import part
 from nl2robot.console.part import Backstage
+from nl2robot.present import Present
+from nl2robot.state import Began, Halted, PauseAsked, on_wire
 from robot_api import Robot, Server
 from robot_api.driver import StopFlag
 from robot_api.drivers import simulated
@@ -267,8 +269,7 @@ test_at_random = Operators.TestCase
 class Ward(SimpleNamespace):
     server: Server
     simulation: Simulation
-    status: list[Any]
-    """How the runner's program stands."""
+    present: Present
     news: threading.Event
 
     def operator(self, who: str) -> Robot:
@@ -294,14 +295,14 @@ def ward() -> Iterator[Ward]:
     world = load_world("city-hospital")
     simulation = Simulation(world, speed=1.0)
     driver = simulated(simulation)
-    status: list[Any] = [None]
-    ward = Ward(simulation=simulation, status=status, news=threading.Event())
+    present = Present(lambda state: backstage.tell("state", on_wire(state)))
+    ward = Ward(simulation=simulation, present=present, news=threading.Event())
 
     def publish(kind: str, data: Any, to: str | None = None) -> None:
         server.publish(kind, data, to)
         ward.tell()
 
-    runner = SimpleNamespace(state=lambda: status[0], knowledge=SimpleNamespace(world=world))
+    runner = SimpleNamespace(present=present, knowledge=SimpleNamespace(world=world))
     backstage = Backstage(
         driver=driver,
         runner=runner,
@@ -395,7 +396,8 @@ def test_calls_are_the_drivers_and_no_programs(ward: Ward) -> None:
             karim.request("helm.drive", {"linear": 0.1, "angular": 0})
         with pytest.raises(InvalidCall, match=r"helm\.drive"):
             ruth.request("helm.call", {"name": "drive", "arguments": {}})
-        ward.status[0] = SimpleNamespace(state="paused")
+        for happening in (Began(1), PauseAsked(), Halted()):
+            ward.present.happened(happening)
         with pytest.raises(NotPossible, match="program is running"):
             ruth.request("helm.call", {"name": "dock"})
         with pytest.raises(NotPossible, match="program is running"):
