@@ -117,6 +117,8 @@ class Execution:
         self._on_hold = on_hold
         self._on_closed = on_closed
         self._rounds: frozenset[int] = frozenset()
+        self._closed: tuple[str, str, int] | None = None
+        self._visited = False
         self._interpreter = Interpreter(self._limits, on_print or _ignore, seed)
         self._changed = threading.Condition()
         self._started = False
@@ -198,6 +200,9 @@ class Execution:
             if self._stopped is not None:
                 return self._ended("stopped", self._stopped, self._line)
             return self._failed(error)
+        if self._closed is not None and not self._visited:  # there was no round
+            name, message, line = self._closed
+            return self._ended("failed", message, line, name)
         return self._ended("done", "The program has come to its end.", None)
 
     def _unfit(self) -> Outcome | None:
@@ -250,6 +255,7 @@ class Execution:
             self._record(asked, arguments, begun, error=name, message=message)
             self._check_stopped()
             if asked.line in self._rounds and asked.method == METHOD and type(error) in CLOSED:
+                self._closed = self._closed or (name, message, asked.line)
                 if self._on_closed is not None:
                     self._on_closed(str(arguments.get("place")), message)
                 return interpreter.answer(False)
@@ -260,6 +266,7 @@ class Execution:
             raise
         self._record(asked, arguments, begun, result=result)
         self._check_stopped()
+        self._visited = self._visited or (asked.line in self._rounds and asked.method == METHOD)
         return interpreter.answer(result)
 
     def _wait_while_paused(self) -> None:

@@ -7,8 +7,9 @@ A round is a `for` whose first step drives to what it goes through:
         robot.say("Good night.")
 
 When the way there is blocked, or nobody can stand there, the rest of that visit is left out and the
-round goes on with the next place; whoever runs the program is told, and reports it. One place in a
-list of one is no round, and a program that sees to it by itself, with `try`, is left alone.
+round goes on with the next place; whoever runs the program is told, and reports it. A program that
+came to none of its places has failed. One place in a list of one is no round, and a program that
+sees to it by itself, with `try`, is left alone.
 """
 
 from __future__ import annotations

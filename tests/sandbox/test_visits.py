@@ -81,3 +81,10 @@ def test_the_lines_stay_where_they_are() -> None:
     assert [a for a, b in zip(written.splitlines(), ROUND.splitlines(), strict=True) if a != b] == [
         "    if robot.goto(place) == False: continue"
     ]
+
+
+def test_a_program_that_came_nowhere_has_failed() -> None:
+    program = 'for place in ["ward b", "ward b"]:\n    robot.goto(place)\nprint("over")\n'
+    outcome, _, told, printed = run(program)
+    assert (outcome.status, outcome.error, outcome.line) == ("failed", "Blocked", 2)
+    assert (len(told), printed) == (2, "over\n")
