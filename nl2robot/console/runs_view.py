@@ -20,6 +20,7 @@ from nl2robot.changes import changes
 from nl2robot.console.highlight import highlighted
 from nl2robot.console.runs_asked import Asked
 from nl2robot.knowledge import Knowledge
+from nl2robot.pausing import PAUSED
 from nl2robot.plain import visible
 from nl2robot.runlog import LoggedCall, Run, RunLog
 
@@ -120,7 +121,7 @@ def _call(call: LoggedCall, run: Run) -> dict[str, Any]:
         "line": call.line,
         "call": code,
         "result": result[:LONGEST_RESULT],
-        "trouble": call.error is not None,
+        "trouble": call.error is not None and not call.error.startswith(PAUSED),
         "seconds": call.seconds,
     }
 
