@@ -147,7 +147,7 @@ def test_the_focus_is_never_thrown_back(page: Page) -> None:
     page.locator("#settings-button").focus()
     page.keyboard.press("Enter")
     page.keyboard.press("Shift+Tab")
-    page.get_by_role("button", name="Close").press("Enter")
+    page.locator("#settings").get_by_role("button", name="Close").press("Enter")
     expect(page.locator("#settings-button")).to_be_focused()
 
 

@@ -22,17 +22,26 @@ function next(id) {
 }
 
 function restore() {
-  if (!held || !lost(held)) return;
-  const at = document.activeElement;
-  if (at && at !== document.body && at !== held) return;
+  if (document.activeElement !== document.body || !held || !lost(held)) return;
   const {id} = held;
   held = null;
   next(id)?.focus({preventScroll: true});
 }
 
+let waiting = 0;
+
+/** What is hidden loses the focus when the page is drawn, after it was changed. */
+function changed() {
+  restore();
+  waiting ||= requestAnimationFrame(() => {
+    waiting = 0;
+    setTimeout(restore);
+  });
+}
+
 document.addEventListener('focusin', ({target}) => (held = target));
-new MutationObserver(restore).observe(document.documentElement, {
+new MutationObserver(changed).observe(document.documentElement, {
   childList: true,
   subtree: true,
-  attributeFilter: ['hidden', 'disabled', 'class', 'style', 'open'],
+  attributeFilter: ['hidden', 'disabled', 'class', 'open'],
 });

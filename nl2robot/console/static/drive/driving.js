@@ -142,7 +142,6 @@ export function goPanel(body) {
   const has = (method) => body.methods.includes(method);
   const list = element('div', {class: 'choices places', role: 'radiogroup'});
   list.setAttribute('aria-label', say('places'));
-  list.tabIndex = 0; // it scrolls, also while nothing in it can be chosen
   const filter = element('input', {class: 'field', type: 'search', placeholder: say('filter')});
   const group = newId('place');
   const rows = body.places.map((place) => {
@@ -169,7 +168,9 @@ export function goPanel(body) {
   const offered = [has('goto') && go, has('localize') && here, has('dock') && dock].filter(Boolean);
   const tools = element('div', {class: 'row'}, ...offered);
   const search = labelled(say('find_place'), filter);
-  const section = panel('go', errand.line, controls(search, list, tools));
+  // Who does not drive may look through the places as well.
+  const places = element('div', {class: 'controls'}, search, list);
+  const section = panel('go', errand.line, places, controls(tools));
   return {section, run: errand.run, cancel: errand.cancel};
 }
 
