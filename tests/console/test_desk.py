@@ -21,7 +21,7 @@ def read_all(page: Page) -> None:
     """Look at all that is laid before one, as far as the screen shows it at once."""
     expect(page.locator("#decide[data-review]")).to_be_attached()
     for _ in range(60):
-        if not page.get_by_role("button", name="Read on").is_visible():
+        if not page.locator("#read-on").is_visible():
             return
         page.evaluate("document.querySelector('#read-on:not([hidden])')?.click()")
         page.wait_for_timeout(60)

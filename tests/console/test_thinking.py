@@ -11,7 +11,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from tests.console.conftest import Look, Picture, Served, serving
-from tests.console.test_desk import approve, say
+from tests.console.test_desk import approve, read_all, say
 from tests.console.test_looks import CONTRAST, STICKS_OUT, nameless
 from tests.console.writing_console import CHEER, EITHER, JOKE, TEA
 
@@ -240,6 +240,7 @@ def test_it_is_read_on_a_phone_and_in_the_dark(
     assert nameless(page) == []
     writer("go on")
     expect(page.locator(".by-model")).to_contain_text("Von einem Sprachmodell geschrieben")
+    read_all(page)
     expect(page.get_by_role("button", name="Freigeben und starten")).to_be_enabled()
     page.locator(".by-model").scroll_into_view_if_needed()
     picture(page, f"{name}-review")
