@@ -334,7 +334,9 @@ class _Brief(Teller):
     def _report(self, step: p.If) -> list[_Item] | None:
         """Both branches of it only tell whoever asked: "tell you whether ..."."""
         then, otherwise = self._reported(step.then), self._reported(step.otherwise)
-        if not (self.back and then and otherwise) or then[0] or otherwise[0]:
+        if not (then and otherwise) or then[0] or otherwise[0]:
+            return None
+        if not (self.back or (self._is_home and (then[1] or otherwise[1]))):
             return None
         brief = self.words.brief
         self._tick(*nodes(step))

@@ -10,6 +10,7 @@ and found is told where it did not do so itself.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
@@ -26,6 +27,8 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.runlog import RunLog
 from nl2robot.trouble import told
 
+_LISTS_NOTHING: Final = re.compile(r"(\s*:)\s*\.$")
+"""How a report ends whose list is empty: "These are the answers: ."."""
 MOST: Final = 30
 """Sentences; the run's page has them all."""
 AWAY: Final = frozenset({"find", "guide", "follow", "dock"})
@@ -122,6 +125,8 @@ class _Account:
             if self._went_on_after(call):
                 happened.troubles.append(self._trouble(call))
         elif call.method == "say" and place == "":
+            if _LISTS_NOTHING.search(text):
+                text = self.pack.phrase("none_of_it", text=_LISTS_NOTHING.sub(r"\1", text))
             happened.reports.append(text)
         elif call.method == "say":
             happened.sayings.setdefault(text, []).append(place or "")

@@ -34,7 +34,7 @@ from grammar.plan import (
 )
 from grammar.tidy import nodes
 
-IF_NONE: Final = {"people_seen": "nobody_there"}
+IF_NONE: Final = {"people_seen": "nobody_there", "objects_seen": "nothing_seen"}
 """What is said instead where there is none to be told of."""
 
 
@@ -198,7 +198,8 @@ def saying_of(d: Discourse, found: Report) -> Call | If:
     if found.value is not None:
         values["value"] = found.value
     said = d.say(found.phrase, **values)
-    if found.value is not None and found.phrase in IF_NONE:
+    looked_before = found.phrase == "people_seen" or isinstance(found.value, Recall)
+    if found.value is not None and found.phrase in IF_NONE and looked_before:
         return If(Holds(found.value), (said,), (d.say(IF_NONE[found.phrase]),))
     return said
 

@@ -85,6 +85,29 @@ def test_what_nobody_reported_is_told(nurse) -> None:
     assert nurse.reads('robot.goto("corridor")\nrobot.objects()\n') == ["Nothing."]
 
 
+def test_an_empty_list_is_a_sentence(operator) -> None:
+    poll = "robot.say(f\"{start}: {', '.join([])}.\")\n"
+    for language, start, told in (
+        ("en", "These are the answers", "These are the answers: none."),
+        ("de", "Das sind die Antworten", "Das sind die Antworten: keine."),
+        ("fr", "Voici les réponses ", "Voici les réponses : aucun."),
+    ):
+        assert Asker(operator, language).reads(poll.replace("{start}", start)) == [told]
+
+
+@pytest.mark.parametrize(
+    ("language", "words", "told"),
+    [
+        ("en", "who is in the corridor?", "Nobody."),
+        ("en", "what do you see in the corridor?", "Nothing."),
+        ("de", "wer ist im Flur?", "Niemand."),
+        ("fr", "qui est dans le couloir ?", "Personne."),
+    ],
+)
+def test_nobody_and_nothing_are_answers(operator, language, words, told) -> None:
+    assert Asker(operator, language).is_told(words) == [told]
+
+
 def test_a_look_at_oneself_is_an_answer_where_there_is_no_other(nurse) -> None:
     [battery] = nurse.reads("robot.battery()\n")
     assert battery.startswith("My battery is at ")
