@@ -10,7 +10,7 @@ from __future__ import annotations
 import contextlib
 import secrets
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from nl2robot.answers import Sentence
@@ -33,6 +33,7 @@ from robot_api.errors import (
     StopNotConfirmed,
     Stopped,
 )
+from robot_api.methods import MAX_TEXT
 from sandbox.limits import MAX_PROGRAM
 
 if TYPE_CHECKING:
@@ -160,6 +161,7 @@ class Session:
             self.show_help(request.part)
         elif translation.status == "ok":
             self.terminal.show_message(translation)
+            self._tell_aloud([translation.message or ""])
         else:
             self.terminal.show_refusal(translation)
 
@@ -270,11 +272,27 @@ class Session:
             self._watching.clear()
         answer = self._answer(status)
         self.terminal.show_answer(answer, status.state, status.message, status.error)
+        if not interrupted:
+            self._tell_aloud([each.text for each in answer if not each.spoken])
         if interrupted:
             return ExitStatus.INTERRUPTED
         if status.error in (LostConnection.__name__, StopNotConfirmed.__name__):
             return ExitStatus.NO_ROBOT
         return ExitStatus.OK if status.state == "done" else ExitStatus.FAILED
+
+    def _tell_aloud(self, sentences: Sequence[str]) -> None:
+        """Say what the robot has not said itself, where whoever asked listens. A stop ends it."""
+        if not (self.terminal.aloud and any(sentences)):
+            return
+
+        def say() -> None:
+            with contextlib.suppress(RobotError, Stopped):
+                self.operator.robot.say(" ".join(sentences)[:MAX_TEXT])
+
+        if self.terminal.hears:
+            self._with_an_open_ear(say)
+        else:
+            say()
 
     def _answer(self, status: Status) -> list[Sentence]:
         """What came of a run; nothing where the robot can no longer be asked."""

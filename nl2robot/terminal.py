@@ -73,6 +73,9 @@ class Terminal:
     heard: str | None = None
     """What the last line sounded like, if it was spoken."""
 
+    aloud = False
+    """Whether answers are also to be heard, from the robot's own loudspeaker here."""
+
     hears = False
     """Whether somebody may say "stop" at any time, and is to be listened to."""
 

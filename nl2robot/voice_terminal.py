@@ -47,9 +47,11 @@ class VoiceTerminal(Terminal):
         language: str = "en",
         console: Console | None = None,
         own_voice: OwnVoice | None = None,
+        aloud: bool = False,
     ) -> None:
         """`blocks` of sound come from the microphone; `voice_for` a language says how they are
         heard, and raises `UserError` where they cannot be."""
+        self.aloud = aloud
         self._own_voice = own_voice or OwnVoice()
         self._voice_for = voice_for
         self._heard_language = language

@@ -56,7 +56,9 @@ def voice_terminal(
         else:
             microphone = stack.enter_context(Microphone(options.device))
             blocks = duplex.hear(microphone.timed_blocks()) if duplex else microphone.blocks()
-        terminal = VoiceTerminal(blocks, voice_for, options.lang, own_voice=own_voice)
+        terminal = VoiceTerminal(
+            blocks, voice_for, options.lang, own_voice=own_voice, aloud=options.speak is True
+        )
         stack.callback(terminal.close)
         word = options.hot_word or default_word(options.lang)
         terminal.console.print(terminal.words["say_hot_word"].format(word=word), markup=False)

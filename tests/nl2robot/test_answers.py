@@ -2,6 +2,8 @@
 
 import pytest
 
+from nl2robot.session import Session
+from nl2robot.terminal import Terminal
 from tests.nl2robot.test_history import Nurse
 
 
@@ -161,3 +163,20 @@ def test_who_failed_tells_what_was_done_before(nl2robot, tmp_path) -> None:
     assert status == 1
     [begin, *end] = out.rstrip().rpartition("I begin.\n")[1:]
     assert begin.strip() == "I begin." and end[0].startswith("The robot could not finish.")
+
+
+def test_the_voice_says_what_the_robot_has_not_said(operator) -> None:
+    heard: list[str] = []
+    operator.watch(lambda kind, data: heard.append(data["text"]), "speech")
+    terminal = Terminal()
+    terminal.aloud = True
+    session = Session(operator, terminal, approve_all=True)
+    session.perform("what time is it?")
+    assert heard == ["It is 08:00."], "and not a second time"
+    session.perform_program('robot.goto("ward b")\nrobot.count("person")\n')
+    assert heard[1:] == ["Number of people in ward b: 1."]
+    session.perform("thank you")
+    assert heard[2:] == ["You are welcome."]
+    terminal.aloud = False
+    session.perform("hello")
+    assert len(heard) == 3
