@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Container, Sequence
+from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 from typing import Final
 
@@ -10,20 +13,25 @@ import msgspec
 import numpy as np
 
 from grammar.language import load_language
+from grammar.plan import Text, calls, from_data
 from grammar.planning.planner import Watch
 from grammar.planning.rules import NAME as RULES
 from grammar.samples import all_samples
 from grammar.vocabulary import vocabulary
+from nl2robot.completing import names_said
 from nl2robot.knowledge import Knowledge
 from nl2robot.planners import AUTO
 from nl2robot.speech.audio import RATE, Audio, read
 from nl2robot.speech.hotword_words import WORDS
 from nl2robot.speech.listening import COMMANDS, Listener, Manner, has_speech
 from nl2robot.speech.recogniser import Decoding, Heard, choose, load
+from nl2robot.speech.sounding_like import respelled
 from nl2robot.speech.streaming import Streaming
 from nl2robot.speech.vocabulary import Missing, missing_words
 from nl2robot.translation import Talk, Translation, translate
 
+MOST_RESPELLED: Final = 8
+"""Texts with names of the world in the place of what sounds like them that are tried."""
 LONGEST_CRY: Final = 3
 """Words: who wants the robot to stop says no more. "Go to the bus stop" is longer."""
 
@@ -68,11 +76,56 @@ class Ear:
         return self.recogniser.open(self.phrases, gain=gain)
 
     def understood(self, heard: Heard, also: Container[str] = ()) -> Heard:
-        """The reading that is understood, or is one of `also`."""
-        return choose(
-            heard,
-            lambda text: text.lower().replace(",", "") in also or self._is_understood(text),
-        )
+        """The reading that is understood, or is one of `also`; where none is, or it is about
+        something that there is not here, the one with a name of the world that sounds like it."""
+
+        def is_one(text: str) -> bool:
+            return text.lower().replace(",", "") in also
+
+        chosen = choose(heard, lambda text: is_one(text) or self._is_understood(text))
+        if not chosen.text or is_one(chosen.text):
+            return chosen
+        instead = self._with_names(chosen.text)
+        return chosen if instead is None else replace(chosen, text=instead, words=())
+
+    def _with_names(self, text: str) -> str | None:
+        """The text with a name of the world in the place of what sounds like it: "fork", not
+        "fourth", where there are forks. None if it makes sense as it is, or no more with one."""
+        if self._is_about_here(text) is not False:
+            return None
+        names = names_said(self.knowledge.world, self.language)
+        likely = islice(respelled(text, names, self.language), MOST_RESPELLED)
+        return next((each for each in likely if self._is_about_here(each)), None)
+
+    def _is_about_here(self, text: str) -> bool | None:
+        """Whether a command is understood and speaks of nothing that there is not in this world;
+        None for what is no command and needs no names: a question about a run, say."""
+        translation = self._by_rules(text)
+        if translation.request is not None:
+            return None
+        if translation.plan is None:
+            return False
+        spoken_of = {
+            value.value.lower()
+            for call in calls(from_data(translation.plan))
+            for name, value in call.arguments.items()
+            if name == "thing" and isinstance(value, Text)
+        }
+        return spoken_of <= self._things
+
+    @functools.cached_property
+    def _things(self) -> frozenset[str]:
+        """What things may be called here: names, parts of names ("bottle", of a water bottle), and
+        the kinds of things and people there are."""
+        world, pack = self.knowledge.world, load_language(self.language)
+        names = [name.lower() for name in names_said(world, self.language)]
+        kinds = {
+            *(each.kind for each in world.objects),
+            *(each.kind for each in world.people),
+            *(each.kind for each in world.furniture),
+        }
+        parts = (part for name in names for part in name.split())
+        return frozenset((*names, *parts, *kinds, *pack.kinds, "person"))
 
     def program(self, text: str) -> str | None:
         """What a command means when it is typed, as far as the rules know. Asked of every few
