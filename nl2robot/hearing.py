@@ -83,7 +83,7 @@ class Ear:
             return text.lower().replace(",", "") in also
 
         chosen = choose(heard, lambda text: is_one(text) or self._is_understood(text))
-        if not chosen.text or is_one(chosen.text):
+        if not chosen.text or chosen.doubtful or is_one(chosen.text):
             return chosen
         instead = self._with_names(chosen.text)
         return chosen if instead is None else replace(chosen, text=instead, words=())
@@ -94,7 +94,7 @@ class Ear:
         if self._is_about_here(text) is not False:
             return None
         names = names_said(self.knowledge.world, self.language)
-        likely = islice(respelled(text, names, self.language), MOST_RESPELLED)
+        likely = islice(respelled(text, names, self.language, self._things), MOST_RESPELLED)
         return next((each for each in likely if self._is_about_here(each)), None)
 
     def _is_about_here(self, text: str) -> bool | None:
@@ -116,7 +116,7 @@ class Ear:
     @functools.cached_property
     def _things(self) -> frozenset[str]:
         """What things may be called here: names, parts of names ("bottle", of a water bottle), and
-        the kinds of things and people there are."""
+        the kinds of things and people there are, here or in the language's lists."""
         world, pack = self.knowledge.world, load_language(self.language)
         names = [name.lower() for name in names_said(world, self.language)]
         kinds = {
@@ -125,7 +125,9 @@ class Ear:
             *(each.kind for each in world.furniture),
         }
         parts = (part for name in names for part in name.split())
-        return frozenset((*names, *parts, *kinds, *pack.kinds, "person"))
+        listed = (pack.lists.get("person_kind", {}), pack.lists.get("furniture", {}))
+        ways = (" ".join(way) for kind in listed for said in kind.values() for way in said)
+        return frozenset((*names, *parts, *kinds, *pack.kinds, *listed[0], *listed[1], *ways))
 
     def program(self, text: str) -> str | None:
         """What a command means when it is typed, as far as the rules know. Asked of every few

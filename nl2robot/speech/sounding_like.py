@@ -9,7 +9,7 @@ sense otherwise, "fourth" was "fork". Sounds are espeak-ng's; without it nothing
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from functools import lru_cache
 from typing import Final
 
@@ -23,8 +23,11 @@ _LEAST: Final = 3
 _STRESS: Final = re.compile(r"[ˈˌːˑ.\s\-_|]")
 
 
-def respelled(text: str, names: Iterable[str], language: str) -> Iterator[str]:
-    """The text with a name in the place of words that sound much like it, the nearest first."""
+def respelled(
+    text: str, names: Iterable[str], language: str, stay: Collection[str] = ()
+) -> Iterator[str]:
+    """The text with a name in the place of words that sound much like it, the nearest first. Words
+    that `stay` are names themselves: "patient" is no "Peyton"."""
     from rapidfuzz.distance import Levenshtein
 
     words = text.split()
@@ -34,7 +37,7 @@ def respelled(text: str, names: Iterable[str], language: str) -> Iterator[str]:
     for length in range(1, min(LONGEST, len(words)) + 1):
         for at in range(len(words) - length + 1):
             heard = " ".join(words[at : at + length]).lower().strip(".,!?")
-            if heard in called:
+            if heard in called or heard in stay:
                 continue
             sound = sounds(heard, language)
             for name, named in known:
