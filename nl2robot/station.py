@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nl2robot import present
+from nl2robot.attention import Attention
 from nl2robot.console.part import STOP, Backstage
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
@@ -350,6 +351,7 @@ def _open(
     )
 
     talks = Talks()
+    attention = Attention()
     microphones = Microphones(lambda: runner.knowledge, talks.of, give_way, publish)
     backstage = Backstage(
         driver=driver,
@@ -382,6 +384,7 @@ def _open(
     def on_left(connection: str) -> None:
         microphones.give_up(connection)
         runner.present.happened(Reviewing(reviewer(connection), False))
+        attention.left(connection)
         if added:
             added.left(connection)
 
@@ -390,7 +393,11 @@ def _open(
         host=host,
         port=port,
         token=token,
-        services={**services(runner, talks, microphones), **(added.services if added else {})},
+        services={
+            **services(runner, talks, microphones),
+            **attention.services(),
+            **(added.services if added else {}),
+        },
         events={**EVENTS, **present.EVENTS, **(added.events if added else {})},
         remembered=(present.KIND,),
         pages=added.pages() if added else None,

@@ -194,7 +194,9 @@ class Desk:
                     self.thought = ThoughtView(self.dialogue, self.words, _loop())
                     if self.visit.role == "operator":
                         ui.html('<div id="standing-in"></div>', sanitize=False)
-                ui.html(_page("composer.html", visit=self.visit), sanitize=False)
+                hands_free = texts("microphone", self.visit.language)["hands_free"]
+                composer = _page("composer.html", visit=self.visit, hands_free=hands_free)
+                ui.html(composer, sanitize=False)
             with ui.element("div").classes("desk-program"):
                 self._build_program()
             ui.html(

@@ -587,6 +587,34 @@ def with_button(page: Page) -> Page:
     return page
 
 
+def test_hands_free_the_hot_word_begins_a_command(says) -> None:
+    page = says("Hey robot!", "Go to the pharmacy and say hello, please.")
+    switch = page.get_by_role("switch", name="Hands free")
+    expect(switch).to_have_attribute("aria-checked", "false")
+    expect(switch).to_have_attribute("title", re.compile("Switch on"))
+    switch.click()
+    expect(switch).to_have_attribute("data-state", "listening", timeout=3 * SOON)
+    expect(page.locator(".cm-content")).to_contain_text("pharmacy", timeout=3 * SOON)
+    expect(page.locator("#microphone")).to_have_attribute("data-state", re.compile("ready|off"))
+    expect(switch).to_have_attribute("data-state", "listening")
+    switch.click()
+    expect(switch).to_have_attribute("aria-checked", "false")
+    assert switch.get_attribute("data-state") is None
+
+
+def test_hands_free_stop_stops_the_robot(says, listening) -> None:
+    with listening.robot() as robot:
+        stopped = threading.Event()
+        robot.subscribe("stopped", lambda kind, data: stopped.set())
+        page = says("Stop!")
+        switch = page.get_by_role("switch", name="Hands free")
+        expect(switch).to_have_attribute("title", re.compile("Switch on"))
+        switch.click()
+        expect(switch).to_have_attribute("data-state", "listening", timeout=3 * SOON)
+        assert stopped.wait(3 * SOON / 1000)
+        expect(page.locator("#partial")).to_contain_text("You said stop")
+
+
 def test_at_the_desk_words_come_while_they_are_said_and_then_the_program(says, picture) -> None:
     page = says("Go to the pharmacy and say hello, please.")
     hold(page)

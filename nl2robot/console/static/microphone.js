@@ -38,7 +38,8 @@ const ICON =
   ' stroke-linecap="round" aria-hidden="true"><rect x="9" y="3" width="6" height="11" rx="3"/>' +
   '<path d="M5.5 11.5a6.5 6.5 0 0 0 13 0M12 18v3"/></svg>';
 
-function base64(samples) {
+/** Samples as the wire has them. */
+export function base64(samples) {
   const bytes = new Uint8Array(samples.buffer, samples.byteOffset, samples.byteLength);
   let text = '';
   for (let at = 0; at < bytes.length; at += 0x8000) {
@@ -47,7 +48,8 @@ function base64(samples) {
   return btoa(text);
 }
 
-function joined(blocks) {
+/** Blocks of samples as one. */
+export function joined(blocks) {
   const all = new Int16Array(blocks.reduce((length, block) => length + block.length, 0));
   let at = 0;
   for (const block of blocks) {
@@ -170,8 +172,8 @@ class Microphone {
     this._show('off');
   }
 
-  /** Begin to listen. */
-  async press() {
+  /** Begin to listen; `before` are blocks of what is said that were heard already. */
+  async press(before = []) {
     if (this.held) return;
     this.held = true;
     this._pressedAt = performance.now();
@@ -187,16 +189,17 @@ class Microphone {
     if (!this.options.wire.connected) return this._abort('lost');
     const utterance = new Utterance(this.options.wire, {
       tell: (event) => this._on(event, utterance),
-      fail: (error) => this._utterance === utterance && this._fail(error),
+      fail: (error) => this._utterance === utterance && this.fail(error),
     });
     this._utterance = utterance;
+    for (const samples of before) utterance.add({samples, peak: 0});
     this._longest = setTimeout(() => this.release('too_long'), this.options.longest ?? LONGEST);
     this._show('opening');
     try {
       await this._sound.hear((block) => this._take(block, utterance));
     } catch (error) {
       // Who had let go while the browser asked them is told as well.
-      if (this._utterance === utterance || !this._utterance) this._fail(error);
+      if (this._utterance === utterance || !this._utterance) this.fail(error);
       return;
     }
     if (this._utterance !== utterance) {
@@ -250,6 +253,30 @@ class Microphone {
     if (this._utterance?.pondered) this._drop();
   }
 
+  /** Whether it hears, or is at what it heard. */
+  get busy() {
+    return this.held || this._utterance !== null;
+  }
+
+  /** Let `listener` have all sound as well, null: no more; resolves to how many samples a second. */
+  async attend(listener) {
+    await this._sound.attend(listener);
+    this._show();
+    return this._sound.rate;
+  }
+
+  /** Listen as if it had been tapped; blocks of samples that came `before` belong to what is said. */
+  tap(before = []) {
+    this._sound.forget();
+    this.press(before);
+    this._up();
+  }
+
+  /** Somebody said "stop" while nobody held the button. */
+  cryStop() {
+    this._stop({stopped: false});
+  }
+
   /** Let go of the microphone and the button. */
   close() {
     this._drop();
@@ -263,7 +290,7 @@ class Microphone {
     try {
       await utterance.finish();
     } catch (error) {
-      if (this._utterance === utterance) this._fail(error);
+      if (this._utterance === utterance) this.fail(error);
       return;
     }
     if (this._utterance !== utterance) return;
@@ -334,7 +361,8 @@ class Microphone {
     this._show();
   }
 
-  _fail(error) {
+  /** Drop what was begun, and tell why. */
+  fail(error) {
     this._drop();
     const model = /models get (\w+)/.exec(error.message);
     if (error instanceof NoSound) this._trouble(error.reason, {why: error.message});

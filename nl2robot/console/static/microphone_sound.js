@@ -48,6 +48,7 @@ export class Sound {
     this._opened = null;
     this._before = [];
     this._listener = null;
+    this._attentive = null;
   }
 
   /** Whether the microphone is open. */
@@ -72,18 +73,43 @@ export class Sound {
     if (this._listener === listener) for (const block of this._before.splice(0)) listener(block);
   }
 
+  /**
+   * Let `listener` have each block as well, whoever else hears, and keep the microphone open for that; null
+   * ends it. Resolves and rejects as `hear` does.
+   */
+  async attend(listener) {
+    this._attentive = listener;
+    if (!listener) {
+      if (!this._listener && this.open) this.rest();
+      return;
+    }
+    clearTimeout(this._cooling);
+    const opening = (this._opened ??= this._start());
+    try {
+      await opening;
+    } catch (error) {
+      if (this._opened === opening) this.letGo();
+      throw error;
+    }
+  }
+
+  /** What was heard until now is known already. */
+  forget() {
+    this._before = [];
+  }
+
   /** Hear no more for now; the microphone stays ready for a while. */
   rest() {
     this._listener = null;
     clearTimeout(this._cooling);
-    this._cooling = setTimeout(() => this.letGo(), this._warm);
+    if (!this._attentive) this._cooling = setTimeout(() => this.letGo(), this._warm);
   }
 
   /** Let go of the microphone: its light goes out. */
   letGo() {
     clearTimeout(this._cooling);
     const opened = this._opened;
-    this._opened = this._listener = null;
+    this._opened = this._listener = this._attentive = null;
     this._before = [];
     if (opened) this._onLetGo();
     opened?.then(({context, stream}) => {
@@ -128,6 +154,7 @@ export class Sound {
   }
 
   _take(block) {
+    this._attentive?.(block);
     if (this._listener) {
       this._listener(block);
     } else {

@@ -106,9 +106,11 @@ function grow(field) {
 
 /** `think` is told what was said, if it takes thinking. */
 async function openMicrophone(form, think) {
-  const {mountMicrophone} = await import('/static/microphone.js');
+  const [{mountMicrophone}, {mountAttention}] = await Promise.all(
+    ['microphone', 'attention'].map((name) => import(`/static/${name}.js`)),
+  );
   const partial = form.querySelector('#partial');
-  return mountMicrophone(form.querySelector('#microphone'), {
+  const microphone = mountMicrophone(form.querySelector('#microphone'), {
     wire,
     words: pageData.microphone,
     language: () => language,
@@ -126,6 +128,13 @@ async function openMicrophone(form, think) {
     onGivenUp: () => tell('desk-given-up'),
     onTrouble: (sentence) => (partial.textContent = sentence),
   });
+  mountAttention(form.querySelector('#hands-free'), {
+    wire,
+    words: pageData.microphone,
+    language: () => language,
+    microphone,
+  });
+  return microphone;
 }
 
 /** The editor, which is NiceGUI's; undefined until it stands there. */
