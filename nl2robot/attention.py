@@ -126,7 +126,7 @@ class Attention:
             "voice.notice": service_of_call(
                 lambda p, context: self.notice(context.connection, p["attention"], p["sound"]),
                 "Hand over a block of sound (base64 of 16-bit samples); returns what was heard in"
-                " it: what (hotword | stop), and the time, in seconds of sound. To call robot.stop then"
+                " it: what (hotword | stop), and the time in seconds of sound. To call robot.stop"
                 " is the client's.",
                 {"attention": number, "sound": {"type": "string", "maxLength": LARGEST_BLOCK}},
                 "attention sound",
