@@ -4,11 +4,17 @@ Picture and sound go from page to page (WebRTC); only what the two need to find 
 the robot's wire, through here. There is one call at a time, as the robot has one face.
 
     ringing -> answered -> ended          the event "call.state", to each page that it concerns
+
+Who goes from page to page of the console stays in the call: a page that is gone may come back as
+another one within `RETURNS_WITHIN`, with the key that only its browser knows, and the two connect
+anew. Meanwhile the other side is told that it is `away`.
 """
 
 from __future__ import annotations
 
+import hmac
 import itertools
+import secrets
 import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -21,14 +27,17 @@ from robot_api.server import Context, Publish, Service
 
 RINGS_FOR: Final = 30.0
 """Seconds that somebody has to answer."""
+RETURNS_WITHIN: Final = 8.0
+"""Seconds that a page that is gone has to come back."""
 LONGEST_SIGNAL: Final = 100_000
 
 Side = Literal["face", "operator"]
 Ending = Literal["hung_up", "declined", "nobody", "lost", "elsewhere", "no_way"]
 
 EVENTS: Final = {
-    "call.state": "call, state (ringing | calling | answered | ended), caller (face | operator),"
-    " who; offers, if answered: whether this page makes the first offer; because, if ended",
+    "call.state": "call, state (ringing | calling | answered | away | ended), caller (face |"
+    " operator), who; offers, if answered: whether this page makes the first offer; key, if calling"
+    " or answered: to come back with, as another page; because, if ended",
     "call.signal": "call, signal: what the other side's WebRTC connection has to say",
 }
 
@@ -46,13 +55,16 @@ class _Call:
     over: Callable[[], None]
     """Called when it has ended."""
     because: Ending | None = None
+    answered: bool = False
     settled: threading.Event = field(default_factory=threading.Event)
     """It is answered, or it has ended."""
     patience: threading.Timer | None = None
-
-    @property
-    def answered(self) -> bool:
-        return None not in self.pages.values()
+    keys: dict[Side, str] = field(default_factory=dict)
+    """What a page proves with that it is the one that talked."""
+    away: dict[Side, threading.Timer] = field(default_factory=dict)
+    """The sides that are between two pages, each with the end of patience."""
+    alone: threading.Timer | None = None
+    """The end of patience while no page rings, for one was left that did."""
 
     def other(self, page: str) -> str | None:
         """The page that this one talks to."""
@@ -65,9 +77,15 @@ class _Call:
 class Calls:
     """Any thread may call any of it."""
 
-    def __init__(self, publish: Publish, rings_for: float = RINGS_FOR) -> None:
+    def __init__(
+        self,
+        publish: Publish,
+        rings_for: float = RINGS_FOR,
+        returns_within: float = RETURNS_WITHIN,
+    ) -> None:
         self._publish = publish
         self._rings_for = rings_for
+        self._returns_within = returns_within
         self._numbers = itertools.count(1)
         self._lock = threading.RLock()  # for what follows
         self._ready: dict[str, Side] = {}
@@ -128,6 +146,14 @@ class Calls:
                 "Take the call that rings here; the result says whether it still rang.",
                 right="face",
             ),
+            "call.resume": Service(
+                lambda p, context: self._came_back(context.connection, p["call"], p["key"]),
+                an_object(
+                    {"call": number, "key": {"type": "string", "maxLength": 100}}, "call key"
+                ),
+                "Go on with a call that another page of this browser was in; the result says"
+                " whether it still is.",
+            ),
             "call.end": Service(
                 self._left_off,
                 an_object(
@@ -151,10 +177,13 @@ class Calls:
             call = self._call
             if call is None:
                 return
-            if page in call.pages.values():
-                self._end(call, "lost")
+            side = next((side for side, there in call.pages.items() if there == page), None)
+            if side is not None:
+                self._wait_for(call, side)
             elif page in call.ringing:
-                self._rings_no_more(call, page, "nobody")
+                call.ringing.discard(page)
+                if not call.ringing:  # the next page rings, too
+                    call.alone = self._later(self._nobody_rings, call)
 
     def close(self) -> None:
         self.hang_up()
@@ -167,6 +196,30 @@ class Calls:
             if call is not None and not call.answered and call.caller != side:
                 call.ringing.add(page)
                 self._tell(call, page, "ringing")
+
+    def _came_back(self, page: str, number: int, key: str) -> bool:
+        with self._lock:
+            call = self._call
+            if call is None or call.number != number:
+                return False
+            sides = (s for s, known in call.keys.items() if hmac.compare_digest(known, key))
+            side = next(sides, None)
+            if side is None:
+                return False
+            waiting = call.away.pop(side, None)
+            if waiting is not None:
+                waiting.cancel()
+            before, call.pages[side] = call.pages[side], page
+            if before is not None and before != page:  # in another window
+                self._tell(call, before, "ended", because="elsewhere")
+            call.ringing.discard(page)
+            if call.away:
+                return True  # the other side is on its way, too, and then they connect
+            if not call.answered:
+                self._tell(call, page, "calling", key=key)
+            else:
+                self._connect(call, offers=side)
+            return True
 
     def _start(self, page: str, who: str) -> int:
         with self._lock:
@@ -186,12 +239,13 @@ class Calls:
                 return False
             called: Side = "operator" if call.caller == "face" else "face"
             call.pages[called] = page
+            call.answered = True
             others, call.ringing = call.ringing - {page}, set()
             for other in others:
                 self._tell(call, other, "ended", because="elsewhere")
-            # The side that called makes the offer, when the other is sure to listen.
-            self._tell(call, page, "answered", offers=False)
-            self._tell(call, call.pages[call.caller], "answered", offers=True)
+            call.keys[called] = secrets.token_urlsafe(16)
+            if call.caller not in call.away:
+                self._connect(call, offers=call.caller)
             self._settle(call)
             return True
 
@@ -217,6 +271,37 @@ class Calls:
 
     # --- inside
 
+    def _connect(self, call: _Call, offers: Side) -> None:
+        """The two connect to each other. One side makes the offer, when the other is sure to
+        listen."""
+        for side in sorted(call.pages, key=lambda side: side == offers):
+            key = call.keys[side]
+            self._tell(call, call.pages[side], "answered", offers=side == offers, key=key)
+
+    def _wait_for(self, call: _Call, side: Side) -> None:
+        """The page of this side is gone; perhaps to come back as another one."""
+        call.pages[side] = None
+        call.away[side] = self._later(self._stayed_away, call, side)
+        for other, page in call.pages.items():
+            if other != side:
+                self._tell(call, page, "away")
+
+    def _stayed_away(self, call: _Call, side: Side) -> None:
+        with self._lock:
+            if side in call.away:
+                self._end(call, "lost")
+
+    def _nobody_rings(self, call: _Call) -> None:
+        with self._lock:
+            if not call.ringing and not call.answered:
+                self._end(call, "nobody")
+
+    def _later(self, act: Callable[..., None], *arguments: Any) -> threading.Timer:
+        timer = threading.Timer(self._returns_within, act, arguments)
+        timer.daemon = True
+        timer.start()
+        return timer
+
     def _pages(self, side: Side) -> set[str]:
         return {page for page, its_side in self._ready.items() if its_side == side}
 
@@ -227,8 +312,9 @@ class Calls:
             raise NotPossible("The robot is in a video call. Wait until it is over.")
         pages: dict[Side, str | None] = {"face": None, "operator": None, caller: page}
         call = _Call(next(self._numbers), caller, who, pages, set(ringing), over)
+        call.keys[caller] = secrets.token_urlsafe(16)
         self._call = call
-        self._tell(call, page, "calling")
+        self._tell(call, page, "calling", key=call.keys[caller])
         for other in ringing:
             self._tell(call, other, "ringing")
         call.patience = threading.Timer(self._rings_for, self._unanswered, [call])
@@ -255,6 +341,9 @@ class Calls:
             call.because = because
             if self._call is call:
                 self._call = None
+            for timer in (*call.away.values(), call.alone):
+                if timer is not None:
+                    timer.cancel()
             for page in {*call.ringing, *call.pages.values()}:
                 self._tell(call, page, "ended", because=because)
             self._settle(call)

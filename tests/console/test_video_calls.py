@@ -22,10 +22,10 @@ AT_ONCE = SOON / 1000
 class Switchboard:
     """Calls, with pages that do nothing by themselves; what they are told is kept."""
 
-    def __init__(self, rings_for: float = AT_ONCE) -> None:
+    def __init__(self, rings_for: float = AT_ONCE, returns_within: float = 0.2) -> None:
         self.told: list[tuple[str | None, str, dict[str, Any]]] = []
         self.changed = threading.Condition()
-        self.calls = Calls(self.publish, rings_for)
+        self.calls = Calls(self.publish, rings_for, returns_within)
         self.services = self.calls.services()
         self.over = threading.Event()
         self.threads = ThreadPoolExecutor()
@@ -165,6 +165,74 @@ def test_an_operator_calls_the_robot(board: Switchboard) -> None:
         board.does("desk", "start", who="Nurse Ann")
 
 
+# --- from page to page
+
+
+@pytest.fixture
+def patient() -> Iterator[Switchboard]:
+    """One that waits long for a page to come back."""
+    board = Switchboard(returns_within=AT_ONCE)
+    board.does("tablet", "ready", side="face")
+    board.does("desk", "ready", side="operator")
+    yield board
+    board.calls.close()
+    board.threads.shutdown()
+
+
+def answered(board: Switchboard) -> tuple[int, str]:
+    """The desk calls the robot, and is answered: the call, and the key of the desk."""
+    number = board.does("desk", "start", who="Ruth")
+    board.does("tablet", "answer", call=number)
+    return number, board.waits("desk", "answered")["key"]
+
+
+def test_a_page_takes_up_the_call_of_another_one(patient: Switchboard) -> None:
+    number, key = answered(patient)
+    patient.calls.left("desk")
+    patient.waits("tablet", "away")
+    patient.told.clear()
+    patient.does("map", "ready", side="operator")
+    assert not patient.does("map", "resume", call=number, key="guessed")
+    assert patient.does("map", "resume", call=number, key=key)
+    assert patient.waits("map", "answered")["offers"]
+    assert not patient.waits("tablet", "answered")["offers"], "who stayed is sure to listen"
+    patient.does("tablet", "signal", call=number, signal={"candidate": 1})
+    assert patient.told[-1][0] == "map"
+    assert not patient.over.is_set()
+    patient.does("map", "end", call=number)
+    assert patient.waits("tablet", "ended")["because"] == "hung_up"
+    assert not patient.does("late", "resume", call=number, key=key)
+
+
+def test_both_sides_may_be_between_pages(patient: Switchboard) -> None:
+    number, key = answered(patient)
+    tablets = patient.waits("tablet", "answered")["key"]
+    patient.calls.left("desk")
+    patient.calls.left("tablet")
+    patient.told.clear()
+    assert patient.does("map", "resume", call=number, key=key)
+    assert not patient.told, "nobody is there to connect to"
+    assert patient.does("new tablet", "resume", call=number, key=tablets)
+    patient.waits("map", "answered")
+    patient.waits("new tablet", "answered")
+
+
+def test_who_does_not_come_back_has_left(board: Switchboard) -> None:
+    number, key = answered(board)
+    board.calls.left("desk")
+    assert board.waits("tablet", "ended")["because"] == "lost"
+    assert not board.does("map", "resume", call=number, key=key)
+
+
+def test_it_rings_on_where_somebody_goes_to_another_page(patient: Switchboard) -> None:
+    called = patient.robot_calls()
+    number = patient.waits("desk", "ringing")["call"]
+    patient.calls.left("desk")
+    patient.does("map", "ready", side="operator")
+    assert patient.waits("map", "ringing")["call"] == number
+    assert patient.does("map", "answer", call=number) and called.result(AT_ONCE)
+
+
 # --- in browsers
 
 MOVES = """() => {
@@ -227,3 +295,81 @@ def test_a_call_between_two_browsers(
     expect(desk.get_by_text("The connection to the other side was lost.")).to_be_visible()
     desk.wait_for_function(CAMERA_IS_OFF)
     robot.close()
+
+
+@pytest.mark.parametrize("size", [{}, {"width": 390, "height": 844}])
+def test_a_call_survives_going_from_page_to_page(
+    look: Look, served: Served, size: dict[str, int]
+) -> None:
+    face = look("/face", width=1024, height=768)
+    face.evaluate(WATCH_TRACKS)
+    expect(face.locator("body[data-ready]")).to_be_attached()
+    expect(face.locator(".video-call.face[data-ready]")).to_be_attached()
+    page = look("/drive", **size)
+    expect(page.locator(".video-call.operator[data-ready]")).to_be_attached()
+    page.get_by_role("button", name="Video call with the robot").click()
+    face.get_by_role("button", name="Accept").click()
+    for each in (page, face):
+        each.wait_for_function(MOVES)
+    microphone = page.locator("[data-call=microphone]")
+    microphone.click()
+    expect(microphone).to_have_attribute("aria-pressed", "false")
+
+    for name in ("Map", "Talk"):
+        page.get_by_role("link", name=name, exact=True).click()
+        for each in (page, face):
+            expect(each.get_by_text("In a call with")).to_be_visible()
+            each.wait_for_function(MOVES)
+        expect(page.locator("[data-call=microphone]")).to_have_attribute("aria-pressed", "false")
+    page.evaluate(WATCH_TRACKS)
+    page.get_by_role("button", name="Hang up").click()
+    expect(face.get_by_text("The call is over.")).to_be_visible()
+    face.wait_for_function(CAMERA_IS_OFF)
+    page.reload()
+    expect(page.locator(".video-call.operator[data-ready]")).to_be_attached()
+    expect(page.locator("video")).to_have_count(0)
+
+
+SIZES = [(1440, 900), (1280, 720), (820, 1180), (390, 844)]
+
+
+@pytest.mark.parametrize(("width", "height"), SIZES)
+def test_call_map_and_joystick_are_in_one_view(
+    look: Look, served: Served, picture: Callable[[Page, str], None], width: int, height: int
+) -> None:
+    face = look("/face?answer=auto", width=1024, height=768)
+    expect(face.locator("body[data-ready]")).to_be_attached()
+    expect(face.locator(".video-call.face[data-ready]")).to_be_attached()
+    page = look("/drive", width=width, height=height)
+    page.get_by_role("button", name="Take the helm").click()
+    page.get_by_role("button", name="Telepresence").click()
+    start = page.get_by_role("button", name="Video call with the robot")
+    expect(start.locator("visible=true")).to_have_count(1)
+    start.locator("visible=true").click()
+    page.wait_for_function(MOVES)
+    stands = page.locator("video.theirs, #drive-map .floor-stage, .stick, [data-call=hang_up]")
+    expect(stands).to_have_count(4)
+    for each in stands.all():
+        expect(each).to_be_in_viewport(ratio=0.99)
+    stop = page.get_by_role("button", name="STOP")
+    expect(stop).to_be_in_viewport(ratio=1)
+    assert page.evaluate("[document.documentElement.scrollWidth, scrollY]") == [width, 0]
+    picture(page, f"telepresence-{width}")
+
+    with served.robot() as robot:
+        robot.localize("charger")
+        before = robot.location()
+        page.keyboard.down("w")  # the joystick works beside the call
+        moved = "() => parseFloat(document.querySelector('[data-vital=speed]').dataset.speed) > 0.1"
+        page.wait_for_function(moved)
+        page.keyboard.up("w")
+        assert robot.location() != before
+
+    page.reload()  # the view is the same, and the call goes on in it
+    page.wait_for_function(MOVES)
+    expect(page.locator(".presence-call video.theirs")).to_be_in_viewport()
+    page.get_by_role("button", name="All controls").click()
+    expect(page.get_by_role("button", name="Say it")).to_be_attached()
+    page.wait_for_function(MOVES)
+    page.get_by_role("button", name="Hang up").last.click()
+    expect(page.get_by_text("The call is over.")).to_be_visible()

@@ -7,6 +7,7 @@ import {goPanel, helmBar, joystickPanel, mountMap} from './driving.js';
 import {helm} from './helm.js';
 import {logPanel} from './log.js';
 import {panel} from './panel.js';
+import {presence} from './presence.js';
 import {robot} from './robot.js';
 import {callPanel, codePanel, screenPanel} from './showing.js';
 
@@ -20,8 +21,9 @@ root.classList.toggle('looks-on', !operates);
 
 const go = has('goto') && operates ? goPanel(body) : null;
 const map = element('div', {id: 'drive-map', class: 'floor-hugging'});
+const there = operates && has('drive') ? presence(root) : null;
 const columns = [
-  [panel('map', map), body.camera && operates && cameraPanel(), go?.section, logPanel()],
+  [there?.pane, panel('map', map), body.camera && operates && cameraPanel(), go?.section, logPanel()],
   [
     has('drive') && operates && joystickPanel(body, () => go?.cancel()),
     has('say') && sayPanel(body, pageData.language),
@@ -36,7 +38,7 @@ const columns = [
   ],
 ].map((panels) => element('div', {class: 'column'}, ...panels.filter(Boolean)));
 
-root.append(helmBar(body, operates), element('div', {class: 'columns'}, ...columns));
+root.append(helmBar(body, operates, there?.toggle), element('div', {class: 'columns'}, ...columns));
 mountMap(map, pageData.language, go?.run).catch((error) => {
   console.warn(error);
   map.closest('.panel').hidden = true;

@@ -12,12 +12,13 @@ const SPEED_KEPT = 'drive-speed';
 
 // --- who drives, and how the robot is
 
-export function helmBar(body, operates) {
+/** With `more` buttons beside those of the helm. */
+export function helmBar(body, operates, ...more) {
   const who = element('p', {class: 'who', role: 'status'});
   const take = button(say('take'), () => helm.take(), {class: 'primary'});
   const give = button(say('let_go'), () => helm.give());
   const asking = element('div', {class: 'asking', role: 'alert'});
-  const tools = element('div', {class: 'row'}, take, give);
+  const tools = element('div', {class: 'row'}, take, give, ...more.filter(Boolean));
   const program = element('a', {class: 'chip warn', href: '/'}, say('program_runs'));
   const bar = element('section', {class: 'card helm', 'aria-label': say('helm_title')});
   bar.append(element('div', {class: 'helm-who'}, element('span', {class: 'lamp'}), who));

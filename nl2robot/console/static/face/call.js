@@ -5,7 +5,8 @@
  *   calls.start();
  *
  * It rings, is answered or declined, shows both pictures and ends; whichever way it ends, camera and
- * microphone are let go of. The two browsers find each other over the robot's wire and need no other
+ * microphone are let go of. Who goes to another page of the console stays in the call: the new page
+ * takes it up, and the two connect anew. The two browsers find each other over the robot's wire and need no other
  * server; so they must be in one network. `words` are the texts of `call.yaml`.
  */
 
@@ -14,6 +15,7 @@ import {element, filled} from '/static/page.js';
 const STYLE = '/static/face/call.css';
 const MENDS_WITHIN = 5000;
 const CONNECTS_WITHIN = 15000;
+const RETURNS_WITHIN = 10000;
 const NOTICE_FOR = 5000;
 const RINGS_EVERY = 2200;
 const RING_GAIN = 0.15;
@@ -41,7 +43,7 @@ class CallView {
     });
     wire.onChange((connected) => {
       if (connected) this._offerUp();
-      else if (this._call) this._over('lost');
+      else if (this._call) this._interrupted();
     });
     addEventListener('pagehide', () => this._letGo(this._call));
   }
@@ -50,6 +52,50 @@ class CallView {
   async _offerUp() {
     await this._wire.request('call.ready', {side: this._side}).catch(() => {});
     this._root.dataset.ready = 'yes';
+    const kept = this._kept();
+    if (!kept) return;
+    const {call, key} = kept;
+    const goesOn = await this._wire.request('call.resume', {call, key}).catch(() => null);
+    if (goesOn !== false) return;
+    this._keep(null);
+    if (this._call?.number === call) this._over('lost');
+  }
+
+  // --- what another page of this tab needs to take the call up
+
+  /** {call, key, off: what is switched off}, or null. */
+  _kept() {
+    return JSON.parse(sessionStorage.getItem(this._side + '-call'));
+  }
+
+  _keep(kept) {
+    const name = this._side + '-call';
+    if (kept) sessionStorage.setItem(name, JSON.stringify(kept));
+    else sessionStorage.removeItem(name);
+  }
+
+  /** The connection to the robot is gone, perhaps for a moment only. */
+  _interrupted() {
+    const call = this._call;
+    if (!this._kept()) {
+      this._over('lost');
+      return;
+    }
+    this._wait(call, 'connecting');
+    call.patience = setTimeout(() => this._call === call && this._over('lost'), RETURNS_WITHIN);
+  }
+
+  /** Wait for a call to go on. */
+  _wait(call, sentence) {
+    this._letGo(call);
+    call.link = call.bell = null;
+    call.draw = () =>
+      this._draw(
+        'waiting',
+        element('p', {class: 'call-sentence'}, this._words[sentence]),
+        this._row([this._button('hang_up', 'bad', () => this._end('hung_up'))]),
+      );
+    call.draw();
   }
 
   /** Call the robot; for operators. */
@@ -71,7 +117,16 @@ class CallView {
   _told(told) {
     const current = this._call;
     if (told.state === 'ended') {
+      if (this._kept()?.call === told.call) this._keep(null);
       if (current?.number === told.call) this._over(told.because);
+      return;
+    }
+    if (told.key) {
+      const off = this._kept()?.call === told.call ? this._kept().off : [];
+      this._keep({call: told.call, key: told.key, off});
+    }
+    if (told.state === 'away') {
+      if (current?.number === told.call && current.link) this._wait(current, 'away');
       return;
     }
     if (told.state === 'ringing' || told.state === 'calling') {
@@ -81,7 +136,11 @@ class CallView {
       this._call.draw();
       const byItself = new URLSearchParams(location.search).get('answer') === 'auto';
       if (told.state === 'ringing' && this._side === 'face' && byItself) this._accept();
-    } else if (told.state === 'answered' && current?.number === told.call) {
+    } else if (told.state === 'answered') {
+      if (current?.number !== told.call || current.link) {
+        this._letGo(current); // it goes on from another page
+        this._call = {number: told.call, who: told.who, caller: told.caller};
+      }
       this._connect(told.offers);
     }
   }
@@ -115,6 +174,7 @@ class CallView {
   _connect(offers) {
     const call = this._call;
     call.bell?.();
+    clearTimeout(call.patience);
     const theirs = element('video', {
       class: 'theirs', autoplay: true, playsinline: true, 'aria-label': this._words.their_picture,
     });
@@ -124,6 +184,7 @@ class CallView {
     own.muted = true;
     call.link = new Link({
       offers,
+      off: this._kept()?.off ?? [],
       send: (signal) => this._wire.request('call.signal', {call: call.number, signal}).catch(() => {}),
       onTheirs: (stream) => {
         theirs.srcObject = stream;
@@ -153,6 +214,8 @@ class CallView {
     const buttons = ['microphone', 'camera'].map((kind) => {
       const button = this._button(kind, 'plain', () => {
         button.setAttribute('aria-pressed', link.toggle(kind));
+        const off = ['microphone', 'camera'].filter((each) => link.has(each) && !link.sends(each));
+        if (this._kept()) this._keep({...this._kept(), off}); // and stays so on another page
       });
       button.setAttribute('aria-pressed', link.sends(kind));
       button.disabled = !link.has(kind);
@@ -181,6 +244,8 @@ class CallView {
   _over(because) {
     const call = this._call;
     this._call = null;
+    this._keep(null);
+    clearTimeout(call?.patience);
     this._letGo(call);
     this._notice(this._words[`ended_${because}`] ?? this._words.ended_hung_up);
   }
@@ -216,8 +281,9 @@ class CallView {
 
 /** The connection to the other browser, with our camera and microphone. */
 class Link {
-  constructor({offers, send, onTheirs, onOwn, onConnected, onBroken}) {
+  constructor({offers, off, send, onTheirs, onOwn, onConnected, onBroken}) {
     this._offers = offers;
+    this._off = off;
     this._send = send;
     this._on = {theirs: onTheirs, own: onOwn, connected: onConnected, broken: onBroken};
     this._own = null;
@@ -243,6 +309,7 @@ class Link {
       return;
     }
     this._own = stream;
+    for (const kind of this._off) this._enable(kind, false);
     for (const track of stream?.getTracks() ?? []) this._peer.addTrack(track, stream);
     this._on.own(stream, trouble);
     if (this._offers) {
@@ -288,8 +355,12 @@ class Link {
   /** Switch the microphone or the camera; whether it is on then. */
   toggle(kind) {
     const on = !this.sends(kind);
-    for (const track of this._tracks(kind)) track.enabled = on;
+    this._enable(kind, on);
     return on;
+  }
+
+  _enable(kind, on) {
+    for (const track of this._tracks(kind)) track.enabled = on;
   }
 
   close() {
