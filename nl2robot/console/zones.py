@@ -10,7 +10,7 @@ from __future__ import annotations
 import logging
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final, Literal
@@ -162,9 +162,10 @@ class KeptOut:
         ]
 
     def history(self) -> list[dict[str, Any]]:
-        """The newest first. One can be undone while the zone is as it left it."""
-        now = {key(zone.name): zone.polygon for zone in self._held}
+        """The newest first. See `_undoable`."""
         with suppress(UserError):  # who draws is told why
+            changes = self._changes.of(self._world)
+            undoable = _undoable(changes)
             return [
                 {
                     "number": change.number,
@@ -173,9 +174,9 @@ class KeptOut:
                     "what": change.what,
                     "name": change.name,
                     "undoes": change.undoes,
-                    "undoable": now.get(key(change.name)) == change.after,
+                    "undoable": change.number in undoable,
                 }
-                for change in reversed(self._changes.of(self._world))
+                for change in reversed(changes)
             ]
         return []
 
@@ -188,12 +189,12 @@ class KeptOut:
 
     def undo(self, p: Mapping[str, Any]) -> list[dict[str, Any]]:
         number = p["change"]
-        known = {change.number: change for change in self._changes.of(self._world)}
-        change = known.get(number)
+        changes = self._changes.of(self._world)
+        change = next((each for each in changes if each.number == number), None)
         if change is None:
             raise UserError("That change is too long ago to be undone. Draw or remove the zone.")
-        now = {key(zone.name): zone for zone in self._held}.get(key(change.name))
-        if (now.polygon if now else None) != change.after:
+        now = {key(zone.name): zone.polygon for zone in self._held}.get(key(change.name))
+        if number not in _undoable(changes) or now != change.after:
             raise UserError(
                 f'The keep-out zone "{change.name}" was changed again since. Undo that first.'
             )
@@ -246,6 +247,23 @@ class KeptOut:
             self._backstage.simulation.set_zones(self._held)
         if self._backstage.places is not None:
             self._backstage.places.keep_out_of([zone.polygon for zone in self._held])
+
+
+def _undoable(changes: Iterable[Change]) -> set[int]:
+    """The numbers of those that can be taken back: of each zone the last one, and the last that
+    still holds where that took back the one after it."""
+    standing: dict[str, list[Change]] = {}
+    last: dict[str, Change] = {}
+    for change in changes:
+        name = key(change.name)
+        stack = standing.setdefault(name, [])
+        if stack and stack[-1].number == change.undoes:
+            stack.pop()
+        else:
+            stack.append(change)
+        last[name] = change
+    tops = [stack[-1] for stack in standing.values() if stack]
+    return {change.number for change in (*tops, *last.values())}
 
 
 def _sound(name: str, polygon: list[list[float]]) -> Zone:

@@ -188,6 +188,8 @@ def test_who_did_what_is_kept_and_taken_back_after_a_new_start(start) -> None:
         console("zones.undo", change=drawn, who="Ruth")
     assert console("zones.undo", change=removed, who="Ruth")[0]["polygon"][0] == [1, 1]
     assert console.simulation.world.zone_at(1.9, 1.5).name == "wet floor"
+    undoable = [each["number"] for each in console("zones.history") if each["undoable"]]
+    assert undoable == [removed + 1, changed], "what was just undone, and what came before it"
     assert console("zones.undo", change=changed, who="Ruth")[0]["polygon"] == SQUARE
     assert console("zones.undo", change=drawn, who="Ruth") == []
     last = console("zones.history")[0]
