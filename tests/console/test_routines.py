@@ -9,8 +9,10 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
+from nl2robot.console.visitor import texts
 from robot_api.errors import RobotError
 from tests.console.conftest import Look, Picture, Served
+from tests.console.test_looks import CONTRAST, STICKS_OUT, nameless
 
 TEA = 'robot.goto("lobby")\nrobot.say("Tea!")\n'
 FILE = """\
@@ -386,3 +388,56 @@ def test_all_of_it_without_a_mouse(shelf: Page) -> None:
     card(shelf, "tea call").get_by_role("button", name="Rename tea call").press("Enter")
     card(shelf, "tea call").get_by_role("button", name="Cancel").press("Enter")
     expect(card(shelf, "tea call").get_by_role("button", name="Rename tea call")).to_be_focused()
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "dark", "language"),
+    [
+        (390, 844, True, "de"),
+        (820, 1180, False, "fr"),
+        (1280, 720, False, "en"),
+        (720, 450, True, "fr"),  # 1440 x 900 at 200 %
+    ],
+)
+def test_what_opens_in_a_card_fits_is_read_and_is_told(
+    look: Look,
+    served: Served,
+    tmp_path: Path,
+    picture: Picture,
+    width: int,
+    height: int,
+    dark: bool,
+    language: str,
+) -> None:
+    words = texts("routines", language)
+    page = opened(look("/routines", width=width, height=height, dark=dark, language=language))
+    evening = card(page, "evening round")
+
+    def fits() -> None:
+        assert page.evaluate(STICKS_OUT) == []
+        assert page.evaluate(CONTRAST) == []
+        assert nameless(page) == []
+        expect(page.locator("#stop")).to_be_in_viewport(ratio=1)
+        assert page.evaluate("document.activeElement !== document.body")
+
+    evening.locator("summary").click()
+    for act, there in (
+        ("test", ".routine-test img"),
+        ("edit", ".routine-check .outlook"),
+        ("rename", "form input"),
+        ("share", "[readonly]"),
+    ):
+        evening.get_by_role("button", name=f"{words[act]} evening round").click()
+        expect(evening.locator(f".routine-panel {there}")).to_be_visible()
+        fits()
+    file = tmp_path / "ward-b.yaml"
+    file.write_text(FILE)
+    page.get_by_role("button", name=words["import"], exact=True).click()
+    page.get_by_label(words["choose_file"]).set_input_files(file)
+    expect(page.locator(".routine-offers > li")).to_have_count(2)
+    fits()
+    page.get_by_role("button", name=words["new"], exact=True).click()
+    page.get_by_label(words["sentence"]).fill(words["sentence_example"])
+    expect(page.locator(".routines-panel .routine-check .outlook")).to_be_visible()
+    fits()
+    picture(page, f"routines-{width}")

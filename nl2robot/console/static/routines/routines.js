@@ -135,12 +135,13 @@ function outcome(tested) {
 }
 
 async function test(card, button) {
+  if (button.getAttribute('aria-disabled') === 'true') return null;
   const status = element('p', {role: 'status', class: 'muted'}, words.testing);
   const inside = element('div', {'aria-live': 'polite', class: 'routine-test'}, status);
   open(card, button, inside, closer(card));
-  button.disabled = true;
+  button.setAttribute('aria-disabled', 'true'); // not "disabled": the focus would be lost
   const tested = await ask('test', of(card), (why) => inside.replaceChildren(element('p', {class: 'outlook bad'}, why)));
-  button.disabled = false;
+  button.removeAttribute('aria-disabled');
   if (tested) inside.replaceChildren(...outcome(tested), element('p', {class: 'muted'}, words.tested));
   return tested;
 }
