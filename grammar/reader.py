@@ -24,6 +24,7 @@ from grammar.freetext import Doubt, doubtful, words_for
 from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.meanings.offers import with_offers_kept
+from grammar.memory import Command, Deliveries, People, Scene
 from grammar.names import Names
 from grammar.naming import joined_up, place_called
 from grammar.plan import Plan, Text, Value
@@ -95,12 +96,12 @@ class Reader:
             self.lexicon,
             self.tokens,
             self.text,
-            thing=self.context.thing,
-            person=self.context.person,
-            named=self._named_before(),
-            place=self.context.place,
-            origin=self.context.origin,
-            source=self.context.source,
+            scene=Scene(
+                thing=self.context.thing, person=self.context.person, place=self.context.place
+            ),
+            people=People(named=self._named_before()),
+            deliveries=Deliveries(source=self.context.source),
+            command=Command(origin=self.context.origin),
         )
         if "request" in tree.parts:
             asked: Request = discourse.build(tree.parts["request"])
@@ -113,7 +114,7 @@ class Reader:
             )
         try:
             steps = with_offers_kept(discourse, discourse.build(tree.parts["steps"]))
-            if discourse.collected is not None:
+            if discourse.deliveries.collected is not None:
                 raise NotUnderstood(self.language.phrase("one_thing"))
         except NotUnderstood as reason:
             return self._refused(reason)
@@ -125,7 +126,9 @@ class Reader:
             return rejected(self.text, self.language.phrase("too_complicated"), self.context)
         if not steps:
             return self._asking_nothing(chart)
-        steps, unused = in_manner(steps, tree, self.tokens, self.language, discourse.resolved)
+        steps, unused = in_manner(
+            steps, tree, self.tokens, self.language, discourse.command.resolved
+        )
         unused += unheeded(tree, self.tokens, self.language)
         try:
             plan = scoped(
@@ -145,7 +148,7 @@ class Reader:
             return self._doubted(doubt)
         plan = without_unused(plan)  # what came to nothing is lost, too
         plan = charging_last(returning(with_numbers(in_company(plan))))
-        resolved = discourse.resolved
+        resolved = discourse.command.resolved
         lost = left_out(tree, self.tokens, plan, self.language, self.lexicon, resolved)
         lost += unspoken(tree, self.tokens, plan, self.language, resolved)
         if lost:
@@ -175,9 +178,9 @@ class Reader:
             context=Context(
                 plan,
                 self.text,
-                thing=discourse.thing,
-                person=discourse.person,
-                place=discourse.place if isinstance(discourse.place, Text) else None,
+                thing=discourse.scene.thing,
+                person=discourse.scene.person,
+                place=discourse.scene.place if isinstance(discourse.scene.place, Text) else None,
                 source=_source(discourse),
                 before=self.context.referents(),
             ),
@@ -431,6 +434,10 @@ class Reader:
 
 def _source(discourse: Discourse) -> Value | None:
     """Where the thing spoken of was taken from, as far as that is a place by name."""
-    thing = discourse.thing
-    places = (thing.place if thing else None, discourse.at_pick_up, discourse.source)
+    thing = discourse.scene.thing
+    places = (
+        thing.place if thing else None,
+        discourse.scene.at_pick_up,
+        discourse.deliveries.source,
+    )
     return next((place for place in places if isinstance(place, Text)), None)

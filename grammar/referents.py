@@ -93,20 +93,6 @@ class Claim:
     """What was known besides (`known_by_now`): where more is found out, that is told instead."""
 
 
-@dataclass(frozen=True)
-class Branched:
-    """A condition that somebody or something is there: "if she is" may be said of it again."""
-
-    step: Step
-    scene: dict[str, Any]
-    """The scene in which it was checked."""
-    met: Meeting | None
-    answer: str | None
-    """The last answer that was known by then."""
-    assumed: bool = False
-    """Whether nothing was said of the other branch, and what is done there only assumed."""
-
-
 @dataclass
 class Round:
     """What is known of the round of places that is made, or was made last."""

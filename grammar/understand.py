@@ -65,7 +65,7 @@ def routine(d: Discourse, node: Node) -> Steps:
     if d.needs_start or node.end < len(d.tokens) - 1:
         d.variables.add(START)  # the sentence around may need the name
     steps = with_own_names(d, plan)
-    d.at = d.place = d.thing = d.person = d.with_person = None
+    d.scene.at = d.scene.place = d.scene.thing = d.scene.person = d.scene.with_person = None
     if steps and isinstance(steps[-1], Call) and steps[-1].method == "goto":
         place = steps[-1].arguments.get("place")
         if isinstance(place, Text):

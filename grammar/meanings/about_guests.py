@@ -15,7 +15,11 @@ from grammar.discourse import ANYONE, Discourse, Thing, Where
 
 def guest_spoken_of(d: Discourse) -> Thing | None:
     """Somebody without a name who was met or spoken of last."""
-    last = d.person if d.person is not None and not d.person.known else d.visitor
+    last = (
+        d.scene.person
+        if d.scene.person is not None and not d.scene.person.known
+        else d.people.visitor
+    )
     if last is None or last.me or last.group is not None or last.text in ("", ANYONE):
         return None
     return last
@@ -23,7 +27,7 @@ def guest_spoken_of(d: Discourse) -> Thing | None:
 
 def others_spoken_of(d: Discourse) -> bool:
     """Whether several people were spoken of last, whom "they" stands for in a message to one."""
-    last = d.person
+    last = d.scene.person
     return last is not None and not last.me and (last.plural or last.group is not None)
 
 
@@ -31,7 +35,7 @@ def guest_in(d: Discourse, receiver: Thing, start: int, end: int) -> dict[int, s
     """The word of a message that stands for the guest spoken of before, by its token, and the
     words for them: "he" of "he is there" is "the courier"."""
     data: dict[str, Any] | None = d.language.speech.get("guests")
-    guest: Thing | None = d.guest
+    guest: Thing | None = d.people.guest
     if data is None or guest is None or receiver.me or guest.value == receiver.value:
         return {}
     subject, *rest = d.norms(start, end)
@@ -48,11 +52,11 @@ def host_told(d: Discourse, node: Node) -> None:
     """ "There is a visitor for Clara. Tell her.": "her" is whom the visitor is for, as long as
     nothing was done with the visitor."""
     part = node.parts.get("person_ref")
-    host: Thing | None = d.host
+    host: Thing | None = d.people.host
     if host is None or d.done or part is None or what_it_means(part) != "person_pronoun":
         return
     if d.may_be(host, part.start, part.end):
-        d.person = host
+        d.scene.person = host
 
 
 def who_is_told(d: Discourse, node: Node) -> Thing | None:

@@ -104,32 +104,32 @@ def _speaks(step: object) -> bool:
 def undelivered(d: Discourse, person: Thing | None) -> Steps | None:
     """The message or question for whoever was not there, put to somebody else; None if there is
     none, or something was found out since."""
-    if d.undelivered is None or person is None or is_me(person) or person.group is not None:
+    if d.answers.undelivered is None or person is None or is_me(person) or person.group is not None:
         return None
-    node, known = d.undelivered
+    node, known = d.answers.undelivered
     if known != d.known_by_now():
         return None
     part = node.parts.get("person_ref")
     if not isinstance(part, Node):
         return None
-    d.undelivered = None
-    outer = d.bound.get(id(part))
-    d.bound[id(part)] = person
+    d.answers.undelivered = None
+    outer = d.rounds.bound.get(id(part))
+    d.rounds.bound[id(part)] = person
     try:
         steps: Steps = d.build(node)
-        d.claim = (
+        d.branch.claim = (
             None  # what is told from now on is what was asked, and not that they are not there
         )
     finally:
-        del d.bound[id(part)]
+        del d.rounds.bound[id(part)]
         if outer is not None:
-            d.bound[id(part)] = outer
+            d.rounds.bound[id(part)] = outer
     return steps
 
 
 def answer_variable(d: Discourse, options: tuple[str, ...]) -> str | None:
     """The name for an answer that somebody gives instead of another person: the same."""
-    if d.instead_of is None or d.answer_options != options:
+    if d.answers.instead_of is None or d.answers.options != options:
         return None
-    name, d.instead_of = d.instead_of, None
+    name, d.answers.instead_of = d.answers.instead_of, None
     return name

@@ -55,7 +55,7 @@ def side_by_side(d: Discourse, clause: Node) -> tuple[Node, Node | None]:
 def for_all(d: Discourse, chain: Node) -> Node:
     """A condition on an answer that stands last is one on all that the sentence says: "fetch it and
     bring it to him if he says yes"."""
-    if d.answer is None:
+    if d.answers.last is None:
         return chain
     before: list[Node] = []
     each = chain

@@ -70,14 +70,14 @@ def cannot_check(d: Discourse, node: Node) -> Condition:
 def about_answer(d: Discourse, node: Node) -> Condition | None:
     """The condition that some words are on the last answer; None if they say more than what was
     asked, or nothing is known of how it was answered."""
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
-    if survey is None or not survey.options or d.answer != survey.call.save_as:
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
+    if survey is None or not survey.options or d.answers.last != survey.call.save_as:
         return None
     try:
         meant = wanted_answer(d, survey, Said(node.start, node.end), strict=True)
     except NotUnderstood:
         return None
-    if in_loop(d, survey.call) and not d.in_loop:
+    if in_loop(d, survey.call) and not d.rounds.in_loop:
         return None
     return meant.given(survey)
 
@@ -87,7 +87,7 @@ def answered(d: Discourse, node: Node) -> Condition:
     """ "if they say yes", "if the answer is radiology"."""
     fixed = node.production.fixed
     put_as_question(d)
-    if d.answer is None:
+    if d.answers.last is None:
         raise NotUnderstood(d.language.phrase("no_question"))
     plain = "answer" in fixed and "text" not in node.parts
     literal = plain and d.language.phrase(str(fixed["answer"])) in d.norms(node.start, node.end)
@@ -115,21 +115,21 @@ def answered(d: Discourse, node: Node) -> Condition:
         return same_answers(d, node)
     silent = option_left_out(d, node) if plain and not literal else None
     if silent is not None:
-        return Compare(Recall(d.answer), "==", Text(silent))
-    for option in d.answer_options:
+        return Compare(Recall(d.answers.last), "==", Text(silent))
+    for option in d.answers.options:
         if option.lower() == wanted.lower():
-            return Compare(Recall(d.answer), "==", Text(option))
+            return Compare(Recall(d.answers.last), "==", Text(option))
     said = node.parts.get("text")
-    yes_no = set(d.answer_options) == {d.language.phrase("yes"), d.language.phrase("no")}
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
-    if said is not None and survey is not None and d.answer_options:
-        if not yes_no and survey.call.save_as == d.answer:
+    yes_no = set(d.answers.options) == {d.language.phrase("yes"), d.language.phrase("no")}
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
+    if said is not None and survey is not None and d.answers.options:
+        if not yes_no and survey.call.save_as == d.answers.last:
             return wanted_answer(d, survey, Said(said.start, said.end)).given(survey)
         if (asked_for := about_answer(d, node)) is not None:
             return asked_for
     if yes_no:
         ask_openly(d)
-    return Compare(Text(wanted), "in", Recall(d.answer))
+    return Compare(Text(wanted), "in", Recall(d.answers.last))
 
 
 def option_left_out(d: Discourse, node: Node) -> str | None:
@@ -138,30 +138,33 @@ def option_left_out(d: Discourse, node: Node) -> str | None:
     while end < len(d.tokens) and (d.tokens[end].norm,) in d.language.fillers:
         end += 1
     said = d.norms(node.start, end)
-    options = (each for each in d.answer_options if (each.lower(),) in d.language.fillers)
+    options = (each for each in d.answers.options if (each.lower(),) in d.language.fillers)
     return next((each for each in options if each.lower() in said), None)
 
 
 def ask_openly(d: Discourse) -> None:
     """The last question without its answers yes and no: "ask if they need anything; if they want
     water, ..." waits for more than these."""
-    last = next((each for each in reversed(d.surveys) if each.call.save_as == d.answer), None)
+    last = next(
+        (each for each in reversed(d.answers.surveys) if each.call.save_as == d.answers.last), None
+    )
     if last is None or not any(each is last.call for each in nodes(tuple(d.done))):
         return
     arguments = {name: each for name, each in last.call.arguments.items() if name != "options"}
     openly = Call(last.call.method, arguments, save_as=last.call.save_as)
     d.done[:] = exchanged(d.done, last.call, [openly])
-    d.surveys = [
-        replace(each, call=openly, options=()) if each is last else each for each in d.surveys
+    d.answers.surveys = [
+        replace(each, call=openly, options=()) if each is last else each
+        for each in d.answers.surveys
     ]
-    d.answer_options = ()
+    d.answers.options = ()
 
 
 def paired(d: Discourse, wanted: str) -> Condition | None:
     """The other answer to the question that the condition just before was on: "if she says yes, ask
     her whether ... If she says no, ..."."""
     step = d.done[-1] if d.done else None
-    if d.branched is None or step is not d.branched.step or not isinstance(step, If):
+    if d.branch.before is None or step is not d.branch.before.step or not isinstance(step, If):
         return None
     one = step.condition
     if step.otherwise or not isinstance(one, Compare) or one.operator != "==":
@@ -178,20 +181,24 @@ def yes_no_before(d: Discourse, *, so: bool = False) -> Survey | None:
     not: "if she says yes, ask her when: at 4 or at 5. If she says no, ..."."""
     yes_no = {d.language.phrase("yes"), d.language.phrase("no")}
     surveys = [each for each in asked_so_far(d) if not in_loop(d, each.call)]
-    if not surveys or set(surveys[-1].options) == yes_no or surveys[-1].call.save_as != d.answer:
+    if (
+        not surveys
+        or set(surveys[-1].options) == yes_no
+        or surveys[-1].call.save_as != d.answers.last
+    ):
         return None
-    if not surveys[-1].options and d.branched is None and not so:
+    if not surveys[-1].options and d.branch.before is None and not so:
         return None  # "no" may be an answer to an open question, too; "she has not" is none
     return next((each for each in reversed(surveys) if set(each.options) == yes_no), None)
 
 
 def asked_which(d: Discourse) -> bool:
     """Whether several people were asked last to choose, but not between yes and no."""
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
     yes_no = {d.language.phrase("yes"), d.language.phrase("no")}
     if survey is None or not survey.options or yes_no & set(survey.options):
         return False
-    return in_loop(d, survey.call) or len(d.surveys) > 1
+    return in_loop(d, survey.call) or len(d.answers.surveys) > 1
 
 
 def says_the_same(d: Discourse, words: str) -> bool:
@@ -210,30 +217,32 @@ def said_so(d: Discourse, no: bool, there_is_none: bool = False) -> Condition:
     agreed = just_agreed(d, no) or just_branched(d, no)
     if agreed is not None:
         return agreed
-    if d.round.stop is not None and in_round(
+    if d.rounds.round.stop is not None and in_round(
         d
     ):  # "check every lab for a cup. If there is none, ..."
-        if d.round.stop.thing is not None:
-            d.met = Meeting(d.round.stop.thing, holds=no == d.round.stop.denied)
-        return negated(d.round.stop.condition) if no else d.round.stop.condition
+        if d.rounds.round.stop.thing is not None:
+            d.branch.met = Meeting(
+                d.rounds.round.stop.thing, holds=no == d.rounds.round.stop.denied
+            )
+        return negated(d.rounds.round.stop.condition) if no else d.rounds.round.stop.condition
     looked = just_looked_for(d, None)
     if looked is not None:
-        person = d.person if not d.thing_last else None
-        if person is not None or d.thing is not None:
-            found_now = person or d.thing or Thing(Text(ANYONE))
-            d.met = Meeting(found_now, holds=not no, sought=not in_round(d))
+        person = d.scene.person if not d.scene.thing_last else None
+        if person is not None or d.scene.thing is not None:
+            found_now = person or d.scene.thing or Thing(Text(ANYONE))
+            d.branch.met = Meeting(found_now, holds=not no, sought=not in_round(d))
         return Not(looked) if no else looked
     delivery = delivered_last(d)
-    if delivery is not None and no and (d.answer is None or there_is_none):
-        d.met = Meeting(delivery.thing, holds=False, sought=True)
+    if delivery is not None and no and (d.answers.last is None or there_is_none):
+        d.branch.met = Meeting(delivery.thing, holds=False, sought=True)
         return Not(Holds(Ask("find", {"thing": delivery.thing.value})))
-    if d.answer is None:
-        about = d.report.thing if d.report is not None else None
+    if d.answers.last is None:
+        about = d.reports.last.thing if d.reports.last is not None else None
         looked = seen_there(d)
         known = checked(d) if looked is None else None
         if looked is not None or known is not None:
             if about is not None:
-                d.met = Meeting(about, holds=not no)
+                d.branch.met = Meeting(about, holds=not no)
             result = looked or Holds(known or Truth(True))
             return Not(result) if no else result
         raise NotUnderstood(d.language.phrase("no_question"))
@@ -242,10 +251,10 @@ def said_so(d: Discourse, no: bool, there_is_none: bool = False) -> Condition:
         return pair
     if (before := yes_no_before(d, so=True)) is not None:
         return before.said(wanted)
-    for option in d.answer_options:
+    for option in d.answers.options:
         if option.lower() == wanted.lower():
-            return Compare(Recall(d.answer), "==", Text(option))
-    return Compare(Text(wanted), "in", Recall(d.answer))
+            return Compare(Recall(d.answers.last), "==", Text(option))
+    return Compare(Text(wanted), "in", Recall(d.answers.last))
 
 
 @meaning("so")
@@ -258,14 +267,14 @@ def so(d: Discourse, node: Node) -> Condition:
 def answer_counts(d: Discourse, node: Node) -> Condition:
     """ "if it is more than seven": the answer, a number."""
     number = as_value(d.get(node, "number"))
-    found = d.report
-    counted = found is not None and found.name == "count" and d.answer is None
-    if counted and (isinstance(found.value, Recall) or found.place in (None, d.at)):
+    found = d.reports.last
+    counted = found is not None and found.name == "count" and d.answers.last is None
+    if counted and (isinstance(found.value, Recall) or found.place in (None, d.scene.at)):
         # "count the people, and if it is more than ten, ...": where they were counted
         return Compare(found.value, d.get(node, "operator", "=="), number)
-    if d.answer is None:
+    if d.answers.last is None:
         raise NotUnderstood(d.language.phrase("no_question"))
-    return Compare(Recall(d.answer), d.get(node, "operator", "=="), number)
+    return Compare(Recall(d.answers.last), d.get(node, "operator", "=="), number)
 
 
 @meaning("answers_many")
@@ -277,7 +286,7 @@ def answers_many(d: Discourse, node: Node) -> Condition:
 def so_many_said(d: Discourse, node: Node, said: Said | None) -> Condition:
     """Whether as many as a condition says gave an answer."""
     surveys = polled_before(d)
-    answer = d.said = yes(d) if said is None else wanted_answer(d, surveys[-1], said)
+    answer = d.answers.said = yes(d) if said is None else wanted_answer(d, surveys[-1], said)
     how = node.production.fixed.get("how")
     not_all = bool(node.production.fixed.get("no"))
     if how == "some" and asked_without_end(d, surveys[-1]):
@@ -318,10 +327,10 @@ def answer_is(d: Discourse, node: Node) -> Condition:
     asked_for = about_answer(d, node)  # "it is not finished"
     if asked_for is not None:
         return asked_for
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
     part = node.parts["text"]
     words = [norm for norm in d.norms(part.start, part.end) if norm not in d.language.closed]
-    if words and survey is not None and survey.call.save_as == d.answer:
+    if words and survey is not None and survey.call.save_as == d.answers.last:
         for option in survey.options:
             if [each for each in d.language.tokens_of(option) if each in words] == words:
                 return survey.said(option)
@@ -345,7 +354,7 @@ def people_asked(d: Discourse, surveys: list[Survey]) -> Value:
 @meaning("unanswered")
 def unanswered(d: Discourse, node: Node) -> Condition:
     """ "if he does not answer": the question is then put so that silence is an answer, too."""
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
     if survey is None or survey.call.save_as is None:
         raise NotUnderstood(d.language.phrase("no_question"))
     said = set(d.norms(node.start, node.end))

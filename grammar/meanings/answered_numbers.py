@@ -48,5 +48,5 @@ def _answered(d: Discourse, survey: Survey, telling: list[str]) -> bool:
 def of_answers(d: Discourse, node: Node) -> None:
     """Of those who were asked, only a number is told: "ask who wants tea and tell me how many"."""
     yes_no = {d.language.phrase("yes"), d.language.phrase("no")}
-    if node.production.fixed.get("many") and d.answer is not None and d.surveys:
-        d.polled_for = "many" if set(d.surveys[-1].options) == yes_no else "each"
+    if node.production.fixed.get("many") and d.answers.last is not None and d.answers.surveys:
+        d.answers.polled_for = "many" if set(d.answers.surveys[-1].options) == yes_no else "each"

@@ -22,7 +22,7 @@ def answer(d: Discourse, node: Node) -> Steps:
     if person is not None and person.plural and person.text != ANYONE:
         person = replace(person, plural=False)  # "the girls question" is the girl's
     known = node.parts.get("question_known")
-    if is_me(person) and known is None and d.answer is not None:
+    if is_me(person) and known is None and d.answers.last is not None:
         return tell_speaker(d)  # "come back and give me the answer"
     arguments: dict[str, Value] = {}
     if isinstance(known, Leaf):
@@ -34,10 +34,14 @@ def answer(d: Discourse, node: Node) -> Steps:
     if answered_already(d, node, person):
         return []
     spot: Where | None = d.get(node, "from") or d.get(node, "where")
-    if person is None and spot is None and known is None and d.person is not None:
-        elsewhere = d.person.place is not None and d.person.place != d.at and not d.person.plural
-        if elsewhere and not d.person.here and d.with_person != d.person.value:
-            person = d.person  # "the girl in the study has a question, please respond"
+    if person is None and spot is None and known is None and d.scene.person is not None:
+        elsewhere = (
+            d.scene.person.place is not None
+            and d.scene.person.place != d.scene.at
+            and not d.scene.person.plural
+        )
+        if elsewhere and not d.scene.person.here and d.scene.with_person != d.scene.person.value:
+            person = d.scene.person  # "the girl in the study has a question, please respond"
     if person is not None and spot is not None:
         person = replace(person, place=spot.place, here=False)
     if person is not None and "mods" in node.parts:  # "the man's question who is waving"
@@ -50,21 +54,25 @@ def answer(d: Discourse, node: Node) -> Steps:
             return [Call("goto", {"place": spot.place}), *steps]
         return [*steps]
     speaking = speak_to(d, person, [*steps])
-    d.claimed_question = speaking[-1] if node.production.fixed.get("claimed") else None
+    d.answers.claimed_question = speaking[-1] if node.production.fixed.get("claimed") else None
     return speaking
 
 
 def answered_already(d: Discourse, node: Node, person: Thing | None) -> bool:
     """ "the girl has a question, answer whatever she asks": it is the same."""
-    claimed = d.claimed_question
+    claimed = d.answers.claimed_question
     just = claimed is not None and bool(d.done) and d.done[-1] is claimed
-    same = person is None or person.pronoun or (d.person and person.value == d.person.value)
+    same = (
+        person is None
+        or person.pronoun
+        or (d.scene.person and person.value == d.scene.person.value)
+    )
     return just and not node.production.fixed.get("claimed") and bool(same)
 
 
 @meaning("listen")
 def listen(d: Discourse, node: Node) -> Steps:
-    d.heard = d.variable("heard")
-    d.answer = d.heard
-    d.answer_options = ()
-    return [Call("listen", {}, save_as=d.heard)]
+    d.answers.heard = d.variable("heard")
+    d.answers.last = d.answers.heard
+    d.answers.options = ()
+    return [Call("listen", {}, save_as=d.answers.heard)]

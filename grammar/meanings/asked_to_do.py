@@ -21,7 +21,7 @@ def ask_to(d: Discourse, node: Node) -> Steps:
     part = node.parts.get("text")
     # Whoever else is spoken of is not the one who is asked: "sie soll ihn mir bringen".
     person: Thing | None = guest_for(d, node.parts.get("person_ref"), d.get(node, "person_ref"))
-    d.message = node
+    d.answers.message = node
     if part is not None and verb_never(d, part.start):
         raise NotUnderstood(d.language.phrase("not_understood", part=d.words(part.start, part.end)))
     kinds = ("to_you_asked", "to_you_who", "to_you")
@@ -53,7 +53,7 @@ def ask_to(d: Discourse, node: Node) -> Steps:
     saying = Call("say", {"text": request})
     steps = speak_to(d, person, [saying])
     if "phrase" not in node.production.fixed and isinstance(words, Text):
-        d.request = Request(saying, words.value, person)
+        d.answers.request = Request(saying, words.value, person)
     return steps
 
 
@@ -83,6 +83,6 @@ def manner_within(d: Discourse, node: Node, verb: Leaf | Node | None) -> str:
         words = tuple(d.language.tokens_of(way))
         for at in range(max(begun, default=node.start), last + 1):
             if tuple(d.norms(at, min(at + len(words), len(d.tokens)))) == words:
-                d.resolved.update(range(at, at + len(words)))
+                d.command.resolved.update(range(at, at + len(words)))
                 return d.words(at, at + len(words))
     return ""

@@ -63,7 +63,7 @@ def audience(d: Discourse, person: Thing | None) -> Audience:
     person = where_sent(d, person)
     if person.group is not None or person.count is not None:
         way = go(d, person.place) if person.place is not None else []
-        d.person = replace(person, here=True)
+        d.scene.person = replace(person, here=True)
         return Audience(person, way, several=True)
     if person.plural and (person.text == ANYONE or person.every):  # "ask each of them"
         way = go(d, person.place) if person.place is not None else []
@@ -74,10 +74,10 @@ def audience(d: Discourse, person: Thing | None) -> Audience:
     sought = particular(person) and not is_here(d, person)
     if person.known or person.first or person.place is not None or sought:
         way = meet(d, person)
-        if sought and not way and d.with_person != person.value:  # "ask the nurse"
-            d.with_person = person.value
+        if sought and not way and d.scene.with_person != person.value:  # "ask the nurse"
+            d.scene.with_person = person.value
             way = [found(d, person)]
-    d.person = person if not person.first else d.person
+    d.scene.person = person if not person.first else d.scene.person
     return Audience(person, way)
 
 
@@ -100,14 +100,22 @@ def put(
     if whom.many:
         return [*steps, *_to_each(d, person, call, options, nouns)]
     known = person.value if person is not None and person.known else None
-    if person is None and isinstance(d.with_person, Recall):  # whose turn it is in a round
-        known = d.with_person
+    if person is None and isinstance(d.scene.with_person, Recall):  # whose turn it is in a round
+        known = d.scene.with_person
         call = _to(call, known)
-    elif person is None and isinstance(d.with_person, Text) and d.with_person.value in d.named:
-        known = d.with_person  # whoever was spoken to before
-    who_else = d.place if d.in_loop and isinstance(d.place, Recall) and d.place == d.at else None
+    elif (
+        person is None
+        and isinstance(d.scene.with_person, Text)
+        and d.scene.with_person.value in d.people.named
+    ):
+        known = d.scene.with_person  # whoever was spoken to before
+    who_else = (
+        d.scene.place
+        if d.rounds.in_loop and isinstance(d.scene.place, Recall) and d.scene.place == d.scene.at
+        else None
+    )
     asking = asked(d, call, options, known or who_else, nouns)
-    if known is None and who_else is not None and not is_me(person) and d.with_person is None:
+    if known is None and who_else is not None and not is_me(person) and d.scene.with_person is None:
         # A round comes to places where nobody is.
         anyone = Text(ANYONE) if person is None else person.value
         return [*steps, If(Holds(Ask("sees", {"thing": anyone})), (asking,))]
@@ -131,7 +139,7 @@ def _to_each(
     asking = asked(d, _to(call, who), options, who, nouns)
     if group is None or isinstance(group, Ask):
         return [ForEach(who.name, group or Ask("people"), (asking,))]
-    d.at = d.with_person = None
+    d.scene.at = d.scene.with_person = None
     return [ForEach(who.name, group, tuple(if_found(d, who, [asking])))]
 
 
@@ -147,9 +155,9 @@ def asked(
     nouns: frozenset[str] = frozenset(),
 ) -> Call:
     """Remember a question, so that its answers can be reported."""
-    round_at = d.place if d.in_loop and isinstance(d.place, Recall) else None
-    d.request = None
-    d.surveys.append(Survey(call, options, who, round_at, nouns))
+    round_at = d.scene.place if d.rounds.in_loop and isinstance(d.scene.place, Recall) else None
+    d.answers.request = None
+    d.answers.surveys.append(Survey(call, options, who, round_at, nouns))
     return call
 
 
@@ -158,10 +166,12 @@ def remember_answer(d: Discourse, options: tuple[str, ...], name: str) -> str:
     places = {each for place in d.lexicon.places for each in (place.name, d.called(place.name))}
     if options and all(option in places for option in options):
         variable = answer_variable(d, options) or d.variable("place")
-        d.place = Recall(variable)
+        d.scene.place = Recall(variable)
     else:
         variable = answer_variable(d, options) or d.variable(name)
-    d.answer = variable
-    d.answer_options = options
-    d.report = d.news = d.checked = d.polled_for = d.said = None
+    d.answers.last = variable
+    d.answers.options = options
+    d.reports.last = d.reports.news = d.reports.checked = d.answers.polled_for = d.answers.said = (
+        None
+    )
     return variable

@@ -48,9 +48,11 @@ from grammar.tidy import BODIES, LOOPS, nodes
 @meaning("answers_reached")
 def answers_reached(d: Discourse, node: Node) -> Condition:
     """ "until three of them say yes": the loop around counts the answers."""
-    if not d.surveys:
+    if not d.answers.surveys:
         raise NotUnderstood(d.language.phrase("no_question"))
-    if not d.in_loop and asked_so_far(d):  # "if one of them says no": all have answered by now
+    if not d.rounds.in_loop and asked_so_far(
+        d
+    ):  # "if one of them says no": all have answered by now
         return reached(d, node)
     return counting_to(d, node)
 
@@ -59,7 +61,7 @@ def counting_to(d: Discourse, node: Node) -> Compare:
     """Whether so many have answered by now, as the loop around is to count."""
     answer = d.get(node, "answer")
     name = d.variable("answers" if answer is None else f"said_{answer}")
-    d.counting = (d.surveys[-1], None if answer is None else str(answer), name)
+    d.answers.counting = (d.answers.surveys[-1], None if answer is None else str(answer), name)
     return Compare(Recall(name), ">=", Number(int(d.get(node, "count"))))
 
 
@@ -68,7 +70,7 @@ def reached(d: Discourse, node: Node) -> Condition:
     surveys = polled_before(d)
     said = d.get(node, "answer")
     wanted = None if said is None else Wanted((str(said),))
-    d.said = wanted
+    d.answers.said = wanted
     number = int(d.get(node, "count"))
     if wanted is not None and number == 1 and asked_without_end(d, surveys[-1]):
         return wanted.given(surveys[-1])
@@ -80,10 +82,10 @@ def reached(d: Discourse, node: Node) -> Condition:
 def until_answered(d: Discourse, condition: Condition, body: Steps) -> Steps:
     """A loop that goes on until a condition holds; if that is how many have answered, each round is
     with the next person, and those who are known by name are asked once."""
-    if d.counting is None:
+    if d.answers.counting is None:
         return [RepeatUntil(condition, tuple(body))]
-    survey, answer, name = d.counting
-    d.counting = None
+    survey, answer, name = d.answers.counting
+    d.answers.counting = None
     count: Step = Increase(name)
     if answer is not None:
         count = If(survey.said(answer), (count,))
@@ -99,7 +101,7 @@ def until_answered(d: Discourse, condition: Condition, body: Steps) -> Steps:
     waits = any(isinstance(step, Call) and step.method == "wait_for" for step in steps)
     nameless = survey.who is None or loop is not None
     if any(step is survey.call for step in steps) and nameless and not waits:
-        who = d.person.value if d.person is not None else Text("person")
+        who = d.scene.person.value if d.scene.person is not None else Text("person")
         at = next(at for at, step in enumerate(steps) if step is survey.call)
         arguments = {key: each for key, each in survey.call.arguments.items() if key != "person"}
         asking = msgspec.structs.replace(survey.call, arguments=arguments)
@@ -112,10 +114,10 @@ def until_answered(d: Discourse, condition: Condition, body: Steps) -> Steps:
 def the_last_one(d: Discourse) -> None:
     """Whoever stands before the robot when somebody has said so is who is spoken of next: "ask
     people until one agrees, then take them to Clara's office"."""
-    person = d.person or Thing(Text(ANYONE), person=True)
+    person = d.scene.person or Thing(Text(ANYONE), person=True)
     one = replace(person, place=None, group=None, count=None, every=False, plural=False)
-    d.person, d.thing_last = replace(one, here=True, coming=False), False
-    d.with_person = one.value
+    d.scene.person, d.scene.thing_last = replace(one, here=True, coming=False), False
+    d.scene.with_person = one.value
 
 
 @meaning("stop_asking")
@@ -128,8 +130,8 @@ def stop_asking(d: Discourse, node: Node) -> Steps:
 def stops_asking(d: Discourse, node: Node) -> bool:
     """Whether something is said to be done as soon as so many have answered, while others are still
     to be asked."""
-    reached = _reached(node) is not None and bool(asked_so_far(d)) and not d.in_loop
-    return reached and in_loop(d, d.surveys[-1].call)
+    reached = _reached(node) is not None and bool(asked_so_far(d)) and not d.rounds.in_loop
+    return reached and in_loop(d, d.answers.surveys[-1].call)
 
 
 def as_soon_as_answered(d: Discourse, node: Node) -> Steps:
@@ -140,8 +142,11 @@ def as_soon_as_answered(d: Discourse, node: Node) -> Steps:
     if one and not endless and isinstance(survey.who, Recall) and survey.where is None:
         who = d.variable("who")
         note(d, survey.call, [Remember(who, survey.who)], [Remember(who, Text(""))])
-        d.person, d.thing_last = Thing(Recall(who), known=True, person=True, here=True), False
-        d.with_person = Recall(who)
+        d.scene.person, d.scene.thing_last = (
+            Thing(Recall(who), known=True, person=True, here=True),
+            False,
+        )
+        d.scene.with_person = Recall(who)
     then: Steps = d.build(node.parts["then"])
     return then if endless else [If(condition, tuple(then))]
 
@@ -163,20 +168,20 @@ def stopped_when(d: Discourse, node: Node) -> tuple[Survey, Compare]:
     part = _reached(node)
     assert part is not None
     condition = counting_to(d, part)
-    counting = survey, answer, name = d.counting
-    d.counting = None
+    counting = survey, answer, name = d.answers.counting
+    d.answers.counting = None
     if not in_loop(d, survey.call):
         raise NotUnderstood(d.language.phrase("no_question"))
     at = next((at for at, each in enumerate(d.done) if isinstance(each, Forever)), None)
     endless = d.done[at] if at is not None else None
     if isinstance(endless, Forever) and at is not None and is_in(endless, survey.call):
-        d.counting = counting
+        d.answers.counting = counting
         d.done[at : at + 1] = until_answered(d, condition, list(endless.steps))
         return survey, condition
     count: Step = Increase(name)
     if answer is not None:
         count = If(survey.said(answer), (count,))
-        d.said, d.polled_for = Wanted((answer,)), "who"  # "... and tell me"
+        d.answers.said, d.answers.polled_for = Wanted((answer,)), "who"  # "... and tell me"
     leave = If(condition, (End(),))
     noted = noting(_left_when(d.done, survey.call, leave), survey.call, [count, leave])
     d.done[:] = [Remember(name, Number(0)), *noted]

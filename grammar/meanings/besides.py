@@ -19,8 +19,8 @@ from grammar.plan import Condition, If, Items, Not, Recall, Step, Text
 def answered_besides(d: Discourse, node: Node) -> Condition:
     """ "if she is not sure", "if he has no preference": said instead of an answer that was asked
     for, and offered as one from then on."""
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
-    if survey is None or d.answer is None or survey.call.save_as != d.answer:
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
+    if survey is None or d.answers.last is None or survey.call.save_as != d.answers.last:
         raise NotUnderstood(d.language.phrase("no_question"))
     yes_no = {d.language.phrase("yes"), d.language.phrase("no")}
     phrase = str(node.production.fixed["phrase"])
@@ -49,8 +49,8 @@ def with_answer(d: Discourse, survey: Survey, besides: str) -> Survey:
         steps[:] = exchanged(steps, survey.call, [call])
         steps[:] = [_no_else(d, survey, each) for each in steps]
     anew = replace(survey, call=call, options=options)
-    d.surveys = [anew if each is survey else each for each in d.surveys]
-    d.answer_options = options
+    d.answers.surveys = [anew if each is survey else each for each in d.answers.surveys]
+    d.answers.options = options
     return anew
 
 
@@ -70,14 +70,14 @@ def _no_else(d: Discourse, survey: Survey, step: Step) -> Step:
 def person_answered(d: Discourse, node: Node) -> Thing:
     """ "ask Alice who has the key and ask that person for it": whom the answer names; where nobody
     was asked for, whoever is spoken of."""
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
     question = survey.call.arguments["question"] if survey is not None else None
     words = d.language.tokens_of(question.value) if isinstance(question, Text) else ()
     who = set(d.language.speech.get("asks_somebody", ())) & set(words[:2])
     if survey is not None and survey.call.save_as is not None and who and not survey.options:
         named = Thing(Recall(survey.call.save_as), known=True, person=True)
-        d.person, d.thing_last = named, False
+        d.scene.person, d.scene.thing_last = named, False
         return named
-    if d.person is None or d.person.plural or node.end - node.start > 2:
+    if d.scene.person is None or d.scene.person.plural or node.end - node.start > 2:
         raise NotUnderstood(d.language.phrase("no_question"))
-    return replace(d.person, here=d.with_person == d.person.value)
+    return replace(d.scene.person, here=d.scene.with_person == d.scene.person.value)

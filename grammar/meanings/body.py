@@ -23,7 +23,7 @@ def show(d: Discourse, node: Node) -> Steps:
         return [Call("show", {"url": Text(address)})]
     quote = node.parts.get("quote")
     part = quote or node.parts.get("text")
-    if part is None and d.answer is not None and each_asked(d) is not None:
+    if part is None and d.answers.last is not None and each_asked(d) is not None:
         return on_screen(d)  # of all who were asked
     if part is None:
         return [Call("show", {"text": Recall(found_out(d))})]
@@ -45,7 +45,7 @@ def show_fact(d: Discourse, node: Node) -> Steps:
 
 def found_out(d: Discourse) -> str:
     """The variable with what was found out last; what would have been said of it is not."""
-    name = d.answer or d.code or kept(d)
+    name = d.answers.last or d.answers.code or kept(d)
     if name is None:
         raise NotUnderstood(d.language.phrase("show_what"))
     return name

@@ -61,6 +61,7 @@ from grammar.meanings.searches import (
 )
 from grammar.meanings.speaking import clause_of
 from grammar.meanings.turns import in_their_turn, of_whoever_says_so
+from grammar.memory import Scene
 from grammar.plan import (
     Ask,
     Call,
@@ -91,7 +92,7 @@ def if_(d: Discourse, node: Node) -> Steps:
     of_one = of_whoever_says_so(d, node)
     before_it, condition = condition_of(d, node) if of_one is None else ([], of_one)
     condition = in_their_turn(d, node, condition)
-    met = d.met
+    met = d.branch.met
     if node.production.fixed.get("either") and only_told(node.parts["then"]):
         return found_out_either_way(d, node, before_it, condition)
     if node.production.fixed.get("unless"):
@@ -118,16 +119,16 @@ def if_(d: Discourse, node: Node) -> Steps:
         if delivery is None:
             kept_back = kept_in_hand(d) or []
             handed = [] if gives_it(node.parts["then"]) else kept_back
-    start = d.scene()
-    known = d.answer
+    start = d.scene.copy()
+    known = d.answers.last
     then = branch(d, node.parts["then"], met, claim_of(d, node, condition, met))
-    after = d.scene()
-    d.set_scene(start)
-    asked = d.answer is not None and d.answer != known
+    after = d.scene.copy()
+    d.scene = start.copy()
+    asked = d.answers.last is not None and d.answers.last != known
     denied = node.parts.get("otherwise_denied")
-    openly = bool(d.surveys) and not d.surveys[-1].options
+    openly = bool(d.answers.surveys) and not d.answers.surveys[-1].options
     if asked and denied is not None and openly and isinstance(condition, Compare):
-        asked, d.answer = False, known  # "ask her where; if she has not, ..."
+        asked, d.answers.last = False, known  # "ask her where; if she has not, ..."
     none, found = node.parts.get("otherwise_none"), node.parts.get("otherwise_so")
     if asked and denied is None and denies(d, condition):
         # "if not, ask Bob, and if he doesn't have one either, ask Clara": it is Bob who denies it
@@ -137,16 +138,16 @@ def if_(d: Discourse, node: Node) -> Steps:
         # "if it is not in the lab, look in the store; if it is not there either, ...": both are so
         further = searched_on(d, then, part, after, no=part is none)
     if further is not None:
-        then, part, after = further, None, d.scene()
+        then, part, after = further, None, d.scene.copy()
     else:
         part = other_branch(d, node, condition) or denied
     if asked and denied is not None:
         # "if Bob is there, ask him whether he has time. If he does not, ...": that is his answer.
-        scene = d.scene()
-        d.set_scene(after)
+        scene = d.scene.copy()
+        d.scene = after.copy()
         said_no = said_so(d, no=True)
         then = [*then, If(said_no, tuple(branch(d, denied, None, None)))]
-        d.set_scene(scene)
+        d.scene = scene.copy()
     otherwise: Steps = []
     if part is not None and not (asked and part is denied):
         led_from_here(d, then, after)
@@ -158,7 +159,7 @@ def if_(d: Discourse, node: Node) -> Steps:
     if handed:
         then = then if hands_it_over(node.parts["then"]) else [*handed, *then]
         otherwise = otherwise if hands_it_over(part) else [*handed, *otherwise]
-        d.holding = None
+        d.scene.holding = None
         # Who is not found is in no state, either.
         looked = searched(d.done[-1]) if d.done and not before_it else None
         if looked is not None and delivery is not None and delivery.person is not None:
@@ -176,25 +177,25 @@ def if_(d: Discourse, node: Node) -> Steps:
         whole, told = told_in_any_case(d, whole)
         if told:
             return [*before_it, *counted, whole, *told]
-    d.branched = Branched(whole, start, met, d.answer, assumed)
+    d.branch.before = Branched(whole, start, met, d.answers.last, assumed)
     return [*before_it, *counted, whole]
 
 
-def led_from_here(d: Discourse, then: Steps, after: dict[str, object]) -> None:
+def led_from_here(d: Discourse, then: Steps, after: Scene) -> None:
     """ "if a room is free, take the visitors there. Otherwise tell them to wait": they are where
     the robot would have come back for them."""
-    led = after["led"]
+    led = after.led
     back = [at for at, each in enumerate(then) if each == BACK]
     after_it = then[back[-1] :] if back else []
     guided = any(isinstance(each, Call) and each.method == "guide" for each in after_it)
-    if guided and isinstance(led, Thing) and d.person != led:
-        d.person, d.thing_last = replace(led, here=False, place=Recall(START)), False
+    if guided and isinstance(led, Thing) and d.scene.person != led:
+        d.scene.person, d.scene.thing_last = replace(led, here=False, place=Recall(START)), False
 
 
 def is_other_case(d: Discourse, condition: Condition, met: Meeting | None) -> bool:
     """Whether a condition is the case of the one before of which nothing was said yet: "if she is
     in, give it to her. If nobody is in, ..."."""
-    before = d.branched
+    before = d.branch.before
     last = d.done[-1] if d.done else None
     if before is None or last is not before.step or not isinstance(last, If):
         return False
@@ -208,9 +209,9 @@ def is_other_case(d: Discourse, condition: Condition, met: Meeting | None) -> bo
 def as_said_now(d: Discourse, node: Node, condition: Condition, met: Meeting | None) -> If:
     """ "if she is in, give it to her. If she is out, leave it on the desk": instead of what was
     assumed to be done then."""
-    before = d.branched
+    before = d.branch.before
     assert before is not None
-    d.set_scene(before.scene)
+    d.scene = before.scene.copy()
     otherwise = branch(d, node.parts["then"], met, claim_of(d, node, condition, met))
     first = d.done.pop()
     assert isinstance(first, If)
@@ -244,10 +245,10 @@ def if_found_so(d: Discourse, node: Node, search: Search) -> Steps:
     d.done.pop()
     thing = thing_sought(d, search.found)
     met = Meeting(replace(thing, pronoun=False, place=None), holds=True, sought=True)
-    start = d.scene()
+    start = d.scene.copy()
     then = branch(d, node.parts["then"], met, found_claim(d, search.found, met))
-    after = d.scene()
-    d.set_scene(start)
+    after = d.scene.copy()
+    d.scene = start.copy()
     claim = found_claim(d, search.found, turned(met))
     otherwise = branch(d, node.parts["otherwise"], turned(met), claim)
     leave_off(d, after)
@@ -266,7 +267,7 @@ def only_told(part: Leaf | Node | None) -> bool:
 
 def found_out_either_way(d: Discourse, node: Node, before_it: Steps, condition: Condition) -> Steps:
     """ "see if there is a mug, then come back and tell me": also if there is none."""
-    met, part = d.met, node.parts["condition"]
+    met, part = d.branch.met, node.parts["condition"]
     clause = clause_of(d, part)
     yes = found_claim(d, condition, met) or d.say("so_it_is", clause=clause)
     no = found_claim(d, condition, turned(met)) or d.say("not_so", clause=clause)
@@ -275,12 +276,12 @@ def found_out_either_way(d: Discourse, node: Node, before_it: Steps, condition: 
     if isinstance(condition, Holds) and isinstance(condition.value, Ask):
         noted = [Remember(name, condition.value)]
     words: Steps = [If(Holds(Recall(name)), (yes,), (no,))]
-    d.report, d.checked = None, name
+    d.reports.last, d.reports.checked = None, name
     d.done += [*before_it, *noted]
-    d.news = News(words, True, waiting=True)
+    d.reports.news = News(words, True, waiting=True)
     told: Steps = d.build(node.parts["then"])
-    if d.news.waiting:  # "..., then come back": to say it
-        d.news, d.told = News(words, True), words[-1]
+    if d.reports.news.waiting:  # "..., then come back": to say it
+        d.reports.news, d.reports.told = News(words, True), words[-1]
         return [*told, *words]
     return told
 
@@ -293,9 +294,12 @@ def other_hands_it_over(node: Node) -> bool:
 
 def failing(d: Discourse, node: Node, taken: Taken, met: Meeting) -> Steps:
     """A delivery, and what is done if that is not possible: "if there is no coffee, bring tea"."""
-    after = d.scene()
-    outer, d.meant_for = d.meant_for, d.meant_for if met.thing.person else taken.delivery
-    place = met.thing.place or taken.delivery.thing.place or taken.delivery.before["at"]
+    after = d.scene.copy()
+    outer, d.deliveries.meant_for = (
+        d.deliveries.meant_for,
+        d.deliveries.meant_for if met.thing.person else taken.delivery,
+    )
+    place = met.thing.place or taken.delivery.thing.place or taken.delivery.before.at
     lost = met if met.thing.person else replace(met, thing=replace(met.thing, place=place))
     claim = found_claim(d, taken.condition, lost)
     if "then" in node.parts:
@@ -303,7 +307,7 @@ def failing(d: Discourse, node: Node, taken: Taken, met: Meeting) -> Steps:
     else:
         meet_there(d, lost)
         otherwise = told_so(d, node, claim)
-    d.meant_for = outer
+    d.deliveries.meant_for = outer
     leave_off(d, after)
     names = ("otherwise", "otherwise_not", "otherwise_none")
     part = next((node.parts[name] for name in names if name in node.parts), None)
@@ -321,7 +325,7 @@ def told_in_any_case(d: Discourse, step: If) -> tuple[If, Steps]:
     Bob and then come back and tell me what they said"."""
     then = list(step.then)
     asking = [at for at, each in enumerate(then) if _asks(each)]
-    polls = [Recall(name) for name in d.notes.values()]
+    polls = [Recall(name) for name in d.answers.notes.values()]
     at = next(
         (at for at in range(asking[-1] + 1, len(then)) if _leads_to_telling(then[at], polls))
         if asking
@@ -346,25 +350,30 @@ def _leads_to_telling(step: Step, polls: list[Recall]) -> bool:
 def as_before(d: Discourse, condition: Condition) -> None:
     """Go back to the scene of the condition just before if only one of the two can be: "if she says
     no, tell Bob. If she says yes, ask her ...", for whom nobody has left."""
-    before = d.branched
+    before = d.branch.before
     last = d.done[-1] if d.done else None
     if before is None or last is not before.step or not isinstance(last, If):
         return
     if excludes(last, If(condition, ())):
-        d.set_scene(before.scene)
+        d.scene = before.scene.copy()
 
 
 def absent(
     d: Discourse, node: Node, kept: Addressed, met: Meeting, make: Callable[[], Steps]
 ) -> Steps:
     """What was done with somebody, if they are there, and what is done if not."""
-    after, options, known = d.scene(), d.answer_options, d.answer
+    after, options, known = d.scene.copy(), d.answers.options, d.answers.last
     asked = any(isinstance(each, Call) and each.save_as == known for each in kept.steps)
-    outer = d.undelivered, d.instead_of
-    d.undelivered = None if d.message is None else (d.message, d.known_by_now())
-    d.instead_of = known if asked else None
+    outer = d.answers.undelivered, d.answers.instead_of
+    d.answers.undelivered = (
+        None if d.answers.message is None else (d.answers.message, d.known_by_now())
+    )
+    d.answers.instead_of = known if asked else None
     claim = claim_of(d, node, Holds(Truth(False)), met)
-    d.claim, before = None if claim is None else Claim(claim, d.known_by_now()), d.claim
+    d.branch.claim, before = (
+        None if claim is None else Claim(claim, d.known_by_now()),
+        d.branch.claim,
+    )
     meet_there(d, met)
     otherwise = tried_there(d, d.sequence(lambda: d.done.extend(make())), met.thing, kept)
     part = other_branch(d, node, Not(kept.condition)) or node.parts.get("otherwise_denied")
@@ -373,16 +382,16 @@ def absent(
     if neither is not None and part is neither and isinstance(last, If) and only_told_missing(last):
         in_vain = d.sequence(lambda: d.done.extend(d.build(neither)))
         otherwise[-1], part = structs_replace(last, otherwise=tuple(in_vain)), None
-    d.claim, (d.undelivered, d.instead_of) = before, outer
-    elsewhere = d.scene()
-    d.set_scene(after)
+    d.branch.claim, (d.answers.undelivered, d.answers.instead_of) = before, outer
+    elsewhere = d.scene.copy()
+    d.scene = after.copy()
     then = list(kept.steps)
     if part is not None:
-        answer, d.answer, d.answer_options = d.answer, known, options
+        answer, d.answers.last, d.answers.options = d.answers.last, known, options
         then = d.sequence(lambda: _go_on(d, then, part))
-        d.answer = d.answer or answer
-        after = d.scene()
-    d.set_scene(elsewhere)
+        d.answers.last = d.answers.last or answer
+        after = d.scene.copy()
+    d.scene = elsewhere.copy()
     leave_off(d, after)
     otherwise, told = told_by_either(otherwise, Recall(known) if asked and known else None)
     return [kept.or_else(then, otherwise), *told]
@@ -418,19 +427,19 @@ def _go_on(d: Discourse, before: Steps, part: Leaf | Node) -> None:
 
 
 def searched_on(
-    d: Discourse, steps: Steps, part: Leaf | Node, scene: dict[str, object], *, no: bool
+    d: Discourse, steps: Steps, part: Leaf | Node, scene: Scene, *, no: bool
 ) -> Steps | None:
     """The steps of a branch that ends with a search, and what is done if that finds something, or
     is in vain, too."""
     if not steps or searched(steps[-1]) is None:
         return None
     outer, d.done = d.done, list(steps)
-    before = d.scene()
-    d.set_scene(scene)
+    before = d.scene.copy()
+    d.scene = scene.copy()
     condition = said_so(d, no=no, there_is_none=no)
-    inner = branch(d, part, d.met, None)
+    inner = branch(d, part, d.branch.met, None)
     found, d.done = d.done, outer
-    d.set_scene(before)
+    d.scene = before.copy()
     return [*found, If(condition, tuple(inner))]
 
 
@@ -476,8 +485,8 @@ def _with_more(d: Discourse, step: If, clause: Node) -> If | None:
         return None if inner is None else structs_replace(step, **{name: (*body[:-1], inner)})
     outer, d.done = d.done, body
     looked = searches(search)
-    d.place = looked[-1].arguments.get("place", d.place)
-    d.at = d.place if len(looked) == 1 else None
+    d.scene.place = looked[-1].arguments.get("place", d.scene.place)
+    d.scene.at = d.scene.place if len(looked) == 1 else None
     more = d.build(clause)
     done, d.done = [*d.done, *more], outer
     return structs_replace(step, **{name: tuple(done)})
@@ -499,10 +508,10 @@ def other_branch(d: Discourse, node: Node, condition: Condition) -> Leaf | Node 
 def branch(d: Discourse, part: Leaf | Node, met: Meeting | None, claim: Step | None) -> Steps:
     """The steps of one branch; `claim` says what is so in it."""
     meet_there(d, met)
-    outer = d.claim
-    d.claim = None if claim is None else Claim(claim, d.known_by_now())
+    outer = d.branch.claim
+    d.branch.claim = None if claim is None else Claim(claim, d.known_by_now())
     steps: Steps = d.build(part)
-    d.claim = outer
+    d.branch.claim = outer
     return steps
 
 

@@ -27,32 +27,38 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
     """Find a thing and take it; nothing if it is in the hand by what was said."""
     if thing.person:
         raise NotUnderstood(d.language.phrase("what_is_it", word=thing.text))
-    if d.holding == thing.value or handed_over(d, thing):
+    if d.scene.holding == thing.value or handed_over(d, thing):
         return []
     take_back_delivery(d, thing)
     thing = where_seen(d, thing)
-    if d.holding == thing.value:
+    if d.scene.holding == thing.value:
         return []
     last = d.done[-1] if d.done else None
     another = thing.place is not None and not thing.pronoun
     if last == Call("put", {"thing": thing.value}) and not another:
         d.done.pop()  # "take the cup to the kitchen and give it to Alex": never put down
         return []
-    if thing.pronoun and thing.value in d.now_at:
-        thing = replace(thing, place=d.now_at[thing.value], furniture=None, here=False)
+    if thing.pronoun and thing.value in d.scene.now_at:
+        thing = replace(thing, place=d.scene.now_at[thing.value], furniture=None, here=False)
     search = search_of(last)
     looked = search is not None and search.is_for(d, thing)  # "find the cup and bring it to me"
-    sought_somebody = d.at == d.looked_in and (d.with_person is not None or not d.thing_last)
-    for_somebody = d.at_people or sought_somebody  # "if Bob is in the lobby, bring him a cup"
-    lacking = d.missing is not None and d.missing.value == thing.value  # "if there is none, ..."
-    nearby = d.at is not None and not (for_somebody or lacking) and thing.place is None
+    sought_somebody = d.scene.at == d.scene.looked_in and (
+        d.scene.with_person is not None or not d.scene.thing_last
+    )
+    for_somebody = (
+        d.rounds.at_people or sought_somebody
+    )  # "if Bob is in the lobby, bring him a cup"
+    lacking = (
+        d.scene.missing is not None and d.scene.missing.value == thing.value
+    )  # "if there is none, ..."
+    nearby = d.scene.at is not None and not (for_somebody or lacking) and thing.place is None
     # What somebody asked for is anywhere, and so is what is to be brought after coming back.
-    nearby = nearby and not wished_for(d, thing) and d.at != Recall(START)
-    nearby = nearby and not (only_delivered(d) and thing.value not in d.now_at)
-    is_here = thing.here or nearby or (d.at is not None and thing.place == d.at)
+    nearby = nearby and not wished_for(d, thing) and d.scene.at != Recall(START)
+    nearby = nearby and not (only_delivered(d) and thing.value not in d.scene.now_at)
+    is_here = thing.here or nearby or (d.scene.at is not None and thing.place == d.scene.at)
     steps: Steps = [] if looked or is_here else look_for(d, thing)
-    d.holding = thing.value
-    d.thing, d.thing_last = thing, True
+    d.scene.holding = thing.value
+    d.scene.thing, d.scene.thing_last = thing, True
     return [*steps, Call("grab", {"thing": sought(d, thing)})]
 
 
@@ -70,7 +76,7 @@ def wished_for(d: Discourse, thing: Thing) -> bool:
     """Whether somebody was asked for it, or if they want it: "if she needs a chair, bring one"."""
     if isinstance(thing.value, Recall):
         return True
-    question = d.surveys[-1].call.arguments["question"] if d.surveys else None
+    question = d.answers.surveys[-1].call.arguments["question"] if d.answers.surveys else None
     words = question.value.lower() if isinstance(question, Text) else ""
     return bool(thing.text) and f" {thing.text.lower()}" in words
 
@@ -78,7 +84,7 @@ def wished_for(d: Discourse, thing: Thing) -> bool:
 def where_seen(d: Discourse, thing: Thing) -> Thing:
     """A thing at the place that was only looked at for it: "see whether there is a cup in the
     kitchen and bring it to me"."""
-    about = d.report.thing if d.report is not None else None
+    about = d.reports.last.thing if d.reports.last is not None else None
     if not thing.pronoun or about is None or about.value != thing.value:
         return thing
     return thing if seen_there(d) is None else replace(thing, place=about.place, pronoun=False)
@@ -87,25 +93,25 @@ def where_seen(d: Discourse, thing: Thing) -> Thing:
 def handed_over(d: Discourse, thing: Thing) -> bool:
     """Whether somebody was asked for a thing that now goes elsewhere: the robot then takes it right
     behind the question."""
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
-    if d.asked_for is None or thing.value != d.asked_for or survey is None:
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
+    if d.answers.asked_for is None or thing.value != d.answers.asked_for or survey is None:
         return False
     note(d, survey.call, [Call("grab", {"thing": thing.value})], [])
-    d.asked_for = None
-    d.holding = thing.value
-    d.thing, d.thing_last = thing, True
+    d.answers.asked_for = None
+    d.scene.holding = thing.value
+    d.scene.thing, d.scene.thing_last = thing, True
     return True
 
 
 def take_back_delivery(d: Discourse, thing: Thing) -> None:
     """ "get the cup and put it on the table": "get" alone would have handed it to the speaker."""
-    brought = list(d.brought)
+    brought = list(d.deliveries.brought)
     if brought and d.done[-len(brought) :] == brought and _is_given(brought[-1], thing):
         # "if she needs the cup, get it from the kitchen and bring it to Bob": to him only
         del d.done[-len(brought) :]
-        d.brought, d.holding, d.at = (), thing.value, thing.place
+        d.deliveries.brought, d.scene.holding, d.scene.at = (), thing.value, thing.place
         return
-    if d.delivered != thing.value:
+    if d.scene.delivered != thing.value:
         return
     handed = Call("give", {"thing": thing.value})
     for steps in (d.done, *d.around[-1:]):  # before a "when", too
@@ -114,10 +120,10 @@ def take_back_delivery(d: Discourse, thing: Thing) -> None:
             continue
         last = steps is d.done and at == len(steps) - 1
         del steps[at - 1 : at + 1]
-        d.delivered = None
-        d.holding = thing.value
+        d.scene.delivered = None
+        d.scene.holding = thing.value
         if last:  # but "get the box, then go to Henry and give it to him": he is where it is now
-            d.at = d.at_pick_up
+            d.scene.at = d.scene.at_pick_up
         return
 
 
@@ -127,9 +133,16 @@ def the_same(d: Discourse, node: Node, thing: Thing) -> Thing:
     definite = isinstance(part, Node) and d.tokens[part.start].norm in d.language.speech.get(
         "definite", ()
     )
-    if definite and d.shown is not None and d.shown == d.holding and is_kind_of(d.shown, thing):
-        return replace(thing, value=d.shown, place=None, pronoun=True)  # "the signed form"
-    if not definite or thing.value != d.delivered or thing.place is not None or thing.several:
+    if (
+        definite
+        and d.deliveries.shown is not None
+        and d.deliveries.shown == d.scene.holding
+        and is_kind_of(d.deliveries.shown, thing)
+    ):
+        return replace(
+            thing, value=d.deliveries.shown, place=None, pronoun=True
+        )  # "the signed form"
+    if not definite or thing.value != d.scene.delivered or thing.place is not None or thing.several:
         return thing
     return replace(thing, pronoun=True)
 
@@ -151,7 +164,7 @@ def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None
     if need is not None:
         thing = replace(need.thing if thing.pronoun else thing, place=thing.place, pronoun=False)
         person, spot = for_them(need, spot) if person is None else (person, spot)
-    scene = d.scene()
+    scene = d.scene.copy()
     if from_whoever_has_it(d, thing, lambda: _delivered(d, thing, person, spot)):
         return []
     thing = where_told(d, thing)
@@ -159,14 +172,14 @@ def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None
     if told is not None:
         return [carried_from_there(d, told, thing, lambda: _delivered(d, thing, person, spot))]
     steps = _delivered(d, thing, person, spot)
-    d.delivery = Delivery(thing, person, spot, tuple(steps), scene)
+    d.deliveries.last = Delivery(thing, person, spot, tuple(steps), scene)
     return steps
 
 
 def take_along_again(d: Discourse, thing: Thing, person: Thing | None) -> None:
     """ "take the form to Clara, ask her to sign it and bring it back": what somebody is to have for
     a moment only stays in the hand, and is taken along when they say that they are done."""
-    delivery: Delivery | None = d.delivery
+    delivery: Delivery | None = d.deliveries.last
     receiver = None if delivery is None else delivery.receiver
     if delivery is None or receiver is None or delivery.spot is not None or delivery.needed:
         return
@@ -200,7 +213,7 @@ def _way_back(told: If) -> int | None:
 def carried_from_there(d: Discourse, told: If, thing: Thing, make: Callable[[], Steps]) -> If:
     """ "tell me where the stapler is and bring it to me": it is taken where it is found."""
     d.done.pop()
-    d.holding = thing.value
+    d.scene.holding = thing.value
     d.went(d.start())
     at = _way_back(told)
     taking = Call("grab", {"thing": thing.value})
@@ -208,37 +221,37 @@ def carried_from_there(d: Discourse, told: If, thing: Thing, make: Callable[[], 
 
 
 def _delivered(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None) -> Steps:
-    before = d.at
+    before = d.scene.at
     if spot is not None and spot.place is None and thing.place not in (None, before):
         spot = replace(spot, place=before)  # "on the table" is where the robot was sent
     if person is not None:
         fetch_before_waiting(d, thing, person)
     named = thing.place is None and not thing.pronoun
-    if spot is not None and spot.place is not None and spot.place == d.at and named:
-        d.at = None  # "go to the lab and bring the microscope there": it is elsewhere
+    if spot is not None and spot.place is not None and spot.place == d.scene.at and named:
+        d.scene.at = None  # "go to the lab and bring the microscope there": it is elsewhere
     no_way = spot is not None and spot.place is None and thing.place is None
-    if no_way and d.holding != thing.value and not thing.pronoun:
+    if no_way and d.scene.holding != thing.value and not thing.pronoun:
         steps: Steps = [Call("grab", {"thing": sought(d, thing)})]  # both are here
     else:
         steps = pick_up(d, thing)
-    d.holding = None
-    d.thing, d.thing_last = thing, True
+    d.scene.holding = None
+    d.scene.thing, d.scene.thing_last = thing, True
     give: dict[str, Value] = {"thing": thing.value}
     if spot is not None:
         if spot.place is not None:
             steps += go(d, spot.place)
         if spot.furniture:
             give["where"] = Text(spot.furniture)
-        if d.at is not None and not d.in_loop:
-            d.now_at = {**d.now_at, thing.value: d.at}
+        if d.scene.at is not None and not d.rounds.in_loop:
+            d.scene.now_at = {**d.scene.now_at, thing.value: d.scene.at}
         return [*steps, Call("put", give)]
     if person is None or is_me(person):
         start = d.start()
-        if steps or d.at != start:
+        if steps or d.scene.at != start:
             steps.append(Call("goto", {"place": start}))
-        d.at_pick_up = d.at
+        d.scene.at_pick_up = d.scene.at
         d.went(start)
-        d.delivered = thing.value
+        d.scene.delivered = thing.value
         return [*steps, Call("give", give)]
     left = any(isinstance(step, Call) and step.method in ("find", "goto") for step in steps)
     if left and person.here and not person.known:  # back to where they are
@@ -248,7 +261,7 @@ def _delivered(d: Discourse, thing: Thing, person: Thing | None, spot: Where | N
     elif left or not person.here:
         person = where_sent(d, person) if not steps else person
         steps += meet(d, replace(person, here=False)) or look_for(d, person)
-    d.thing, d.thing_last = thing, True
+    d.scene.thing, d.scene.thing_last = thing, True
     if person.text != ANYONE:
         give["person"] = person.value
     return [*steps, Call("give", give)]
@@ -257,7 +270,7 @@ def _delivered(d: Discourse, thing: Thing, person: Thing | None, spot: Where | N
 def fetch_before_waiting(d: Discourse, thing: Thing, person: Thing) -> None:
     """ "wait in the lobby for Bob and give him the folder": nobody who has come is left alone for
     it, so that it is fetched first."""
-    here = d.at
+    here = d.scene.at
     at = len(d.done)
     while at and is_waiting(d.done[at - 1]):
         at -= 1
@@ -266,15 +279,20 @@ def fetch_before_waiting(d: Discourse, thing: Thing, person: Thing) -> None:
         isinstance(waiting[-1], Call) and waiting[-1].arguments.get("thing") if waiting else None
     )
     elsewhere = isinstance(thing.place, Text | Items) and thing.place != here
-    if awaited is None or awaited != person.value or not elsewhere or thing.value == d.holding:
+    if (
+        awaited is None
+        or awaited != person.value
+        or not elsewhere
+        or thing.value == d.scene.holding
+    ):
         return
     del d.done[at:]
-    d.at = None
+    d.scene.at = None
     d.done.extend(pick_up(d, thing))
     if not any(isinstance(each, Call) and each.method == "goto" for each in waiting):
         d.done.append(Call("goto", {"place": d.start() if here is None else here}))
     d.done.extend(waiting)
-    d.at, d.with_person = here, person.value
+    d.scene.at, d.scene.with_person = here, person.value
 
 
 def is_waiting(step: Step) -> bool:
@@ -291,9 +309,9 @@ def can_get(d: Discourse, node: Node) -> Steps:
     if again is not None:
         return again
     thing: Thing = d.get(node, "thing")
-    before = d.delivery
+    before = d.deliveries.last
     there = replace(thing, place=spot.place, furniture=spot.furniture, pronoun=False)
     told_where(d, there)
-    d.thing, d.thing_last = there, True
+    d.scene.thing, d.scene.thing_last = there, True
     fetched = before is not None and is_called(d, there, before.thing.value)
     return [] if fetched or not thing.pronoun else deliver(d, there, *meant_for(d, there))

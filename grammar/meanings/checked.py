@@ -21,15 +21,15 @@ def whether_told(d: Discourse, node: Node) -> Told:
     condition, found out there and told elsewhere."""
     part = node.parts["condition"]
     condition = d.get(node, "condition")
-    before, d.pending = d.pending, []
-    d.checked = d.variable("so")
-    no, yes = Remember(d.checked, Truth(False)), Remember(d.checked, Truth(True))
+    before, d.command.pending = d.command.pending, []
+    d.reports.checked = d.variable("so")
+    no, yes = Remember(d.reports.checked, Truth(False)), Remember(d.reports.checked, Truth(True))
     clause = direct_clause(d, part.start, part.end)
     told_yes, told_no = d.say("so_it_is", clause=clause), d.say("not_so", clause=clause)
     if node.production.fixed.get("asked"):  # "is meeting room 2 free?"
         told_yes, told_no = d.say("so_yes"), d.say("so_no")
-    told = If(Holds(Recall(d.checked)), (told_yes,), (told_no,))
-    d.report = None
+    told = If(Holds(Recall(d.reports.checked)), (told_yes,), (told_no,))
+    d.reports.last = None
     return Told([told], [*before, no, If(condition, (yes,))])
 
 
@@ -41,7 +41,7 @@ def poll_whether(d: Discourse, node: Node) -> Told:
     if not counted or (len(surveys) == 1 and not in_loop(d, surveys[0].call)):
         return whether_told(d, node)
     condition = d.get(node, "condition")
-    counts = how_many_words(d, surveys, d.said)
+    counts = how_many_words(d, surveys, d.answers.said)
     so, not_so = d.say("yes_so", counts=counts), d.say("no_so", counts=counts)
     return Told([If(condition, (so,), (not_so,))], [])
 
@@ -49,16 +49,16 @@ def poll_whether(d: Discourse, node: Node) -> Told:
 def checked(d: Discourse) -> Value | None:
     """What was checked last, for "if so" and "if not"; that nobody was named to tell it to is then
     no reason to tell the speaker."""
-    if d.checked is not None and d.news is not None:
-        take_back(d, d.news)
-        return Recall(d.checked)
-    found: Report | None = d.report
+    if d.reports.checked is not None and d.reports.news is not None:
+        take_back(d, d.reports.news)
+        return Recall(d.reports.checked)
+    found: Report | None = d.reports.last
     if found is None or found.otherwise is None or found.value is None:
         return None
-    if not d.report_open:
+    if not d.reports.open:
         return found.value if isinstance(found.value, Recall) else None
     name = found.value.name if isinstance(found.value, Recall) else None
-    at = next((at for at, step in enumerate(d.done) if step is d.report_step), None)
+    at = next((at for at, step in enumerate(d.done) if step is d.reports.step), None)
     if at is None:
         return None
     if name is None:
@@ -67,5 +67,5 @@ def checked(d: Discourse) -> Value | None:
     else:
         d.done.pop(at)
         not_back_yet(d)
-    d.report = replace(found, value=Recall(name))
+    d.reports.last = replace(found, value=Recall(name))
     return Recall(name)

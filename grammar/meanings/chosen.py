@@ -19,8 +19,8 @@ from grammar.plan import Call, Condition, If, Recall
 def chosen_of(d: Discourse, names: Sequence[str]) -> list[Condition] | None:
     """For each of some alternatives, whether it is what was answered last; None if these are not
     the answers that the last question offered."""
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
-    if survey is None or d.answer is None or d.answer != survey.call.save_as:
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
+    if survey is None or d.answers.last is None or d.answers.last != survey.call.save_as:
         return None
     meant = [_option(d, survey, name) for name in names]
     if None in meant or len(set(meant)) < len(names):
@@ -46,12 +46,12 @@ def by_choice(
     one: Callable[[Any], Steps],
 ) -> Steps:
     """The steps for the alternative that was chosen."""
-    before = d.scene()
+    before = d.scene.copy()
     bodies: list[Steps] = []
     for each in alternatives:
-        d.set_scene(before)
+        d.scene = before.copy()
         bodies.append(guard_finds(d, d.sequence(lambda each=each: d.done.extend(one(each)))))  # type: ignore[misc]
-    d.at = d.with_person = None
+    d.scene.at = d.scene.with_person = None
     otherwise: Steps = []
     for condition, body in reversed(list(zip(chosen, bodies, strict=True))):
         otherwise = [If(condition, tuple(body), tuple(otherwise))]
@@ -62,7 +62,7 @@ def handed_already(d: Discourse, thing: Thing, person: Thing) -> bool:
     """Whether what was chosen was just given to somebody, whichever it was: "get her a tea or a
     coffee and bring it to her"."""
     step = d.done[-1] if d.done else None
-    if d.answer is None or thing.value != Recall(d.answer) or not isinstance(step, If):
+    if d.answers.last is None or thing.value != Recall(d.answers.last) or not isinstance(step, If):
         return False
     while isinstance(step, If):
         last = step.then[-1]

@@ -22,6 +22,7 @@ from grammar.meanings.reports import known_words
 from grammar.meanings.rooms import in_words, room_spoken_of
 from grammar.meanings.sights import named_some
 from grammar.meanings.speaking import put_for, sentence_form
+from grammar.memory import Scene
 from grammar.plan import (
     Ask,
     Call,
@@ -43,13 +44,16 @@ COUNT: Final = "count"
 def claim_of(d: Discourse, node: Node, condition: Condition, met: Meeting | None) -> Step | None:
     """What a condition says, as a sentence of its own: "if there is a cup, tell me"."""
     part = node.parts["condition"]
-    if what_it_means(part) in ("some_places", "present_so_many") and d.round.claims is not None:
-        claims = d.round.claims
+    if (
+        what_it_means(part) in ("some_places", "present_so_many")
+        and d.rounds.round.claims is not None
+    ):
+        claims = d.rounds.round.claims
         said: Step = claims.yes if condition == claims.condition else claims.no
         return said
     if what_it_means(part) in ("so", "answered"):
         # Of a round it would be told at each place, and never that it is nowhere.
-        return found_claim(d, condition, met) if met is not None and not d.in_loop else None
+        return found_claim(d, condition, met) if met is not None and not d.rounds.in_loop else None
     if what_it_means(part) == "answers_many":  # "if anyone says yes, tell Alice": how many did
         return polled(d, "many", None).words[0]
     if (
@@ -93,8 +97,8 @@ def found_claim(d: Discourse, condition: Condition, met: Meeting | None) -> Step
         return d.say("nobody_seen")
     if met is not None:
         return not_found(d, met.thing)
-    if d.round.claims is not None and d.round.claims.condition == condition:
-        missing: Step = d.round.claims.no
+    if d.rounds.round.claims is not None and d.rounds.round.claims.condition == condition:
+        missing: Step = d.rounds.round.claims.no
         return missing
     if isinstance(condition, Compare) and isinstance(condition.left, Ask):
         thing = condition.left.arguments.get("thing")
@@ -124,38 +128,38 @@ def meet_there(d: Discourse, met: Meeting | None) -> None:
     if met is None:
         return
     thing = replace(met.thing, here=met.holds, pronoun=False, first=False)
-    d.missing = None if met.holds else replace(met.thing, place=met.thing.place or d.at)
-    d.lacking = None if met.holds or met.sought else d.missing
+    d.scene.missing = None if met.holds else replace(met.thing, place=met.thing.place or d.scene.at)
+    d.scene.lacking = None if met.holds or met.sought else d.scene.missing
     if isinstance(thing.place, Items):  # wherever it was found
-        d.at = d.with_person = None
-        d.away = True
+        d.scene.at = d.scene.with_person = None
+        d.scene.away = True
     elif thing.place is not None:  # it was looked for there
         d.went(thing.place)
-        d.looked_in = thing.place
+        d.scene.looked_in = thing.place
     if not met.holds:
         thing = replace(thing, place=None, furniture=None)
     if thing.person:
-        d.person, d.thing_last = thing, False
-        d.with_person = thing.value if met.holds else None
+        d.scene.person, d.scene.thing_last = thing, False
+        d.scene.with_person = thing.value if met.holds else None
         if met.holds and not thing.known:
-            d.visitor = thing
+            d.people.visitor = thing
     else:
         if met.holds and thing.plural:  # "if there are cups, bring them here"
             thing = replace(thing, every=True)
-        d.thing, d.thing_last = thing, True
+        d.scene.thing, d.scene.thing_last = thing, True
 
 
-def leave_off(d: Discourse, after: dict[str, object]) -> None:
+def leave_off(d: Discourse, after: Scene) -> None:
     """The scene behind both branches: where the robot is only if it is there either way, and who
     was spoken of in the first."""
-    at, with_person = d.at, d.with_person
-    d.set_scene(after)
-    if d.at != at:
-        d.at = None
-    if d.with_person != with_person:
-        d.with_person = None
-        if d.person is not None and d.person.known:
-            d.person = replace(d.person, here=False)
+    at, with_person = d.scene.at, d.scene.with_person
+    d.scene = after.copy()
+    if d.scene.at != at:
+        d.scene.at = None
+    if d.scene.with_person != with_person:
+        d.scene.with_person = None
+        if d.scene.person is not None and d.scene.person.known:
+            d.scene.person = replace(d.scene.person, here=False)
 
 
 TELL: Final = "tell_condition"
@@ -167,10 +171,10 @@ def told_so(d: Discourse, node: Node, claim: Step | None) -> Steps:
     if "at_place" in node.parts:  # "tell the kitchen": whoever is there
         return [*go(d, d.get(node, "at_place")), *(known_words(d) if claim is None else [claim])]
     if is_me(person):
-        outer = d.claim
-        d.claim = None if claim is None else Claim(claim, d.known_by_now())
+        outer = d.branch.claim
+        d.branch.claim = None if claim is None else Claim(claim, d.known_by_now())
         told = coming_back(d, node, tell_speaker(d))
-        d.claim = outer
+        d.branch.claim = outer
         return told
     words = known_words(d) if claim is None else [claim]
     # "Go to the lobby. If nobody is there, tell Bob": he need not be where the robot was sent.

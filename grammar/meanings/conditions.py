@@ -49,15 +49,15 @@ ABOUT_ANSWERS: Final = frozenset(
 @meaning("and")
 def and_(d: Discourse, node: Node) -> Condition:
     left = d.get(node, "left")
-    met, pending = d.met, len(d.pending)
+    met, pending = d.branch.met, len(d.command.pending)
     right = d.get(node, "right")
-    if not searches(left) and any(_goes(step) for step in d.pending[pending:]):
+    if not searches(left) and any(_goes(step) for step in d.command.pending[pending:]):
         # What is so in one place is noted before the robot goes to look at the other.
         name = d.variable("so")
         noted: Steps = [Remember(name, Truth(False)), If(left, (Remember(name, Truth(True)),))]
-        d.pending[pending:pending] = noted
+        d.command.pending[pending:pending] = noted
         left = Holds(Recall(name))
-    d.met = d.met or met
+    d.branch.met = d.branch.met or met
     return Both((left, right))
 
 
@@ -68,15 +68,15 @@ def _goes(step: Step) -> bool:
 @meaning("or")
 def or_(d: Discourse, node: Node) -> Condition:
     either = Either((d.get(node, "left"), d.get(node, "right")))
-    d.met = None
+    d.branch.met = None
     return either
 
 
 @meaning("not")
 def not_(d: Discourse, node: Node) -> Condition:
     condition = negated(d.get(node, "condition"))
-    if d.met is not None:
-        d.met = replace(d.met, holds=not d.met.holds)
+    if d.branch.met is not None:
+        d.branch.met = replace(d.branch.met, holds=not d.branch.met.holds)
     return condition
 
 
@@ -95,10 +95,10 @@ def condition_of(d: Discourse, node: Node, name: str = "condition") -> tuple[Ste
     """The condition of a clause, and the steps that it needs before it can be checked; whom it is
     about is then `d.met`."""
     named_before(d, node, name)
-    outer, d.pending, d.met = d.pending, [], None
-    d.round.told_of = only_told_of(node)
+    outer, d.command.pending, d.branch.met = d.command.pending, [], None
+    d.rounds.round.told_of = only_told_of(node)
     condition: Condition = d.get(node, name)
-    before, d.pending = d.pending, outer
+    before, d.command.pending = d.command.pending, outer
     return before, condition
 
 
@@ -116,7 +116,7 @@ def named_before(d: Discourse, node: Node, name: str) -> None:
     """ "give it to Clara when she comes", "... if she is in her office": she is named in what is
     said first and done later."""
     then = node.parts.get("then")
-    if d.person is None and then is not None and then.start < node.parts[name].start:
+    if d.scene.person is None and then is not None and then.start < node.parts[name].start:
         names = (each for each in inside(then) if each.production.means == "person_name")
         if who := next(names, None):
             d.build(who)
@@ -125,9 +125,9 @@ def named_before(d: Discourse, node: Node, name: str) -> None:
 @meaning("battery_is")
 def battery_is(d: Discourse, node: Node) -> Condition:
     last = d.done[-1] if d.done else None
-    if d.report_open and last is not None and Ask("battery") in nodes(last):
+    if d.reports.open and last is not None and Ask("battery") in nodes(last):
         d.done.pop()  # "check your battery. If ...": nobody is told
-        d.report_open = False
+        d.reports.open = False
     return Compare(Ask("battery"), d.get(node, "operator", "=="), as_value(d.get(node, "percent")))
 
 
@@ -176,45 +176,45 @@ def is_touched(d: Discourse, node: Node) -> Condition:
     button = Text(d.language.phrase("button"))
     nobody = Remember(touched.name, Text(""))
     showing = Call("touch", {"options": Items((button,))}, save_as=touched.name)
-    d.pending.append(Try((showing,), (nobody,)))
+    d.command.pending.append(Try((showing,), (nobody,)))
     return Compare(touched, "==", button)
 
 
 @meaning("code_is")
 def code_is(d: Discourse, node: Node) -> Condition:
-    if d.code is None:
+    if d.answers.code is None:
         raise NotUnderstood(d.language.phrase("no_code"))
     part = node.parts["text"]  # its digits as they were said, should it be a number
     number = isinstance(part, Leaf) and part.slot == "number"
     text = d.words(part.start, part.end) if number else str(d.build(part))
-    return Compare(Recall(d.code), "==", Text(text))
+    return Compare(Recall(d.answers.code), "==", Text(text))
 
 
 @meaning("is_awaited")
 def is_awaited(d: Discourse, node: Node) -> Condition:
     """ "nobody comes within five minutes": waited for so long, and no longer."""
     thing = noun_of(d, node)
-    if thing.place is not None and thing.place != d.at:
+    if thing.place is not None and thing.place != d.scene.at:
         d.went(thing.place)
-        d.pending.append(Call("goto", {"place": thing.place}))
-    d.person = replace(thing, here=True)
+        d.command.pending.append(Call("goto", {"place": thing.place}))
+    d.scene.person = replace(thing, here=True)
     seconds = as_value(d.get(node, "seconds"))
     waited = Holds(Ask("wait_for", {"thing": sought(d, thing), "timeout": seconds}))
     no = bool(node.production.fixed.get("no"))
-    d.met = Meeting(thing, holds=not no)
+    d.branch.met = Meeting(thing, holds=not no)
     return Not(waited) if no else waited
 
 
 @meaning("is_heard")
 def is_heard(d: Discourse, node: Node) -> Condition:
     """ "you hear help". Where nobody speaks, nothing was heard, and that is no failure."""
-    if d.heard is None:
+    if d.answers.heard is None:
         name = d.variable("heard")
         silence = Remember(name, Text(""))
-        d.pending.append(Try((Call("listen", save_as=name),), (silence,)))
+        d.command.pending.append(Try((Call("listen", save_as=name),), (silence,)))
         heard: Value = Recall(name)
     else:
-        heard = Recall(d.heard)
+        heard = Recall(d.answers.heard)
     part = node.parts.get("text")
     if isinstance(part, Leaf) and part.slot == "text":
         first = d.tokens[part.start].norm

@@ -53,7 +53,7 @@ def steps(d: Discourse, node: Node) -> Steps:
             each = done_first(for_all(d, each))
             before = len(d.done)
             d.begins.append(before)
-            scene = d.scene()
+            scene = d.scene.copy()
             first = each.parts["first"]
             assert isinstance(first, Node)
             relative = d.tokens[first.start].norm in d.language.speech.get("relative", ())
@@ -179,12 +179,14 @@ def reversed_(d: Discourse, node: Node) -> Steps:
     """ "before you go, say goodbye" and "go after you have said goodbye"."""
     earlier, later = node.parts["earlier"], node.parts["later"]
     only_once_done(d, node)
-    if later.start < earlier.start and d.thing is None:  # "put the cup here after you wash it"
-        before = d.scene()
+    if (
+        later.start < earlier.start and d.scene.thing is None
+    ):  # "put the cup here after you wash it"
+        before = d.scene.copy()
         d.sequence(lambda: d.done.extend(d.build(later)))
-        thing, thing_last = d.thing, d.thing_last
-        d.set_scene(before)
-        d.thing, d.thing_last = thing, thing_last
+        thing, thing_last = d.scene.thing, d.scene.thing_last
+        d.scene = before.copy()
+        d.scene.thing, d.scene.thing_last = thing, thing_last
     at = len(d.done)
     if not done_already(d, node):
         d.done.extend(d.build(earlier))
@@ -238,13 +240,13 @@ def on_the_way(d: Discourse, node: Node) -> Steps:
         target = last.arguments.get("place")
     else:
         raise NotUnderstood(d.language.phrase("where_is_there"))
-    d.at = None
+    d.scene.at = None
     stops: Steps = d.build(node.parts["steps"])
     if "more" in node.parts:  # "stop by Bob's office on the way to the lobby and say hello"
         stops = [*stops, *d.build(node.parts["more"])]
     if isinstance(going, Call) and going.method == "guide":
         stops = [_guided(each, going) for each in stops]
-    d.at = d.place = target
+    d.scene.at = d.scene.place = target
     return [*stops, going]
 
 

@@ -33,7 +33,7 @@ def counted_both(d: Discourse, node: Node) -> Report:
         Remember(name, Ask("count", {"thing": sought(d, each)}))
         for name, each in zip(names, (one, two), strict=True)
     )
-    d.last_counted = two
+    d.reports.last_counted = two
     words = (("things", things), ("others", others), ("other", Recall(names[1])))
     return Report("counted_both", Recall(names[0]), where.place, words, name="counts", before=looks)
 
@@ -42,7 +42,7 @@ def counted_both(d: Discourse, node: Node) -> Report:
 def those_spoken_of(d: Discourse, node: Node) -> Thing:
     """ "is anybody sitting in the cafeteria? Count them": people or things, where they were said to
     be."""
-    those = d.thing if d.thing_last or d.person is None else d.person
+    those = d.scene.thing if d.scene.thing_last or d.scene.person is None else d.scene.person
     if those is None or (those.person and (those.known or those.me)):
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing, Where
@@ -18,6 +17,7 @@ from grammar.meanings.persons import is_me
 from grammar.meanings.places import own_place
 from grammar.meanings.searches import search_of, searches
 from grammar.meanings.surveys import Survey
+from grammar.memory import Scene
 from grammar.plan import Ask, Call, Condition, Holds, If, Items, Recall, Step, Text, Value
 from grammar.tidy import nodes
 
@@ -30,7 +30,7 @@ class Delivery:
     person: Thing | None
     spot: Where | None
     steps: tuple[Step, ...]
-    before: dict[str, Any]
+    before: Scene
     """The scene in which it began."""
     needed: bool = False
     """Whether it was only said that somebody needs it."""
@@ -52,7 +52,7 @@ class Taken:
 
 def delivered_last(d: Discourse) -> Delivery | None:
     """The delivery that the last step ends."""
-    delivery: Delivery | None = d.delivery
+    delivery: Delivery | None = d.deliveries.last
     last = d.done[-1] if d.done else None
     if delivery is None or not delivery.steps or last is not delivery.steps[-1]:
         return None
@@ -62,7 +62,7 @@ def delivered_last(d: Discourse) -> Delivery | None:
 def ordered_now(d: Discourse, thing: Thing, person: Thing | None) -> Delivery | None:
     """What was only said to be needed, taken out of the steps, for now it is said what to do: "Bob
     needs bandages. Go to the lab and take him a bandage from there"."""
-    need: Delivery | None = d.delivery
+    need: Delivery | None = d.deliveries.last
     if need is None or not is_needed(d, thing):
         return None
     receiver = need.receiver
@@ -75,7 +75,7 @@ def ordered_now(d: Discourse, thing: Thing, person: Thing | None) -> Delivery | 
     if not need.steps or d.done[start:end] != list(need.steps):
         return None
     del d.done[start:end]
-    d.set_scene(need.before)
+    d.scene = need.before.copy()
     for place in gone:
         d.went(place)
     return need
@@ -93,7 +93,7 @@ def places_gone_to(d: Discourse) -> list[Value]:
 
 def is_needed(d: Discourse, thing: Thing) -> bool:
     """Whether somebody was said to need such a thing."""
-    need: Delivery | None = d.delivery
+    need: Delivery | None = d.deliveries.last
     return need is not None and need.needed and (need.thing.pronoun or _alike(thing, need.thing))
 
 
@@ -140,7 +140,7 @@ def taken_back(d: Discourse, delivery: Delivery, met: Meeting) -> Taken | None:
     search = search_of(first)
     steps = d.done[at:]
     del d.done[at:]
-    d.set_scene(delivery.before)
+    d.scene = delivery.before.copy()
     if search is not None:
         steps = steps[1:]
         there = met.thing.place
@@ -151,14 +151,14 @@ def taken_back(d: Discourse, delivery: Delivery, met: Meeting) -> Taken | None:
         assert isinstance(first, Call)
         arguments: dict[str, Value] = {"thing": first.arguments["thing"]}
         place = met.thing.place
-        elsewhere = place is not None and place != d.at
+        elsewhere = place is not None and place != d.scene.at
         if place is not None and elsewhere:
             arguments["place"] = place
         condition = Holds(Ask("find" if elsewhere else "sees", arguments))
     if missing.person:
-        d.holding = delivery.thing.value
-        d.thing, d.thing_last = replace(delivery.thing, pronoun=True), True
-        d.person = met.thing
+        d.scene.holding = delivery.thing.value
+        d.scene.thing, d.scene.thing_last = replace(delivery.thing, pronoun=True), True
+        d.scene.person = met.thing
     return Taken(condition, steps, delivery)
 
 
@@ -192,9 +192,9 @@ def _is_about(step: Step, methods: tuple[str, ...], missing: Thing, delivery: De
 def meant_for(d: Discourse, thing: Thing) -> tuple[Thing | None, Where | None]:
     """Who gets a thing that is to be brought without a word to whom: whoever was to get what there
     was none of, the place that has none, who was asked about it; else the speaker."""
-    if isinstance(d.meant_for, Delivery):
-        return d.meant_for.person, d.meant_for.spot
-    lacking = d.lacking
+    if isinstance(d.deliveries.meant_for, Delivery):
+        return d.deliveries.meant_for.person, d.deliveries.meant_for.spot
+    lacking = d.scene.lacking
     if lacking is not None and lacking.place is not None and _alike(thing, lacking):
         return None, Where(lacking.place, lacking.furniture)
     return who_asked_for(d, thing), None
@@ -202,18 +202,18 @@ def meant_for(d: Discourse, thing: Thing) -> tuple[Thing | None, Where | None]:
 
 def who_asked_for(d: Discourse, thing: Thing) -> Thing | None:
     """Who was asked whether they need something, or what they want: it is for them."""
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
-    if survey is None or d.answer is None or survey.call.save_as != d.answer:
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
+    if survey is None or d.answers.last is None or survey.call.save_as != d.answers.last:
         return None
-    if thing.value != Recall(d.answer):
+    if thing.value != Recall(d.answers.last):
         question = survey.call.arguments["question"]
         asked = set(d.language.tokens_of(question.value)) if isinstance(question, Text) else set()
-        spoken_of = thing.pronoun or thing.value == (d.thing.value if d.thing else None)
+        spoken_of = thing.pronoun or thing.value == (d.scene.thing.value if d.scene.thing else None)
         about = spoken_of or set(d.language.tokens_of(thing.text)) & asked
         wished = set(d.language.speech.get("wishes", ())) & asked
         if not isinstance(thing.value, Text) or not wished or not about:
             return None
-    if survey.who is not None and survey.where is None and survey.who != d.place:
+    if survey.who is not None and survey.where is None and survey.who != d.scene.place:
         return Thing(survey.who, known=True, person=True)
     return Thing(Text(ANYONE), person=True, here=True)
 
@@ -225,16 +225,16 @@ def _alike(one: Thing, other: Thing) -> bool:
 def whereto_told(d: Discourse, thing: Thing) -> Thing:
     """ "The letter is for Bob. Take it to his office": what was only said to be for somebody is
     brought as is said then, and not twice."""
-    delivery: Delivery | None = d.destined
+    delivery: Delivery | None = d.deliveries.destined
     if delivery is None or not thing.pronoun or thing.value != delivery.thing.value:
         return thing
     if not d.done or d.done[-1] is not delivery.steps[-1]:
         return thing
     del d.done[-len(delivery.steps) :]
-    d.set_scene(delivery.before)
-    d.destined = None
-    d.person = delivery.person
-    d.thing, d.thing_last = delivery.thing, True
+    d.scene = delivery.before.copy()
+    d.deliveries.destined = None
+    d.scene.person = delivery.person
+    d.scene.thing, d.scene.thing_last = delivery.thing, True
     return delivery.thing
 
 
@@ -285,9 +285,9 @@ def still_in_hand(d: Discourse, delivery: Delivery) -> Step | None:
     if not isinstance(last, Call) or not (whereto or delivery.receiver is not None):
         return None
     d.done.pop()
-    d.delivered = None
-    d.holding = delivery.thing.value
-    d.thing, d.thing_last = replace(delivery.thing, pronoun=True), True
+    d.scene.delivered = None
+    d.scene.holding = delivery.thing.value
+    d.scene.thing, d.scene.thing_last = replace(delivery.thing, pronoun=True), True
     return last
 
 
@@ -295,7 +295,7 @@ def kept_in_hand(d: Discourse, *, asking: bool = True) -> Steps | None:
     """How a thing was handed over before something was asked, taken back: "take her a sandwich and
     ask whether she wants it. If not, bring it back"; or before nothing but words, if not `asking`:
     "take her the form, tell her to sign it and bring it back"."""
-    delivery: Delivery | None = d.delivery
+    delivery: Delivery | None = d.deliveries.last
     if delivery is None or not delivery.steps or delivery.spot is not None:
         return None
     at = next((at for at, step in enumerate(d.done) if step is delivery.steps[-1]), None)
@@ -311,9 +311,9 @@ def kept_in_hand(d: Discourse, *, asking: bool = True) -> Steps | None:
         first = at - 1  # nobody goes back with it in between
     handing = d.done[first : at + 1]
     del d.done[first : at + 1]
-    d.delivered = None
-    d.holding = delivery.thing.value
-    d.thing, d.thing_last = replace(delivery.thing, pronoun=True, place=None), True
+    d.scene.delivered = None
+    d.scene.holding = delivery.thing.value
+    d.scene.thing, d.scene.thing_last = replace(delivery.thing, pronoun=True, place=None), True
     return handing
 
 
@@ -348,5 +348,5 @@ def given_last(d: Discourse) -> bool:
     """Whether the last step was to hand something to the speaker, or to do so with several."""
     last = d.done[-1] if d.done else None
     return last is not None and (
-        last == d.delivered_in or (isinstance(last, Call) and last.method == "give")
+        last == d.deliveries.delivered_in or (isinstance(last, Call) and last.method == "give")
     )

@@ -37,7 +37,7 @@ def mods(d: Discourse, node: Node) -> list[Where | str]:
 @meaning("where_pointed")
 def where_pointed(d: Discourse, node: Node) -> str:
     """ "in it", "on them": where the robot is by what was said; of nothing spoken of, nowhere."""
-    if not (d.place or d.thing or d.at or d.at_furniture or d.person):
+    if not (d.scene.place or d.scene.thing or d.scene.at or d.scene.at_furniture or d.scene.person):
         raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
     return ""
 
@@ -90,9 +90,9 @@ def worn(d: Discourse, node: Node) -> str:
 @meaning("between")
 def between(d: Discourse, node: Node) -> str:
     """ "between the cup and the box"."""
-    remembered, last = d.thing, d.thing_last
+    remembered, last = d.scene.thing, d.scene.thing_last
     first, second = d.get(node, "first"), d.get(node, "second")
-    d.thing, d.thing_last = remembered, last
+    d.scene.thing, d.scene.thing_last = remembered, last
     return d.language.phrase("between", first=first.text, second=second.text)
 
 
@@ -110,9 +110,9 @@ def side_of(d: Discourse, node: Node) -> list[Where | str]:
 @meaning("relation")
 def relation(d: Discourse, node: Node) -> Where | str:
     """ "behind the cup": a descriptor; with its place if the other thing has one."""
-    remembered, last = d.thing, d.thing_last
+    remembered, last = d.scene.thing, d.scene.thing_last
     other: Thing = d.get(node, "other")
-    d.thing, d.thing_last = remembered, last
+    d.scene.thing, d.scene.thing_last = remembered, last
     words = f"{node.production.fixed['relation']} {other.text}"
     if other.place is not None or other.furniture is not None:
         return Where(other.place, other.furniture, words)
@@ -164,6 +164,6 @@ def described(d: Discourse, noun: str, node: Node, *, lies_about: bool = False) 
                 words.remove(sex)
                 noun = SEXES[sex]
     if place is None and furniture is None:
-        place, furniture = d.at_place, d.at_furniture
+        place, furniture = d.command.at_place, d.scene.at_furniture
     text = " ".join(word for word in (*before, noun, *after) if word)
     return Thing(Text(text), place, furniture, preposition=preposition)

@@ -51,16 +51,16 @@ def go_to(d: Discourse, node: Node) -> Steps:
         # "look for Clara in the kitchen, then in the library": that is where to look
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
-    if "place" in node.parts and place == d.at and d.done:
+    if "place" in node.parts and place == d.scene.at and d.done:
         if not d.language.words_called("returning").intersection(d.norms(node.start, node.end)):
             return []  # "knock at office 1, go in"
         place = place_before(d)  # "take them there, then go back there": to where you were
     with_them = goes_on_with_somebody(d, node) or (bare_way(node) and just_led(d))
-    if with_them and d.person is not None:
-        return [lead(d, d.person, place)]
+    if with_them and d.scene.person is not None:
+        return [lead(d, d.scene.person, place)]
     d.went(place)
-    d.at_furniture = spot.furniture
-    d.on_duty = str(node.production.fixed.get("duty", ""))
+    d.scene.at_furniture = spot.furniture
+    d.people.on_duty = str(node.production.fixed.get("duty", ""))
     return [Call("goto", {"place": place})]
 
 
@@ -69,8 +69,13 @@ def goes_on_with_somebody(d: Discourse, node: Node) -> bool:
     words = d.norms(node.start, node.end)
     ways = map(d.language.tokens_of, d.language.speech.get("going_on", ()))
     on = any(tuple(words[: len(way)]) == way for way in ways)
-    guest = d.person.value if d.person is not None else None
-    return on and guest is not None and d.with_person == guest and d.left.get(guest) == d.at
+    guest = d.scene.person.value if d.scene.person is not None else None
+    return (
+        on
+        and guest is not None
+        and d.scene.with_person == guest
+        and d.scene.left.get(guest) == d.scene.at
+    )
 
 
 def bare_way(node: Node) -> bool:
@@ -96,7 +101,7 @@ def place_before(d: Discourse) -> Value:
         for each in nodes(tuple(d.done))
         if isinstance(each, Call) and each.method in ("goto", "guide") and "place" in each.arguments
     ]
-    return next((place for place in reversed(places) if place != d.at), None) or d.start()
+    return next((place for place in reversed(places) if place != d.scene.at), None) or d.start()
 
 
 @meaning("find_furniture")
@@ -105,7 +110,7 @@ def find_furniture(d: Discourse, node: Node) -> Steps:
     spot: Where = d.get(node, "spot")
     if spot.place is not None:
         return go_to(d, node)
-    steps = look_for(d, Thing(Text(str(spot.furniture)), d.at))
+    steps = look_for(d, Thing(Text(str(spot.furniture)), d.scene.at))
     return [*steps]
 
 
@@ -116,8 +121,8 @@ def look_in(d: Discourse, node: Node) -> Steps:
     more: list[Value] = d.get(node, "place_list") or []
     if spot.place is None:
         return go_to(d, node)
-    if spot.furniture is not None and d.missing is not None and not more:
-        return look_for(d, replace(d.missing, place=spot.place, furniture=spot.furniture))
+    if spot.furniture is not None and d.scene.missing is not None and not more:
+        return look_for(d, replace(d.scene.missing, place=spot.place, furniture=spot.furniture))
     looked = looked_further(d, [spot.place, *more])
     if looked is None and more:
         raise NotUnderstood(d.language.phrase("look_for_what"))
@@ -168,7 +173,7 @@ def are_a_row(d: Discourse, places: list[Value]) -> bool:
 @meaning("go_point")
 def go_point(d: Discourse, node: Node) -> Steps:
     arguments = {name: as_value(d.get(node, name)) for name in ("x", "y", "theta")}
-    d.at = None
+    d.scene.at = None
     return [
         Call("goto", {name: value for name, value in arguments.items() if node.parts.get(name)})
     ]
@@ -252,15 +257,20 @@ def in_each_of_them(d: Discourse, node: Node) -> Steps:
 
 def done_there(d: Discourse, spot: Where, part: Leaf | Node) -> Steps:
     """Go to a spot and do something there."""
-    if isinstance(part, Node) and part.means == "report" and d.at_place is None and d.at is None:
-        d.at_place, d.at_furniture = spot.place, spot.furniture
+    if (
+        isinstance(part, Node)
+        and part.means == "report"
+        and d.command.at_place is None
+        and d.scene.at is None
+    ):
+        d.command.at_place, d.scene.at_furniture = spot.place, spot.furniture
         told: Steps = d.build(part)
-        d.at_place = d.at_furniture = None
+        d.command.at_place = d.scene.at_furniture = None
         return told
     going = go(d, spot.place) if spot.place is not None else []
-    d.at_furniture = spot.furniture
+    d.scene.at_furniture = spot.furniture
     inner: Steps = d.build(part)
-    d.at_furniture = None
+    d.scene.at_furniture = None
     if spot.furniture and not going and not speaks_of(inner, spot.furniture):
         raise NotUnderstood(d.language.phrase("where_is_thing", thing=spot.furniture))
     return [*going, *inner]
@@ -275,13 +285,13 @@ def speaks_of(steps: Steps, name: str) -> bool:
 def come_back(d: Discourse, node: Node) -> Steps:
     """Back to where the command was given; if the robot went somewhere in the one before, to where
     it was before that."""
-    if d.origin is not None and d.at is None and not d.done and not d.in_loop:
-        d.went(Text(d.origin))
-        return [Call("goto", {"place": Text(d.origin)})]
+    if d.command.origin is not None and d.scene.at is None and not d.done and not d.rounds.in_loop:
+        d.went(Text(d.command.origin))
+        return [Call("goto", {"place": Text(d.command.origin)})]
     if counted_alone(d):
         return tell_speaker(d)
-    told = d.done and (d.done[-1] is d.told or d.done[-1] is d.report_step)
-    if told and d.at == d.start():
+    told = d.done and (d.done[-1] is d.reports.told or d.done[-1] is d.reports.step)
+    if told and d.scene.at == d.start():
         return []  # "Are there any cups in the lab? Go and look, come back and tell me."
     d.came_back()
     return [Call("goto", {"place": d.start()})]
@@ -315,7 +325,7 @@ def move(d: Discourse, node: Node) -> Steps:
     metres = float(d.get(node, "metres"))
     if node.production.fixed.get("back"):
         metres = -metres
-    d.at = None
+    d.scene.at = None
     return [Call("move", {"metres": as_value(metres)})]
 
 
@@ -331,7 +341,7 @@ def move_aside(d: Discourse, node: Node) -> Steps:
     """To one side, looking ahead as before: a robot on wheels has to turn for that."""
     metres = float(d.get(node, "metres"))
     degrees = -90.0 if d.get(node, "side") == "right" else 90.0
-    d.at = None
+    d.scene.at = None
     return [
         Call("turn", {"degrees": as_value(degrees)}),
         Call("move", {"metres": as_value(metres)}),
@@ -348,7 +358,7 @@ def drive(d: Discourse, node: Node) -> Steps:
     if d.get(node, "side", "left") == "right":
         angular = -angular
     seconds = as_value(d.get(node, "seconds"))
-    d.at = None
+    d.scene.at = None
     return [
         Call(
             "drive", {"linear": as_value(linear), "angular": as_value(angular), "seconds": seconds}
@@ -358,7 +368,7 @@ def drive(d: Discourse, node: Node) -> Steps:
 
 @meaning("dock")
 def dock(d: Discourse, node: Node) -> Steps:
-    d.at = None
+    d.scene.at = None
     return [Call("dock")]
 
 
@@ -385,12 +395,14 @@ def wait_for(d: Discourse, node: Node) -> Steps:
     if timeout is not None:
         arguments["timeout"] = as_value(timeout)
     if thing.person:
-        d.person = come(d.person or thing, thing)
-        d.with_person = thing.value
-        d.visitor = d.visitor if thing.known else thing
+        d.scene.person = come(d.scene.person or thing, thing)
+        d.scene.with_person = thing.value
+        d.people.visitor = d.people.visitor if thing.known else thing
     if thing.count is not None:
         if thing.person:  # they are all here then
-            d.person = d.last_counted = replace(thing, count=None, place=None, here=True)
+            d.scene.person = d.reports.last_counted = replace(
+                thing, count=None, place=None, here=True
+            )
         return [*steps, Repeat(Number(thing.count), (Call("wait_for", arguments),))]
     return [*steps, Call("wait_for", arguments)]
 
@@ -406,8 +418,8 @@ def whoever_came(d: Discourse, group: Items, seen: tuple[Condition, ...]) -> Ste
     """Which of several has come, as far as that is asked for: "wait for Alice or Bob and take them
     to the library"."""
     who = Recall(d.variable("who"))
-    d.person = d.came = Thing(who, known=True, person=True, here=True)
-    d.with_person, d.group = who, None
+    d.scene.person = d.people.came = Thing(who, known=True, person=True, here=True)
+    d.scene.with_person, d.scene.group = who, None
     *others, last = group.items
     noted = [
         If(here, (Remember(who.name, name),)) for here, name in zip(seen, others, strict=False)
@@ -426,5 +438,5 @@ def patrol(d: Discourse, node: Node) -> Steps:
     """ "drive back and forth between the lobby and the kitchen", "patrol the corridor": there and
     back."""
     places: list[Value] = [d.get(node, "place"), *(d.get(node, "place_list") or [d.start()])]
-    d.at = None
+    d.scene.at = None
     return [Call("goto", {"place": place}) for place in places]

@@ -20,12 +20,12 @@ from grammar.plan import Text
 def thing_owned(d: Discourse, node: Node) -> Thing:
     """ "Bob's folder": in his office, if nobody says where it is."""
     owner: Thing = d.get(node, "owner")
-    d.person = owner  # "Bob's folder in his office"
+    d.scene.person = owner  # "Bob's folder in his office"
     found = thing(d, node)
-    if found.place is None and found.furniture is None and d.at is None:
+    if found.place is None and found.furniture is None and d.scene.at is None:
         found = replace(found, place=own_place(d, owner))
-    d.person = owner
-    d.thing, d.thing_last = found, True
+    d.scene.person = owner
+    d.scene.thing, d.scene.thing_last = found, True
     return found
 
 
@@ -84,7 +84,7 @@ def one_of_them_so(d: Discourse, node: Node) -> Thing:
 def bring_one_back(d: Discourse, node: Node) -> Steps:
     """ "take the bottle to the kitchen and bring a full one back": from there to where that was."""
     another: Thing = d.get(node, "thing")
-    before: Delivery | None = d.delivery
+    before: Delivery | None = d.deliveries.last
     spot: Where | None = d.get(node, "where")
     moved = before is not None and before.spot is not None and before.spot.place is not None
     if before is None or before.spot is None or not moved or another.place is not None:

@@ -34,7 +34,7 @@ WEEK: Final = ("Monday", "Tuesday", "Wednesday", "Thursday", "Friday", "Saturday
 @meaning("about_robot")
 def about_robot(d: Discourse, node: Node) -> Report:
     fixed = node.production.fixed
-    survey = survey_named(d, node.end - 1, node.end) if d.surveys else None
+    survey = survey_named(d, node.end - 1, node.end) if d.answers.surveys else None
     answer = answer_to(d, survey) if survey is not None else None
     asked = asked_for_that(d, node)
     if asked is not None:
@@ -52,7 +52,7 @@ def about_robot(d: Discourse, node: Node) -> Report:
 def asked_for_that(d: Discourse, node: Node) -> Value | None:
     """ "which day it is", after somebody was asked for a day, and not what day it is now."""
     norms = d.norms(node.start, node.end)
-    if not d.surveys or set(norms) & set(d.language.speech.get("of_now", ())):
+    if not d.answers.surveys or set(norms) & set(d.language.speech.get("of_now", ())):
         return None
     survey = next(
         (each for at in range(node.start, node.end) if (each := survey_named(d, at, at + 1))), None

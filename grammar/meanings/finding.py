@@ -38,8 +38,8 @@ ANYBODY: Final = (ANYONE, "visitor", "patient", "customer")
 
 def go(d: Discourse, place: Value) -> Steps:
     """Drive there, unless that is where the robot is by what was said."""
-    d.place = place
-    if d.at == place:
+    d.scene.place = place
+    if d.scene.at == place:
         return []
     d.went(place)
     return [Call("goto", {"place": place})]
@@ -52,7 +52,7 @@ def noun_of(d: Discourse, node: Node) -> Thing:
     if isinstance(thing, list):  # "a cup and a plate", of which a condition is true
         thing = together(thing)
     if thing is None and speaks_of_things(d, node.parts["person_ref"]):
-        thing = replace(d.thing, pronoun=True) if d.thing is not None else None
+        thing = replace(d.scene.thing, pronoun=True) if d.scene.thing is not None else None
     if thing is None:
         person = thing_after_all(d, node.parts["person_ref"]) or d.build(node.parts["person_ref"])
         thing = Thing(Text(ANYONE), person=True, here=True) if is_me(person) else person
@@ -68,11 +68,11 @@ def speaks_of_things(d: Discourse, part: Leaf | Node) -> bool:
     if (
         isinstance(part, Leaf)
         or part.means != "person_pronoun"
-        or not d.thing_last
-        or d.thing is None
+        or not d.scene.thing_last
+        or d.scene.thing is None
     ):
         return False
-    several = d.thing.plural or d.thing.several or d.person is None
+    several = d.scene.thing.plural or d.scene.thing.several or d.scene.person is None
     said = set(d.norms(part.start, part.end))
     return several and bool(said & set(d.language.speech.get("things_too", ())))
 
@@ -85,12 +85,14 @@ def thing_after_all(d: Discourse, part: Leaf | Node) -> Thing | None:
     while isinstance(part, Node) and part.production.means is None and len(part.parts) == 1:
         (part,) = part.parts.values()
     is_pronoun = isinstance(part, Node) and part.means == "person_pronoun"
-    if not is_pronoun or gender is None or d.thing is None:
+    if not is_pronoun or gender is None or d.scene.thing is None:
         return None
-    if gender_of_thing(d, d.thing) not in (None, gender):
+    if gender_of_thing(d, d.scene.thing) not in (None, gender):
         return None
-    nobody = d.person is None or is_me(d.person) or not d.may_have(d.person, gender)
-    return replace(d.thing, pronoun=True) if nobody else None
+    nobody = (
+        d.scene.person is None or is_me(d.scene.person) or not d.may_have(d.scene.person, gender)
+    )
+    return replace(d.scene.thing, pronoun=True) if nobody else None
 
 
 def in_state(d: Discourse, node: Node, thing: Thing) -> Thing:
@@ -129,15 +131,15 @@ def whether_found(d: Discourse, thing: Thing) -> Condition:
 def look_for(d: Discourse, thing: Thing) -> Steps:
     """Look for a thing or a person; if it may be in several places, until it is found."""
     several = isinstance(thing.place, Items)
-    d.at = None if several else thing.place
-    d.away = thing.place is None or several
+    d.scene.at = None if several else thing.place
+    d.scene.away = thing.place is None or several
     if thing.place is not None and not several:
-        d.place = thing.place
-    d.with_person = thing.value if thing.person else None
+        d.scene.place = thing.place
+    d.scene.with_person = thing.value if thing.person else None
     if thing.person:
-        d.person, d.thing_last = thing, False
+        d.scene.person, d.scene.thing_last = thing, False
     else:
-        d.thing, d.thing_last = thing, True
+        d.scene.thing, d.scene.thing_last = thing, True
     if several:
         looking = If(Not(whether_found(d, thing)), (not_found(d, thing),))
         return [] if d.done and d.done[-1] == looking else [looking]
@@ -149,20 +151,23 @@ def meet(d: Discourse, person: Thing) -> Steps:
     """Find a person, unless they are here by what was said."""
     if person.first:
         going = go(d, person.place) if person.place is not None else []
-        d.with_person = person.value
-        d.person, d.thing_last = replace(person, first=False, place=None, here=True), False
+        d.scene.with_person = person.value
+        d.scene.person, d.scene.thing_last = (
+            replace(person, first=False, place=None, here=True),
+            False,
+        )
         return [*going, Call("wait_for", {"thing": person.value})]
-    if person.here or d.with_person == person.value:
+    if person.here or d.scene.with_person == person.value:
         return []
     if not person.known and person.place is None:  # where they were left, if they were led there
-        left = d.left.get(person.value)
+        left = d.scene.left.get(person.value)
         return [] if left is None else go(d, left)
     if isinstance(person.place, Items):
         return look_for(d, person)
-    d.with_person = person.value
-    d.at = person.place
+    d.scene.with_person = person.value
+    d.scene.at = person.place
     if person.place is not None:
-        d.place = person.place
+        d.scene.place = person.place
     return [found(d, person)]
 
 
@@ -179,7 +184,11 @@ def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
     if person is not None and isinstance(person.group, Items):
         return each_of(d, person.group, steps)
     if person is None:  # "greet the visitor and say that lunch is ready"
-        return steps if d.person is None or d.in_loop else if_met(d, d.person, steps)
+        return (
+            steps
+            if d.scene.person is None or d.rounds.in_loop
+            else if_met(d, d.scene.person, steps)
+        )
     if person.first:
         return [*meet(d, person), *steps]
     person = where_sent(d, person)
@@ -187,8 +196,8 @@ def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
         return if_met(d, person, steps)
     if not person.known and person.place is not None and (person.plural or person.text == ANYONE):
         return [*go(d, person.place), *steps]
-    d.at = None if isinstance(person.place, Items) else person.place
-    d.with_person = person.value
+    d.scene.at = None if isinstance(person.place, Items) else person.place
+    d.scene.with_person = person.value
     return [If(whether_found(d, person), tuple(steps), (not_found(d, person),))]
 
 
@@ -218,7 +227,7 @@ def meet_several(d: Discourse, person: Thing) -> Steps:
 def each_of(d: Discourse, group: Value, steps: Steps) -> Steps:
     """Do something with each of several people, who are looked for one by one."""
     visits_only(d, group)
-    d.at = d.with_person = None
+    d.scene.at = d.scene.with_person = None
     who = Recall(d.variable("person"))
     return [ForEach(who.name, group, tuple(if_found(d, who, steps)))]
 
@@ -252,7 +261,7 @@ def if_met(d: Discourse, person: Thing, steps: Steps) -> Steps:
 def met_just_before(d: Discourse, person: Thing) -> If | None:
     """The last step, if it does something with somebody where they are found."""
     last = d.done[-1] if d.done else None
-    if person.value != d.with_person or not isinstance(last, If):
+    if person.value != d.scene.with_person or not isinstance(last, If):
         return None
     condition, then, otherwise = last.condition, last.then, last.otherwise
     if isinstance(condition, Not) and not otherwise:  # looked for in several places
@@ -279,12 +288,16 @@ def if_missing(d: Discourse, who: Value) -> Steps:
 def where_sent(d: Discourse, person: Thing) -> Thing:
     """Somebody spoken of right after going somewhere is there: "go to the bar and follow Alex"."""
     last = d.done[-1] if d.done else None
-    going = isinstance(last, Call) and last.method == "goto" and last.arguments.get("place") == d.at
+    going = (
+        isinstance(last, Call)
+        and last.method == "goto"
+        and last.arguments.get("place") == d.scene.at
+    )
     if not going or person.place is not None or person.here or person.group is not None:
         return person
-    if not isinstance(d.at, Text) or not (person.known or particular(person)):
+    if not isinstance(d.scene.at, Text) or not (person.known or particular(person)):
         return person
-    return person if d.at == d.looked_in else replace(person, place=d.at)
+    return person if d.scene.at == d.scene.looked_in else replace(person, place=d.scene.at)
 
 
 def particular(person: Thing) -> bool:
@@ -294,12 +307,12 @@ def particular(person: Thing) -> bool:
 
 def is_here(d: Discourse, person: Thing) -> bool:
     """Whether a person can be spoken to without looking for them."""
-    if is_me(person) or person.here or person.value == d.with_person:
+    if is_me(person) or person.here or person.value == d.scene.with_person:
         return True
     if person.known or person.place is not None or particular(person):
         return False
     # "go to the lobby and tell the visitors ..."
-    return person.plural or (d.at is not None and d.at != d.looked_in)
+    return person.plural or (d.scene.at is not None and d.scene.at != d.scene.looked_in)
 
 
 def not_found(d: Discourse, thing: Thing) -> Call:

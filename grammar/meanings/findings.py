@@ -39,22 +39,22 @@ def found_told(d: Discourse, node: Node | None = None) -> Told:
     of_round = told_of_lookout(d, many)
     if of_round is not None:
         return of_round
-    told: News | None = d.news
+    told: News | None = d.reports.news
     if told is not None:
         take_back(d, told)
         return Told(told.words, [])
-    if d.report is not None:
+    if d.reports.last is not None:
         return _report_again(d)
-    if d.answer is not None and d.surveys:
-        each = "many" if many else d.polled_for or "each"
-        return polled(d, each if in_loop(d, d.surveys[-1].call) else "answers", None)
+    if d.answers.last is not None and d.answers.surveys:
+        each = "many" if many else d.answers.polled_for or "each"
+        return polled(d, each if in_loop(d, d.answers.surveys[-1].call) else "answers", None)
     return Told(known_words(d), [])
 
 
 def _report_again(d: Discourse) -> Told:
     """The last report, which then is told only as is said now."""
-    found: Report = d.report
-    at = next((at for at, step in enumerate(d.done) if step is d.report_step), None)
+    found: Report = d.reports.last
+    at = next((at for at, step in enumerate(d.done) if step is d.reports.step), None)
     if at is None:
         return summed_or_said(d, found)
     if found.value is not None and not isinstance(found.value, Recall):
@@ -85,7 +85,7 @@ def told_report(d: Discourse, found: Report) -> Told:
     if (of_round := found_on_round(d, found)) is not None:
         return of_round
     first: Steps = []
-    if found.place is not None and found.place != d.at:
+    if found.place is not None and found.place != d.scene.at:
         first.append(Call("goto", {"place": found.place}))
         d.went(found.place)
     if found.about_here and found.value is not None:
@@ -107,7 +107,9 @@ def poll(d: Discourse, node: Node) -> Told:
     kind, said = str(node.production.fixed["kind"]), said_in(d, node)
     if "it" in node.production.fixed and not asked_yet(d):
         return who_it_is(d, node)
-    if kind in ("each", "answers") and (d.report is not None or d.counted is not None):
+    if kind in ("each", "answers") and (
+        d.reports.last is not None or d.reports.counted is not None
+    ):
         return found_told(d)  # "the numbers": what was counted
     if said is not None and kind in ("who", "many", "share") and not asked_yet(d):
         return polled_now(d, kind, said)
@@ -130,14 +132,16 @@ def round_told(d: Discourse, node: Node) -> Told:
     """ "the total", "how many cups there are in each", "where most are"."""
     thing: Thing | None = d.get(node, "thing")
     kind = str(node.production.fixed["kind"])
-    nothing_yet = d.counted is None and d.report is None and last_round(d) is None
+    nothing_yet = d.reports.counted is None and d.reports.last is None and last_round(d) is None
     if nothing_yet and thing is not None:
         round_of_visits(d)  # "go to the lobby and the hall and tell me how many there are in all"
     if thing is not None and "kind" in node.parts and nothing_yet:
         # "tell me which ward has the fewest beds": to count them is left to do
         return around(d, kind, thing, kind_places(d, d.get(node, "kind")))
-    counted_here = d.report is not None and d.report.name == "count" and last_round(d) is None
-    if kind in ("total", "each") and d.counted is None and counted_here:
+    counted_here = (
+        d.reports.last is not None and d.reports.last.name == "count" and last_round(d) is None
+    )
+    if kind in ("total", "each") and d.reports.counted is None and counted_here:
         return found_told(d)  # "count the patients and tell me the total", in one place
     return summed_up(d, kind, thing)
 
@@ -145,19 +149,19 @@ def round_told(d: Discourse, node: Node) -> Told:
 @meaning("lookout_told")
 def lookout_told(d: Discourse, node: Node) -> Told:
     """ "whether there is one", "where you saw one": of what was looked for."""
-    lookout: Lookout | None = d.round.lookout
+    lookout: Lookout | None = d.rounds.round.lookout
     tell = str(node.production.fixed["tell"])
     if lookout is not None:
         return lookout.told(d, tell)
-    here = d.at if in_round(d) else d.round.here
+    here = d.scene.at if in_round(d) else d.rounds.round.here
     if here is not None:  # "if one has none, tell me which one"
         return Told([d.say("such_places", places=as_value(here))], [])
     found_before_coming_back(d)
     looked = looked_on_visits(d, node)
     if looked is not None:
         return looked.told(d, tell)
-    if d.news is not None:
+    if d.reports.news is not None:
         return found_told(d)
-    if d.round.such is None:
+    if d.rounds.round.such is None:
         return where_met(d, another_meant(d, node)) or told_of_search(d, tell)
-    return Told([d.say("it_is_there", place=Recall(d.round.such))], [])
+    return Told([d.say("it_is_there", place=Recall(d.rounds.round.such))], [])

@@ -13,18 +13,22 @@ from grammar.tidy import mentions
 def said_in_all(d: Discourse) -> Value:
     """What was answered to the last question, or to the one that it hangs on where it was not
     asked."""
-    assert d.answer is not None
+    assert d.answers.last is not None
     first = _hangs_on(d)
-    return Recall(d.answer) if first is None else _noted(d, first)
+    return Recall(d.answers.last) if first is None else _noted(d, first)
 
 
 def _hangs_on(d: Discourse) -> Survey | None:
     """The question to the same person that was asked in any case, if the last one was not."""
     asked, surely = asked_so_far(d), in_line(d)
     last = asked[-1] if asked else None
-    if last is None or last.call.save_as != d.answer or in_loop(d, last.call):
+    if last is None or last.call.save_as != d.answers.last or in_loop(d, last.call):
         return None
-    if not surely or any(each is last for each in surely) or surely[-1].call.save_as == d.answer:
+    if (
+        not surely
+        or any(each is last for each in surely)
+        or surely[-1].call.save_as == d.answers.last
+    ):
         return None
     first = surely[-1]
     same = first.who is not None and first.who == last.who
@@ -33,15 +37,15 @@ def _hangs_on(d: Discourse) -> Survey | None:
 
 def _noted(d: Discourse, first: Survey) -> Value:
     key = ("said in all", id(first.call))
-    if key not in d.notes:
-        d.notes[key] = d.variable("said")
-        note(d, first.call, [Remember(d.notes[key], _answer(first.call))], [])
-    said = d.notes[key]
+    if key not in d.answers.notes:
+        d.answers.notes[key] = d.variable("said")
+        note(d, first.call, [Remember(d.answers.notes[key], _answer(first.call))], [])
+    said = d.answers.notes[key]
     for each in asked_so_far(d):
         further = ("said further", id(each.call))
-        if each is first or each.who != first.who or further in d.notes:
+        if each is first or each.who != first.who or further in d.answers.notes:
             continue
-        d.notes[further] = said
+        d.answers.notes[further] = said
         both = Sentence((_answer(first.call), Text(", "), _answer(each.call)))
         note(d, each.call, [Remember(said, both)], [])
     return Recall(said)
@@ -71,7 +75,7 @@ def _untold(d: Discourse) -> list[Survey]:
     done with; in a branch, only those asked there: the others may be what it hangs on."""
     surely = [each for each in in_line(d) if any(is_in(step, each.call) for step in d.done)]
     last = surely[-1] if surely else None
-    if last is None or last.call.save_as != d.answer or in_loop(d, last.call):
+    if last is None or last.call.save_as != d.answers.last or in_loop(d, last.call):
         return []
     untold = [
         each

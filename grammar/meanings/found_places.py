@@ -21,23 +21,25 @@ from grammar.plan import Collect, Compare, ForEach, If, Recall, Step, Text
 def find_such(d: Discourse, node: Node) -> Steps:
     """ "find an empty office", "check the labs until you find one that is free"."""
     such = sought_place(d, node)
-    d.round.lookout = d.report = d.news = d.counted = d.checked = None
+    d.rounds.round.lookout = d.reports.last = d.reports.news = d.reports.counted = (
+        d.reports.checked
+    ) = None
     going, place, none = first_such(d, such)
-    d.round.such = place.name
-    d.at = d.place = place
+    d.rounds.round.such = place.name
+    d.scene.at = d.scene.place = place
     missing = d.say("no_such_places")
     if not node.production.fixed.get("ask"):
         return [*going, If(none, (missing,))]
     words: Steps = [If(none, (missing,), (d.say("it_is_there", place=place),))]
-    d.news = News(words, True)
-    d.told = words[-1]
+    d.reports.news = News(words, True)
+    d.reports.told = words[-1]
     return [*going, *go_back(d, going), *words]
 
 
 def first_of_round(d: Discourse) -> bool:
     """Let a round that was to find out which places are so find the first of them: "check which
     room is free, then take the visitor there"; whether there was such a round."""
-    lookout: Lookout | None = d.round.lookout
+    lookout: Lookout | None = d.rounds.round.lookout
     at = lookout.at(d) if lookout is not None else None
     if lookout is not None and at is not None:
         such: Such | None = Such(lookout.places, lookout.place, lookout.trait)
@@ -49,15 +51,15 @@ def first_of_round(d: Discourse) -> bool:
         return False
     going, place, none = first_such(d, such)
     d.done[at:end] = [*going, If(none, (d.say("no_such_places"),))]
-    d.round.lookout = d.news = d.told = None
-    d.round.such = place.name
-    d.at = d.place = place
+    d.rounds.round.lookout = d.reports.news = d.reports.told = None
+    d.rounds.round.such = place.name
+    d.scene.at = d.scene.place = place
     return True
 
 
 def told_round(d: Discourse) -> tuple[int | None, Such | None]:
     """The round whose news are the last steps, and what it looks for: "see which room is free"."""
-    if d.news is None or d.done[-1:] != [d.told]:
+    if d.reports.news is None or d.done[-1:] != [d.reports.told]:
         return None, None
     for at, step in enumerate(d.done):
         match step:
@@ -75,17 +77,17 @@ def sought_place(d: Discourse, node: Node) -> Such:
     of yet."""
     part = node.parts.get("place")
     if part is not None:  # "there is a free meeting room"
-        d.taking_apart = True
+        d.rounds.taking_apart = True
         try:
             such: Such = d.build(part)
         finally:
-            d.taking_apart = False
+            d.rounds.taking_apart = False
         return such
     place = d.variable("place")
-    before = d.at, d.person, d.thing, d.thing_last
-    d.at = Recall(place)
+    before = d.scene.at, d.scene.person, d.scene.thing, d.scene.thing_last
+    d.scene.at = Recall(place)
     trait = d.get(node, "place_trait")
-    d.at, d.person, d.thing, d.thing_last = before
+    d.scene.at, d.scene.person, d.scene.thing, d.scene.thing_last = before
     return Such(kind_places(d, d.get(node, "kinds")), place, trait)
 
 

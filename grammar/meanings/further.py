@@ -26,16 +26,16 @@ def ask_again(d: Discourse, node: Node) -> Steps:
     message = undelivered(d, person)
     if message is not None:
         return message
-    if not d.surveys:
+    if not d.answers.surveys:
         raise NotUnderstood(d.language.phrase("ask_what"))
-    last: Survey = (in_line(d) or d.surveys)[-1]
-    if d.wondered and last.call in d.wondered and person.value == last.who:
-        wondered, d.wondered = d.wondered, ()  # asked only now
+    last: Survey = (in_line(d) or d.answers.surveys)[-1]
+    if d.answers.wondered and last.call in d.answers.wondered and person.value == last.who:
+        wondered, d.answers.wondered = d.answers.wondered, ()  # asked only now
         d.done[:] = [each for each in d.done if not any(each is other for other in wondered)]
-        d.surveys = d.surveys[:-1]
+        d.answers.surveys = d.answers.surveys[:-1]
         d.variables.discard(str(last.call.save_as))
-        if d.at is None:
-            d.with_person, person = None, replace(person, here=False)
+        if d.scene.at is None:
+            d.scene.with_person, person = None, replace(person, here=False)
     if not person.known and isinstance(last.who, Text):  # "ask them again"
         person = Thing(last.who, known=True, person=True)
     spot: Where | None = d.get(node, "from")
@@ -43,7 +43,7 @@ def ask_again(d: Discourse, node: Node) -> Steps:
         person = replace(person, place=spot.place, here=False)
     arguments = {key: value for key, value in last.call.arguments.items() if key != "person"}
     whom = audience(d, person)
-    d.person = d.person if whom.many else person
+    d.scene.person = d.scene.person if whom.many else person
     name = remember_answer(d, last.options, "answer")
     return put(d, whom, Call("ask", arguments, save_as=name), last.options, last.nouns)
 
@@ -52,7 +52,7 @@ def ask_again(d: Discourse, node: Node) -> Steps:
 def ask_on(d: Discourse, node: Node) -> Steps:
     """ "if she has none, go on to Bob": he is asked the same, if there is nothing else to do."""
     after = d.tokens[node.end].norm if node.end < len(d.tokens) else ""
-    in_branch = d.depth > 1 and bool(d.surveys)
+    in_branch = d.depth > 1 and bool(d.answers.surveys)
     if in_branch and after not in {COMMA, *d.language.speech.get("joins", ())}:
         return ask_again(d, node)
     going: Steps = MEANINGS["go_person"](d, node)
@@ -65,13 +65,13 @@ def ask_more(d: Discourse, node: Node) -> Steps:
     if not follows(d, node):
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
-    if d.surveys and asked_just_now(d) and in_loop(d, d.surveys[-1].call):
+    if d.answers.surveys and asked_just_now(d) and in_loop(d, d.answers.surveys[-1].call):
         return ask_each_more(d, node)
-    one = d.person is not None and d.person.group is None and not d.person.every
-    if not d.surveys or not one or about_others(d, node.parts["question"]):
+    one = d.scene.person is not None and d.scene.person.group is None and not d.scene.person.every
+    if not d.answers.surveys or not one or about_others(d, node.parts["question"]):
         raise NotUnderstood(d.language.phrase("no_question"))
-    assert d.person is not None
-    return ask_one(d, node, replace(d.person, here=True))
+    assert d.scene.person is not None
+    return ask_one(d, node, replace(d.scene.person, here=True))
 
 
 def follows(d: Discourse, node: Node) -> bool:
@@ -86,12 +86,12 @@ def follows(d: Discourse, node: Node) -> bool:
 
 def asked_just_now(d: Discourse) -> bool:
     """Whether the step before is the last question, or the loop that puts it to several."""
-    return bool(d.done) and any(each is d.surveys[-1].call for each in nodes(d.done[-1]))
+    return bool(d.done) and any(each is d.answers.surveys[-1].call for each in nodes(d.done[-1]))
 
 
 def ask_each_more(d: Discourse, node: Node) -> Steps:
     """One more question to each of several: it is put behind the first, in the same loop."""
-    first: Survey = d.surveys[-1]
+    first: Survey = d.answers.surveys[-1]
     question = node.parts["question"]
     assert isinstance(question, Node)
     text, options = worded(d, question, Audience(None, [], several=True))
@@ -104,7 +104,7 @@ def ask_each_more(d: Discourse, node: Node) -> Steps:
     nouns = nouns_of(d, question, options)
     call = Call("ask", arguments, save_as=name)
     note(d, first.call, [call], [])
-    d.surveys.append(Survey(call, options, first.who, first.where, nouns))
+    d.answers.surveys.append(Survey(call, options, first.who, first.where, nouns))
     return []
 
 
@@ -113,11 +113,11 @@ def about_others(d: Discourse, question: Leaf | Node) -> bool:
     "whether she is in pain, and how strong they are"."""
     if not isinstance(question, Node) or "asked" not in question.parts:
         return False
-    before = d.surveys[-1].call.arguments["question"]
+    before = d.answers.surveys[-1].call.arguments["question"]
     words = d.language.tokens_of(before.value) if isinstance(before, Text) else ()
     if any(d.language.tokens_of(each.name)[0] in words for each in d.lexicon.people):
         return True
     verb = question.parts.get("verb")
     said = d.words(verb.start, verb.end) if verb is not None else ""
     several = base_form(d, said) == said  # "sind", of one who is asked
-    return several and d.person is not None and d.person.known
+    return several and d.scene.person is not None and d.scene.person.known

@@ -24,14 +24,14 @@ def bring_too(d: Discourse, node: Node) -> Steps:
     if last is None and not whole(d, node):
         raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
     if last is not None and last.method == "put":
-        d.at = None  # what goes elsewhere is not where the first one was put
+        d.scene.at = None  # what goes elsewhere is not where the first one was put
     return bring(d, node)
 
 
 @meaning("bring_as_many")
 def bring_as_many(d: Discourse, node: Node) -> Steps:
     """ "two apples to Alice and one to Bob": others of the same, from the same place."""
-    last, before = last_deed(d), d.thing
+    last, before = last_deed(d), d.scene.thing
     if last is None or before is None or not before.noun:
         raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
     number = int(d.get(node, "number"))
@@ -42,7 +42,7 @@ def bring_as_many(d: Discourse, node: Node) -> Steps:
         others = replace(others, place=source_of(d, before))
     person: Thing | None = d.get(node, "person_ref")
     spot: Where | None = d.get(node, "where")
-    d.at = d.holding = None
+    d.scene.at = d.scene.holding = None
 
     def one(thing: Thing) -> Steps:
         return deliver(d, thing, person, spot)

@@ -84,8 +84,8 @@ def in_round(d: Discourse, clause: Node) -> Steps:
     """The steps of a clause. "Go to every office. If somebody is there, ...": they belong to the
     round in the sentence before, which may consist of nothing but going there."""
     first = first_clause(clause)
-    if d.round.lookout is not None and (about_all(d, first) or fetches_it(d, first)):
-        d.round.lookout.until_found(d)
+    if d.rounds.round.lookout is not None and (about_all(d, first) or fetches_it(d, first)):
+        d.rounds.round.lookout.until_found(d)
     found_there_too(d, first)
     if alone(clause, first) and looks_out(d, first):
         return []
@@ -99,19 +99,22 @@ def in_round(d: Discourse, clause: Node) -> Steps:
         return told_behind(d, loop, told_only)
     here = Recall(loop.variable)
     outer, d.done = d.done, list(loop.steps)
-    d.at = d.place = d.round.here = here
-    lookout = d.round.lookout if means not in (*ABOUT_IT, "if", "when") else None
-    d.round.stop, d.round.lookout = None if d.round.lookout is None else d.round.lookout.trait, None
+    d.scene.at = d.scene.place = d.rounds.round.here = here
+    lookout = d.rounds.round.lookout if means not in (*ABOUT_IT, "if", "when") else None
+    d.rounds.round.stop, d.rounds.round.lookout = (
+        None if d.rounds.round.lookout is None else d.rounds.round.lookout.trait,
+        None,
+    )
     if lookout is not None:
         lookout.meet(d)
-    in_loop, d.in_loop = d.in_loop, True
+    in_loop, d.rounds.in_loop = d.rounds.in_loop, True
     clause, behind = told_of_all(clause, first)
     try:
         more = in_company(d, first, d.build(clause))
         inner = [*d.done, *(more if lookout is None else lookout.acted_on(more))]
     finally:
-        d.done, d.in_loop = outer, in_loop
-    d.at = d.with_person = d.round.stop = d.round.here = None
+        d.done, d.rounds.in_loop = outer, in_loop
+    d.scene.at = d.scene.with_person = d.rounds.round.stop = d.rounds.round.here = None
     loop = replace(loop, steps=tuple(inner))
     if behind is not None:
         d.done.append(loop)
@@ -130,7 +133,7 @@ def found_there_too(d: Discourse, first: Node) -> None:
     loop = d.done[-2] if len(d.done) > 1 and d.done[-1] == BACK else None
     if isinstance(loop, ForEach) and goes_on(d, loop, first) and about_places(first):
         d.done.pop()
-        d.at = None
+        d.scene.at = None
 
 
 def about_places(first: Node) -> bool:
@@ -179,7 +182,7 @@ def without_news(part: Node) -> tuple[Node | None, Node | None]:
 def in_company(d: Discourse, first: Node, steps: Steps) -> Steps:
     """At a stop of a round, what is said to whoever is there is said only if somebody is."""
     spoken = all(isinstance(each, Call) and each.method in SPOKEN for each in steps)
-    if not steps or not spoken or not in_a_round(d) or d.report_step in steps:
+    if not steps or not spoken or not in_a_round(d) or d.reports.step in steps:
         return steps
     if not any(each.means in ("person_kind", "person_first") for each in inside(first)):
         return steps
@@ -193,7 +196,7 @@ def in_company(d: Discourse, first: Node, steps: Steps) -> Steps:
 def fetches_it(d: Discourse, first: Node) -> bool:
     """ "if you find it, bring it here": whether a clause says what becomes of the one thing that is
     looked for, so that the search ends where it is."""
-    if not d.round.lookout.definite:
+    if not d.rounds.round.lookout.definite:
         return False
     return hands_it_over(first.parts.get("then", first))
 
@@ -209,20 +212,20 @@ def told_behind(d: Discourse, loop: ForEach, clause: Node) -> Steps:
     """ "go through all rooms and tell me if you see a dog": told when the round is done."""
     here = Recall(loop.variable)
     outer, d.done = d.done, list(loop.steps)
-    d.at = d.place = here
-    d.met = None
-    lookout, d.round.lookout = d.round.lookout, None
-    d.round.stop = None if lookout is None else lookout.trait
-    in_loop, d.in_loop = d.in_loop, True
+    d.scene.at = d.scene.place = here
+    d.branch.met = None
+    lookout, d.rounds.round.lookout = d.rounds.round.lookout, None
+    d.rounds.round.stop = None if lookout is None else lookout.trait
+    in_loop, d.rounds.in_loop = d.rounds.in_loop, True
     before, condition = condition_of(d, clause)
-    d.in_loop, d.round.stop = in_loop, None
+    d.rounds.in_loop, d.rounds.round.stop = in_loop, None
     of_any = any(each.means == "trait_holds" for each in inside(clause.parts["condition"]))
-    claim = None if of_any else claim_of(d, clause, condition, d.met)
+    claim = None if of_any else claim_of(d, clause, condition, d.branch.met)
     inner, d.done = d.done, outer
-    d.at = d.with_person = None
+    d.scene.at = d.scene.with_person = None
     person: Thing | None = d.get(clause, "person_ref")
     loop, words = noted_of(d, replace(loop, steps=(*inner, *before)), condition, claim)
-    d.report, d.news, d.told = None, News(words, person is None), words[-1]
+    d.reports.last, d.reports.news, d.reports.told = None, News(words, person is None), words[-1]
     if person is None or is_me(person):
         return [loop, *go_back(d, [loop]), *words]
     return [loop, *speak_to(d, person, words)]
@@ -301,7 +304,7 @@ def brought_behind(d: Discourse, loop: ForEach) -> Steps:
     inner = [*before, replace(last, then=last.then[:at])] if at else before
     loop, words = noted_of(d, replace(loop, steps=tuple(inner)), last.condition, told[0])
     d.went(d.start())
-    d.news, d.told = News(words, True), words[-1]
+    d.reports.news, d.reports.told = News(words, True), words[-1]
     return [loop, BACK, *words]
 
 
@@ -326,9 +329,9 @@ def depends_on_stop(d: Discourse, first: Node) -> bool:
 def on_answer_of_each(d: Discourse, first: Node) -> bool:
     """Whether a condition is on what each of those has answered who are at a place of a round: "if
     they say yes" is then said of them in turn, and not of the place."""
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
     about = {each.production.means for each in inside(first.parts["condition"])}
-    if survey is None or survey.call.save_as != d.answer or not about & ANSWERED:
+    if survey is None or survey.call.save_as != d.answers.last or not about & ANSWERED:
         return False
     return any(
         isinstance(each, ForEach)
@@ -348,7 +351,9 @@ def goes_on(d: Discourse, loop: ForEach, first: Node) -> bool:
         return depends_on_stop(d, first) and not on_answer_of_each(d, first)
     if len(loop.steps) > 1 or first.production.means in STAYS_OUTSIDE:
         return False
-    if d.round.lookout is not None and any(each.means == "thing_it" for each in inside(first)):
+    if d.rounds.round.lookout is not None and any(
+        each.means == "thing_it" for each in inside(first)
+    ):
         return True  # "search all labs for a stapler and bring it to Bob"
     return not any(
         each.production.means == "person_name"

@@ -42,7 +42,7 @@ def same_round(d: Discourse, places: Value) -> bool:
     need to know which labs are free. Go round the labs and tell me"."""
     at = last_round(d)
     loop = None if at is None else d.done[at]
-    found: News | None = d.news
+    found: News | None = d.reports.news
     told = found is not None and d.done[len(d.done) - len(found.words) :] == found.words
     return told and isinstance(loop, ForEach) and loop.items == places
 

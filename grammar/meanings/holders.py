@@ -22,7 +22,7 @@ ROUNDS: Final = (ForEach, Repeat)
 def asks_who_has(d: Discourse, question: Node, thing: Text) -> None:
     """A question that asks whether somebody has a thing makes it one to be had from them."""
     part = question.parts.get("verb") or question.parts.get("rest")
-    d.held = thing if part is not None and says_having(d, part.start) else None
+    d.answers.held = thing if part is not None and says_having(d, part.start) else None
 
 
 def says_having(d: Discourse, at: int) -> bool:
@@ -41,57 +41,62 @@ class Taking:
 def take_from_holder(d: Discourse, thing: Thing) -> bool:
     """Take a thing from the one who says that they have it, if that was asked and nothing has been
     said yet of what is done then."""
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
-    if d.held is None or survey is None or thing.value != d.held or thing.place is not None:
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
+    if (
+        d.answers.held is None
+        or survey is None
+        or thing.value != d.answers.held
+        or thing.place is not None
+    ):
         return False
-    within = (*d.around, d.done) if d.says_so else (d.done,)
+    within = (*d.around, d.done) if d.answers.says_so else (d.done,)
     asked = next((step for done in within for step in done if is_in(step, survey.call)), None)
     if asked is None:
         return False
-    d.held, d.polled_for = None, None
+    d.answers.held, d.answers.polled_for = None, None
     several = any(isinstance(each, ROUNDS) for each in nodes((asked,)))
     taking = Call("grab", {"thing": thing.value})
     yes = survey.said(d.language.phrase("yes"))
-    d.taking = Taking(thing.value, If(yes, (taking, End()) if several else (taking,)))
-    note(d, survey.call, [d.taking.step], [])
-    d.holding, d.at, d.away = thing.value, None, True
-    d.thing, d.thing_last = thing, True
+    d.answers.taking = Taking(thing.value, If(yes, (taking, End()) if several else (taking,)))
+    note(d, survey.call, [d.answers.taking.step], [])
+    d.scene.holding, d.scene.at, d.scene.away = thing.value, None, True
+    d.scene.thing, d.scene.thing_last = thing, True
     return True
 
 
 def from_whoever_has_it(d: Discourse, thing: Thing, delivered: Callable[[], Steps]) -> bool:
     """Bring a thing from the one who says that they have it."""
     take_from_holder(d, thing)
-    taking: Taking | None = d.taking
+    taking: Taking | None = d.answers.taking
     if taking is None or taking.thing != thing.value:
         return False
-    d.taking = None
-    d.at = d.with_person = None
-    d.holding = thing.value
+    d.answers.taking = None
+    d.scene.at = d.scene.with_person = None
+    d.scene.holding = thing.value
     bringing = d.sequence(lambda: d.done.extend(delivered()))
     taken, *end = taking.step.then
     brought = If(taking.step.condition, (taken, *bringing, *end))
     for done in (*d.around, d.done):
         done[:] = exchanged(done, taking.step, [brought])
-    d.at, d.away = None, True
+    d.scene.at, d.scene.away = None, True
     return True
 
 
 def the_one_who_says_so(d: Discourse, node: Node) -> Steps | None:
     """ "if one of them says yes, bring it to me", of a thing that several were asked about: from
     that one, before the others are asked."""
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
     then, condition = node.parts["then"], node.parts["condition"]
-    if d.held is None or survey is None or not isinstance(survey.who, Recall):
+    if d.answers.held is None or survey is None or not isinstance(survey.who, Recall):
         return None
     about = what_it_means(condition)
     said_yes = about in ("answered", "answers_reached") and not hands_on(node)
     no = set(d.norms(condition.start, condition.end)) & set(d.language.words_called("negations"))
     if not said_yes or no or not hands_it_over(then):
         return None
-    d.says_so = True
+    d.answers.says_so = True
     steps: Steps = d.build(then)
-    d.says_so = False
+    d.answers.says_so = False
     return steps
 
 
@@ -107,7 +112,7 @@ def is_in(step: Step, call: Call) -> bool:
 @meaning("fetch_held")
 def fetch_held(d: Discourse, node: Node) -> Steps:
     """ "get it from whoever has it": where it goes is said next."""
-    if d.thing is None or not take_from_holder(d, d.thing):
+    if d.scene.thing is None or not take_from_holder(d, d.scene.thing):
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
     return []

@@ -27,11 +27,11 @@ from grammar.plan import Call, Text, Value
 def introduce(d: Discourse, node: Node) -> Steps:
     """ "introduce Mary to the guests in the living room": take her there, and say who she is."""
     who = led(d, node)
-    remembered = d.person
+    remembered = d.scene.person
     to: Thing = where_sent(d, d.get(node, "to"))
-    d.person = remembered
+    d.scene.person = remembered
     steps: Steps = []
-    if to.place is not None and to.place != d.at:
+    if to.place is not None and to.place != d.scene.at:
         steps = [*meet(d, who), lead(d, who, to.place)]
         to = replace(to, here=to.plural)
     if to.known and to.group is None:
@@ -45,15 +45,17 @@ def introduce(d: Discourse, node: Node) -> Steps:
 def guide_to_person(d: Discourse, node: Node) -> Steps:
     """ "take her to the man in the study": to where he is. Asks for a place that is not said."""
     things = means_thing(d, node.parts["person_ref"])
-    before = d.person
+    before = d.scene.person
     thing = None if things else led(d, node)
     to = node.parts["other"]
     if thing is not None and isinstance(to, Node) and what_it_means(to) == "person_pronoun":
         someone_else = before is not None and before.value != thing.value
-        d.person = before if someone_else else d.one_called(to.start, to.end)  # "her" is no visitor
+        d.scene.person = (
+            before if someone_else else d.one_called(to.start, to.end)
+        )  # "her" is no visitor
     other: Thing = d.get(node, "other")
-    if things and d.thing is not None:
-        return deliver(d, replace(d.thing, pronoun=True), other, None)
+    if things and d.scene.thing is not None:
+        return deliver(d, replace(d.scene.thing, pronoun=True), other, None)
     return led_to(d, thing, other)
 
 
@@ -67,13 +69,15 @@ def led_to(d: Discourse, person: Thing | None, other: Thing) -> Steps:
         host = named(d, other)
         words = host if isinstance(host, str) else d.language.phrase("somebody")
         raise NotUnderstood(d.language.phrase("where_is_person", person=words))
-    if person.value == d.with_person:
+    if person.value == d.scene.with_person:
         leave_out_fetching(d)
     steps: Steps = [*meet(d, person), lead(d, person, place)]
     told_apart = other.known or " " in other.text
     if other.place is not None and told_apart and not other.plural:  # "to the man waving there"
         steps.append(Call("find", {"thing": other.value, "place": place}))
-    d.person_on_arrival = d.person  # "take the visitor to Clara and tell her ...": it is her place
+    d.scene.person_on_arrival = (
+        d.scene.person
+    )  # "take the visitor to Clara and tell her ...": it is her place
     return steps
 
 
@@ -111,18 +115,21 @@ def cannot_do(d: Discourse, node: Node) -> Steps:
 def guest_for(d: Discourse, node: Node) -> Steps:
     """ "there is a visitor for Clara in the lobby": it is about the visitor; who is told of it is
     Clara."""
-    d.host = d.get(node, "host")
+    d.people.host = d.get(node, "host")
     guest: Thing = d.get(node, "person_ref")
     spot: Where | None = d.get(node, "where")
     if spot is not None:
         guest = replace(guest, place=spot.place, furniture=spot.furniture)
     if node.production.fixed.get("coming"):
         guest = expected(guest)
-    d.person = d.visitor = guest
-    d.place = guest.place or d.place
-    d.thing_last = False
+    d.scene.person = d.people.visitor = guest
+    d.scene.place = guest.place or d.scene.place
+    d.scene.thing_last = False
     told = d.words(node.start, node.end)
-    d.report, d.report_step = Report("only", Text(sentence_form(told)), about_here=False), None
+    d.reports.last, d.reports.step = (
+        Report("only", Text(sentence_form(told)), about_here=False),
+        None,
+    )
     return aside(d, node)
 
 
@@ -130,14 +137,14 @@ def guest_for(d: Discourse, node: Node) -> Steps:
 def announce_guest(d: Discourse, node: Node) -> Steps:
     """ "ask for her name, take her to Clara and announce her": whom she is with by then, or whom
     she is for, is told who has come."""
-    here, known = owner_of(d), d.last_named
+    here, known = owner_of(d), d.people.last_named
     guest: Thing = led(d, node) or Thing(Text(ANYONE), person=True, here=True)
     host: Thing | None = d.get(node, "host")
     if host is None and here is not None:
         host = Thing(here, known=True, person=True)
-    host = host or d.host or known
+    host = host or d.people.host or known
     if host is None:
         raise NotUnderstood(d.language.phrase("announced_to"))
-    d.visitor = d.visitor or guest
+    d.people.visitor = d.people.visitor or guest
     news = who_has_come(d)
     return [] if news is None else found_out(d, news, host, back=False)

@@ -57,14 +57,14 @@ def offer(d: Discourse, survey: Survey, names: tuple[str, ...]) -> None:
     if not any(each is survey.call for each in nodes(tuple(d.done))):
         raise NotUnderstood(d.language.phrase("too_complicated"))
     d.done[:] = exchanged(d.done, survey.call, [call])
-    at = d.surveys.index(survey)
-    d.surveys[at] = replace(survey, call=call, options=names)
+    at = d.answers.surveys.index(survey)
+    d.answers.surveys[at] = replace(survey, call=call, options=names)
 
 
 def place_just_named(d: Discourse, kind: str | None = None) -> Value | None:
     """ "ask them who they want to see and take them there": the place of whoever the answer to the
     last question names, if nothing was done since."""
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
     if survey is None or not d.done or all(each is not survey.call for each in nodes(d.done[-1])):
         return None
     people = {each.name for each in d.lexicon.people}

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 from grammar.discourse import ANYONE, Discourse, Meeting, Steps
 from grammar.meanings.claims import leave_off, meet_there
+from grammar.memory import Scene
 from grammar.plan import Ask, Call, Condition, Holds, If, Not, Text
 
 
@@ -19,14 +19,14 @@ class Awaited:
     """A step that waits for somebody, and the scene when they have come."""
 
     step: Call
-    scene: dict[str, Any]
+    scene: Scene
 
 
 def note_waiting(d: Discourse) -> None:
     """Keep the scene behind a step that has just waited for somebody."""
     last = d.done[-1] if d.done else None
     if isinstance(last, Call) and last.method == "wait_for":
-        d.awaited = Awaited(last, d.scene())
+        d.people.awaited = Awaited(last, d.scene.copy())
 
 
 def too_late(
@@ -34,7 +34,7 @@ def too_late(
 ) -> If | None:
     """Waiting for somebody and what was done then, with what `make` does in the other case; None
     if the condition is not that they have not come."""
-    awaited: Awaited | None = d.awaited
+    awaited: Awaited | None = d.people.awaited
     match condition:
         case Not(condition=Holds(value=Ask(method="wait_for" | "sees" as looked, arguments=asked))):
             pass
@@ -49,9 +49,9 @@ def too_late(
         return None  # waited for without end, or said just before
     then: Steps = d.done[at + 1 :]
     del d.done[at:]
-    after = d.scene()
-    d.set_scene(awaited.scene)
-    d.looked_in = d.at  # others are not looked for just there
+    after = d.scene.copy()
+    d.scene = awaited.scene.copy()
+    d.scene.looked_in = d.scene.at  # others are not looked for just there
     meet_there(d, met)
     otherwise = make()
     leave_off(d, after)

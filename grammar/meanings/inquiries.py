@@ -38,8 +38,8 @@ def ask_topic(d: Discourse, node: Node) -> Steps:
         person = replace(person, plural=True)
         kind = question.production.fixed.get("kind", "who")
     steps = ask_one(d, node, replace(person, place=place or person.place))
-    d.put = d.surveys[-1]
-    d.polled_for = kind
+    d.answers.put = d.answers.surveys[-1]
+    d.answers.polled_for = kind
     if node.production.fixed.get("told"):  # "I wonder whether Bob has time, go and ask him"
         d.done.extend(steps)
         d.done.extend(tell_speaker(d))
@@ -54,24 +54,24 @@ def wondered(d: Discourse, node: Node) -> Steps:
     whom: Thing | None = d.get(node, "whom")
     steps = ask_topic(d, node)
     if whom is not None:
-        d.put = None
-    if d.answer is not None:
-        d.wondered, d.wonder = tuple(steps), (d.answer, whom)
+        d.answers.put = None
+    if d.answers.last is not None:
+        d.answers.wondered, d.answers.wonder = tuple(steps), (d.answers.last, whom)
     return steps
 
 
 def wonder_told(d: Discourse) -> Steps:
     """What somebody wants to know, if nobody is told of it."""
-    if d.wonder is None or mentions(tuple(d.done), Recall(d.wonder[0])):
+    if d.answers.wonder is None or mentions(tuple(d.done), Recall(d.answers.wonder[0])):
         return []
-    answer, whom = d.wonder
+    answer, whom = d.answers.wonder
     saying = Call("say", {"text": Recall(answer)})
     return [*go_back(d, []), saying] if whom is None else speak_to(d, whom, [saying])
 
 
 def owed(d: Discourse) -> Steps:
     """The answers to a question that the speaker put, where nothing else is done with them."""
-    put: Survey | None = d.put
+    put: Survey | None = d.answers.put
     if put is None or put.call.save_as is None:
         return []
     asked = any(each is put.call for each in nodes(tuple(d.done)))
@@ -83,13 +83,13 @@ def owed(d: Discourse) -> Steps:
 @meaning("bring_many")
 def bring_many(d: Discourse, node: Node) -> Steps:
     """ "and bring that many": as many as was answered, to whoever was asked."""
-    if d.answer is None or not d.surveys:
+    if d.answers.last is None or not d.answers.surveys:
         raise NotUnderstood(d.language.phrase("no_question"))
-    survey: Survey = d.surveys[-1]
+    survey: Survey = d.answers.surveys[-1]
     if survey.options and not all(each.isdigit() for each in survey.options):
         raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
-    thing: Thing | None = d.get(node, "thing") or d.thing
-    if thing is None or thing.value == Recall(d.answer):  # so many of what?
+    thing: Thing | None = d.get(node, "thing") or d.scene.thing
+    if thing is None or thing.value == Recall(d.answers.last):  # so many of what?
         raise NotUnderstood(d.language.phrase("what_is_it", word=d.words(node.start, node.end)))
     source: Where | None = d.get(node, "from")
     if source is not None:
@@ -97,24 +97,24 @@ def bring_many(d: Discourse, node: Node) -> Steps:
     person: Thing | None = d.get(node, "person_ref")
     if person is None and survey.who is not None and survey.where is None:
         person = Thing(survey.who, known=True, person=True)
-    d.at = d.with_person = None
+    d.scene.at = d.scene.with_person = None
     fetching = deliver(d, replace(thing, pronoun=False), person, d.get(node, "where"))
-    d.so_many = Repeat(Recall(d.answer), tuple(fetching))
-    return [d.so_many]
+    d.deliveries.so_many = Repeat(Recall(d.answers.last), tuple(fetching))
+    return [d.deliveries.so_many]
 
 
 def as_many_as_answered(d: Discourse, node: Node) -> Steps | None:
     """ "ask David how many chairs he needs and bring them to him": so many; None if "them" are no
     such things. "Get them from the lounge and bring them to him" is one errand."""
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
-    part, asked_of = node.parts.get("thing"), d.thing
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
+    part, asked_of = node.parts.get("thing"), d.scene.thing
     if survey is None or asked_of is None or not isinstance(part, Node) or not d.is_plural(part):
         return None
     question = survey.call.arguments["question"]
     if (
         part.means not in ("thing_it", "person_pronoun")
-        or survey.call.save_as != d.answer
-        or not d.answer
+        or survey.call.save_as != d.answers.last
+        or not d.answers.last
     ):
         return None
     words = d.language.tokens_of(question.value) if isinstance(question, Text) else ()
@@ -126,7 +126,7 @@ def as_many_as_answered(d: Discourse, node: Node) -> Steps | None:
         singular(word, d.language) for word in words
     }:
         return None
-    if d.done and d.done[-1] is d.so_many:
+    if d.done and d.done[-1] is d.deliveries.so_many:
         person: Thing | None = d.get(node, "person_ref")
         return [] if person is not None and person.value == survey.who else None
     rest = {name: each for name, each in node.parts.items() if name != "thing"}
@@ -137,7 +137,7 @@ def as_many_as_answered(d: Discourse, node: Node) -> Steps | None:
 def thing_answered(d: Discourse, node: Node) -> Thing:
     """ "what he wanted", "the one she chose": the thing that an answer names."""
     person: Thing | None = d.get(node, "person_ref")
-    surveys: list[Survey] = d.surveys
+    surveys: list[Survey] = d.answers.surveys
     if person is not None and person.known:
         surveys = [each for each in surveys if each.who in (person.value, None)] or surveys
     survey = surveys[-1] if surveys else None
@@ -152,7 +152,7 @@ def thing_answered(d: Discourse, node: Node) -> Thing:
     source: Where | None = d.get(node, "from")
     if source is not None:
         found = replace(found, place=source.place, furniture=source.furniture)
-    d.thing, d.thing_last = found, True
+    d.scene.thing, d.scene.thing_last = found, True
     return found
 
 
@@ -161,14 +161,16 @@ def person_said(d: Discourse, node: Node) -> Thing:
     """ "each one who said yes": whoever was asked; whether they said so is a condition of what is
     done for them (`grammar.meanings.quantifiers`)."""
     only_taken_apart(d, node)
-    if not d.surveys:
+    if not d.answers.surveys:
         raise NotUnderstood(d.language.phrase("no_question"))
-    survey: Survey = d.surveys[-1]
+    survey: Survey = d.answers.surveys[-1]
     asked = each_asked(d)
     if asked is not None:
         return asked
-    if survey.who is None and d.person is not None and in_loop(d, survey.call):
-        return replace(d.person, here=True, place=None, count=None)  # whoever comes, in their turn
+    if survey.who is None and d.scene.person is not None and in_loop(d, survey.call):
+        return replace(
+            d.scene.person, here=True, place=None, count=None
+        )  # whoever comes, in their turn
     if not isinstance(survey.who, Text):
         raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
     return Thing(survey.who, known=True, person=True)

@@ -9,9 +9,9 @@ from grammar.plan import Call, Value
 
 
 def lead(d: Discourse, person: Thing, place: Value) -> Call:
-    d.left = {**d.left, person.value: place}
-    d.at = d.place = place
-    d.with_person = person.value
-    d.person = d.led = replace(person, place=None, furniture=None, here=True)
-    d.thing_last = False
+    d.scene.left = {**d.scene.left, person.value: place}
+    d.scene.at = d.scene.place = place
+    d.scene.with_person = person.value
+    d.scene.person = d.scene.led = replace(person, place=None, furniture=None, here=True)
+    d.scene.thing_last = False
     return Call("guide", {"person": person.value, "place": place})

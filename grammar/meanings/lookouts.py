@@ -92,14 +92,14 @@ class Lookout:
         noted = If(condition, (Collect(found, Recall(self.place)),))
         d.done[at] = replace(loop, steps=(*loop.steps, *self.trait.first, noted))
         d.done.insert(0, Remember(found, Items(())))
-        d.round.lookout = None
+        d.rounds.round.lookout = None
         return Told(found_places(d, tell, found, so=condition), [])
 
     def counted(self, d: Discourse) -> Told:
         """How many of them there are at all the places."""
         if self.thing is None or self.trait.denied:
             return self.told(d, "many")
-        d.round.lookout = None
+        d.rounds.round.lookout = None
         return summed_up(d, "total", self.thing)
 
     def at(self, d: Discourse) -> int | None:
@@ -122,15 +122,18 @@ class Lookout:
     def until_found(self, d: Discourse) -> None:
         """Nothing but a search, after all, if it can be one."""
         at, places = self.at(d), named_places(d, self.places)
-        d.round.lookout = None
+        d.rounds.round.lookout = None
         if at is not None and places and self.thing is not None and not self.trait.denied:
             d.done[at : at + 1] = search_in(d, self.thing, places)
-            d.at, d.away = None, True
+            d.scene.at, d.scene.away = None, True
 
     def meet(self, d: Discourse) -> None:
         """The scene at a place where it is so."""
         if self.thing is not None and self.thing.person and not self.trait.denied:
-            d.person, d.with_person = replace_thing(self.thing, here=True), self.thing.value
+            d.scene.person, d.scene.with_person = (
+                replace_thing(self.thing, here=True),
+                self.thing.value,
+            )
 
 
 @meaning("round_check")
@@ -141,21 +144,21 @@ def round_check(d: Discourse, node: Node) -> Steps:
     if same_round(d, places):
         return []
     place = d.variable("place")
-    before = d.thing
-    d.at = d.place = Recall(place)
+    before = d.scene.thing
+    d.scene.at = d.scene.place = Recall(place)
     trait: Trait = d.get(node, "place_trait")
-    d.at = d.with_person = None
-    d.answer = d.report = d.news = d.counted = d.checked = None
+    d.scene.at = d.scene.with_person = None
+    d.answers.last = d.reports.last = d.reports.news = d.reports.counted = d.reports.checked = None
     thing = trait.thing
     if thing is None:
-        d.thing = before
+        d.scene.thing = before
     elif thing.person:
-        d.person, d.thing_last = thing, False
+        d.scene.person, d.scene.thing_last = thing, False
     else:
-        d.thing, d.thing_last = thing, True
+        d.scene.thing, d.scene.thing_last = thing, True
     tell = str(node.production.fixed.get("tell", "which"))
     one = definite(d, node.parts["place_trait"], thing)
-    d.round.lookout = Lookout(place, places, trait, thing, d.depth, one, tell)
+    d.rounds.round.lookout = Lookout(place, places, trait, thing, d.depth, one, tell)
     return [round_of(d, places, [], place)]
 
 
@@ -176,19 +179,21 @@ def looks_out(d: Discourse, clause: Node) -> bool:
     if isinstance(thing, list) or thing.place is not None or thing.several or thing.here:
         return False
     if thing.person:
-        d.person, d.thing_last = thing, False
+        d.scene.person, d.scene.thing_last = thing, False
     else:
-        d.thing, d.thing_last = thing, True
+        d.scene.thing, d.scene.thing_last = thing, True
     seen = Trait(Holds(Ask("sees", {"thing": sought(d, thing)})), [], thing)
     one = definite(d, part, thing)
-    d.round.lookout = Lookout(visits.variable, visits.items, seen, thing, d.depth, one, "which")
+    d.rounds.round.lookout = Lookout(
+        visits.variable, visits.items, seen, thing, d.depth, one, "which"
+    )
     return True
 
 
 def told_of_lookout(d: Discourse, many: bool) -> Told | None:
     """What a round has looked for, or how many of them it has found; a search through several
     places is such a round if "how many there are" is asked."""
-    lookout: Lookout | None = d.round.lookout
+    lookout: Lookout | None = d.rounds.round.lookout
     if lookout is None and many:
         lookout = search_as_round(d)
     if lookout is None:
@@ -202,7 +207,7 @@ def found_before_coming_back(d: Discourse) -> None:
     looked = d.done[-2] if len(d.done) > 1 and d.done[-1] == BACK else None
     if searched(looked) is not None or isinstance(looked, ForEach):
         d.done.pop()
-        d.at = None
+        d.scene.at = None
 
 
 def looked_on_visits(d: Discourse, node: Node) -> Lookout | None:
@@ -212,7 +217,7 @@ def looked_on_visits(d: Discourse, node: Node) -> Lookout | None:
     if visits is None:
         return None
     somebody = d.gender(node.start, node.end) is not None
-    last = d.person if somebody or d.thing is None else d.thing
+    last = d.scene.person if somebody or d.scene.thing is None else d.scene.thing
     thing: Thing | None = d.get(node, "thing") or last
     if thing is None:
         raise NotUnderstood(d.language.phrase("which_places"))
@@ -223,10 +228,10 @@ def looked_on_visits(d: Discourse, node: Node) -> Lookout | None:
 def another_meant(d: Discourse, node: Node) -> Thing | None:
     """ "tell Alice that ..., then tell Bob where she is": who but the one spoken of last is meant
     by the pronoun; None if it may be that one."""
-    last, gender = d.person, d.gender(node.start, node.end)
-    if last is None or d.thing_last or gender is None or d.may_have(last, gender):
+    last, gender = d.scene.person, d.gender(node.start, node.end)
+    if last is None or d.scene.thing_last or gender is None or d.may_have(last, gender):
         return None
-    names = [name for name in d.named if d.gender_of(name) == gender]
+    names = [name for name in d.people.named if d.gender_of(name) == gender]
     return Thing(Text(names[-1]), known=True, person=True) if names else None
 
 
@@ -255,9 +260,9 @@ def told_of_search(d: Discourse, tell: str) -> Told:
     hall for it and tell me where it is": of the search that the last step is."""
     condition = searched(d.done[-1] if d.done else None)
     if (
-        condition is None and tell == "which" and d.answer is None
+        condition is None and tell == "which" and d.answers.last is None
     ):  # "I am looking for Bob, tell me where he is"
-        return told_where(d, d.thing if d.thing_last else d.person)
+        return told_where(d, d.scene.thing if d.scene.thing_last else d.scene.person)
     if condition is None:
         raise NotUnderstood(d.language.phrase("which_places"))
     looked = searches(condition)
@@ -280,7 +285,7 @@ def told_of_search(d: Discourse, tell: str) -> Told:
 def sought_last(d: Discourse, search: Ask) -> Thing:
     """What a search is for, as it was spoken of."""
     value = search.arguments["thing"]
-    known = (each for each in (d.thing, d.person) if each and sought(d, each) == value)
+    known = (each for each in (d.scene.thing, d.scene.person) if each and sought(d, each) == value)
     return next(known, Thing(value))
 
 
@@ -300,10 +305,10 @@ def search_as_round(d: Discourse) -> Lookout | None:
 
 def tell_lookout(d: Discourse, person: Thing | None) -> Steps | None:
     """What a round was to find out, told to somebody; None if there is none to tell of."""
-    if d.round.lookout is None:
+    if d.rounds.round.lookout is None:
         return None
-    words = d.round.lookout.told(d).words
-    d.news, d.told = News(words, person is None), words[-1]
+    words = d.rounds.round.lookout.told(d).words
+    d.reports.news, d.reports.told = News(words, person is None), words[-1]
     if person is None or is_me(person):
         return [*go_back(d, []), *words]
     return speak_to(d, person, words)
@@ -312,8 +317,8 @@ def tell_lookout(d: Discourse, person: Thing | None) -> Steps | None:
 @meaning("look_now")
 def look_now(d: Discourse, node: Node) -> Steps:
     """ "Is there a mug in the kitchen? Go and look ...": that is what is done already."""
-    told = bool(d.done) and d.told == d.done[-1]  # "is there a mug anywhere? Go and look"
-    asked = d.news or d.report or d.round.lookout or d.round.such
+    told = bool(d.done) and d.reports.told == d.done[-1]  # "is there a mug anywhere? Go and look"
+    asked = d.reports.news or d.reports.last or d.rounds.round.lookout or d.rounds.round.such
     if not told and asked is None:
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
@@ -336,9 +341,9 @@ def why(d: Discourse, clause: Node) -> None:
     part = wish.parts.get("thing") or wish.parts["person_ref"]
     thing: Thing = d.build(part)
     if thing.person:
-        d.person, d.thing_last = thing, False
+        d.scene.person, d.scene.thing_last = thing, False
     else:
-        d.thing, d.thing_last = thing, True
+        d.scene.thing, d.scene.thing_last = thing, True
     d.background.append(d.words(clause.start, clause.end))
 
 
@@ -349,17 +354,17 @@ def looking_for(d: Discourse, node: Node) -> Steps:
     person: Thing = d.get(node, "person_ref")
     if any(token.kind == "word" for token in d.tokens[node.end : node.end + 2]):
         d.background.append(d.words(node.start, node.end))
-        d.person, d.thing_last = person, False
+        d.scene.person, d.scene.thing_last = person, False
         return []
     return look_for(d, person)
 
 
 def told_at_last(d: Discourse) -> Steps:
     """What a round was to find out, at the end of a sequence in which nobody asked for it."""
-    waiting: News | None = d.news
+    waiting: News | None = d.reports.news
     if d.depth == 1 and waiting is not None and waiting.waiting and waiting.whom is not None:
         return speak_to(d, waiting.whom, waiting.words)
-    lookout: Lookout | None = d.round.lookout
+    lookout: Lookout | None = d.rounds.round.lookout
     if lookout is None or lookout.depth != d.depth:
         return []
     at = lookout.at(d)

@@ -100,7 +100,7 @@ def done_until(d: Discourse, body: Steps, looking: Steps, condition: Condition) 
         return led
     if stays(body):
         return [*held(body), *awaited(looking, condition)]
-    if d.counting is None:
+    if d.answers.counting is None:
         body = looking_up(body)
     return there_first(until_answered(d, condition, [*body, *looking]))
 
@@ -170,7 +170,7 @@ def so_often(d: Discourse, times: Leaf | Node, make: Callable[[], Steps]) -> Ste
     body = each_who_comes(d, make)
     if stays(body):  # "stay in the lobby until five visitors have come"
         who = Thing(as_value(d.get(times, "kind", ANYONE)), person=True, plural=True, here=True)
-        d.person = d.last_counted = who
+        d.scene.person = d.reports.last_counted = who
         return [*held(body), Repeat(number, (Call("wait_for", {"thing": who.value}),))]
     return there_first([Repeat(number, tuple(body))])
 
@@ -203,8 +203,8 @@ def watched(d: Discourse, node: Node) -> Steps:
     place: Value | None = d.get(node, "place")
     if place is not None:
         going = go(d, place)
-        d.looked_in = place
-        d.on_duty = "guard"
+        d.scene.looked_in = place
+        d.people.on_duty = "guard"
         return [*going, *d.build(node.parts["steps"])]
     thing = noun_of(d, node)
     going = []
@@ -212,7 +212,7 @@ def watched(d: Discourse, node: Node) -> Steps:
         going = go(d, thing.place)
     elif thing.known and thing.person:
         going = look_for(d, thing)
-    d.met = None
+    d.branch.met = None
     meet_there(d, Meeting(replace(thing, place=None)))
     return [*going, *d.build(node.parts["steps"])]
 
@@ -244,7 +244,7 @@ def looped(
 
     if "while_condition" in often.parts:
         looking, condition = condition_of(d, often, "while_condition")
-        meet_there(d, d.met)
+        meet_there(d, d.branch.met)
         body = each_who_comes(d, make, at_once="pause" in often.parts)
         return [*looking, While(condition, (*_paced(d, often, body), *looking))]
     if "condition" in often.parts:
@@ -327,9 +327,9 @@ def _lasting(d: Discourse, often: Node, make: Callable[[], Steps]) -> Steps:
 def each_who_comes(d: Discourse, make: Callable[[], Steps], at_once: bool = False) -> Steps:
     """A round of "keep greeting visitors": it begins when one comes; but for those who are said to
     be somewhere, where each round has its time (`at_once`)."""
-    before = d.person
+    before = d.scene.person
     body = make()
-    person = d.person
+    person = d.scene.person
     if person is None or person is before or person.known or person.me or person.group is not None:
         return body
     only = body[0] if len(body) == 1 else None
@@ -410,25 +410,25 @@ def each_place(d: Discourse, items: Value, steps: Leaf | Node | None, goes: bool
     variable = d.variable("place")
     here = Recall(variable)
     going = Call("goto", {"place": here})
-    before = d.at
-    d.place = here
-    d.at = here if goes else None
+    before = d.scene.at
+    d.scene.place = here
+    d.scene.at = here if goes else None
     body: Steps = []
     if steps is not None:
-        outer = d.in_loop, d.stop
-        d.in_loop, d.stop = True, here
+        outer = d.rounds.in_loop, d.rounds.stop
+        d.rounds.in_loop, d.rounds.stop = True, here
         body = d.build(steps)
-        d.in_loop, d.stop = outer
+        d.rounds.in_loop, d.rounds.stop = outer
     first = body[0] if body else None
     moves = isinstance(first, Call) and first.method in ("goto", "guide", "find")
     search = until_found(d, here, items, body)
     if search:  # "look for it in all wards": until it is found
-        d.at = d.with_person = None
+        d.scene.at = d.scene.with_person = None
         return search
     if not moves and (goes or not mentions(body, here)):
         body = [going, *body]
-    d.at = None if body else before
-    d.with_person = None
+    d.scene.at = None if body else before
+    d.scene.with_person = None
     return brought_behind(d, ForEach(variable, items, tuple(body)))
 
 
@@ -445,7 +445,7 @@ def for_each_of_them(d: Discourse, node: Node) -> Steps:
         going.insert(0, last)
     if len(going) < 2:
         d.done.extend(going)
-        if d.in_loop and d.at is not None and d.at == d.place:
+        if d.rounds.in_loop and d.scene.at is not None and d.scene.at == d.scene.place:
             inside: Steps = d.build(node.parts["steps"])  # "visit the labs and ... in each"
             return inside
         raise NotUnderstood(d.language.phrase("which_places"))
@@ -469,12 +469,12 @@ def at_each_stop(d: Discourse, stops: list[Call], steps: Leaf | Node) -> Steps:
     """ "show her the library and the lounge. At each stop say ...": with her there."""
     del d.done[-len(stops) :]
     here = Recall(d.variable("place"))
-    last = d.place
-    d.at = d.place = here
-    outer, d.in_loop = d.in_loop, True
+    last = d.scene.place
+    d.scene.at = d.scene.place = here
+    outer, d.rounds.in_loop = d.rounds.in_loop, True
     body = d.build(steps)
-    d.in_loop = outer
-    d.at = d.place = last
+    d.rounds.in_loop = outer
+    d.scene.at = d.scene.place = last
     leading = Call("guide", {**stops[0].arguments, "place": here})
     places = Items(tuple(each.arguments["place"] for each in stops))
     return [ForEach(here.name, places, (leading, *body))]
@@ -491,13 +491,13 @@ def check_each_place(d: Discourse, node: Node) -> Steps:
     if isinstance(sought_for, list):  # "check every ward for Alice or Bob"
         raise NotUnderstood(d.language.phrase("one_person"))
     variable = d.variable("place")
-    d.at = d.place = Recall(variable)
+    d.scene.at = d.scene.place = Recall(variable)
     if sought_for.person:
-        d.person, d.with_person = replace(sought_for, here=True), sought_for.value
-    outer, d.in_loop = d.in_loop, True
+        d.scene.person, d.scene.with_person = replace(sought_for, here=True), sought_for.value
+    outer, d.rounds.in_loop = d.rounds.in_loop, True
     body = d.build(node.parts["steps"])
-    d.in_loop = outer
-    d.at = d.with_person = None
+    d.rounds.in_loop = outer
+    d.scene.at = d.scene.with_person = None
     only_one = sought_for.known or Call("grab", {"thing": sought_for.value}) in body
     until = bool(node.production.fixed.get("until"))
     found = Recall(d.variable("found"))
@@ -522,13 +522,13 @@ def for_each_person(d: Discourse, node: Node) -> Steps:
     person: Thing | None = d.get(node, "person_ref")
     if times is None and person is not None and person.place is not None:
         going, one = go(d, person.place), Recall(d.variable("person"))
-        d.person = replace(person, value=one, known=True, here=True, place=None)
-        d.with_person = one
+        d.scene.person = replace(person, value=one, known=True, here=True, place=None)
+        d.scene.with_person = one
         body = d.build(node.parts["steps"])
-        d.person = d.with_person = None
+        d.scene.person = d.scene.with_person = None
         return [*going, ForEach(one.name, Ask("people"), tuple(body))]
     who = person.value if person is not None else Text(ANYONE)
-    d.person = Thing(who, person=True, here=True)
+    d.scene.person = Thing(who, person=True, here=True)
     wait = Call("wait_for", {"thing": who})
     going = go(d, person.place) if person is not None and person.place is not None else []
     body = d.build(node.parts["steps"])

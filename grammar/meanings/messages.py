@@ -47,10 +47,10 @@ NOBODY_ELSE: Final[dict[str, Any]] = {
 def say_that(d: Discourse, node: Node) -> Steps:
     """ "tell her that lunch is ready" -> "Lunch is ready."; to somebody, "they" becomes "you"."""
     part = node.parts["text"]
-    d.guest, d.others = guest_spoken_of(d), others_spoken_of(d)
+    d.people.guest, d.people.others = guest_spoken_of(d), others_spoken_of(d)
     host_told(d, node)
     person: Thing | None = guest_for(d, node.parts.get("person_ref"), d.get(node, "person_ref"))
-    d.message = node
+    d.answers.message = node
     if node.production.fixed.get("to_me"):
         person = person_me(d, node)
     if isinstance(part, Leaf) and part.slot == "quote":
@@ -63,7 +63,7 @@ def say_that(d: Discourse, node: Node) -> Steps:
     more = node.parts.get("more")  # "that the doctor is here and that she can come in"
     if more is not None:
         text, end = f"{text} {told_to(d, more, person)}", more.end
-    d.named.extend(people_named(d, part.start, end))
+    d.people.named.extend(people_named(d, part.start, end))
     saying = Call("say", {"text": answers_in(d, text, part.start, end)})
     if is_me(person):
         return [*back_to_speaker(d), saying]
@@ -239,7 +239,9 @@ def turned(d: Discourse, start: int, end: int, person: Thing | None) -> dict[int
     if person.me:  # "remind me that I have an appointment": "I" is who will hear it
         data = {**data, **data["speaker"]}
     stands = {d.tokens[at].norm for at in range(start, end)} & set(data["stands"])
-    if d.thing is not None and stands:  # "put the box there and tell Bob that it stands there"
+    if (
+        d.scene.thing is not None and stands
+    ):  # "put the box there and tell Bob that it stands there"
         return changed
     last = next((at for at in range(start, end) if d.tokens[at].norm in data["ends"]), end)
     for at in range(start, last):
@@ -314,8 +316,8 @@ def _of_thing(d: Discourse, start: int, at: int, end: int, data: Mapping[str, An
     # "put the parcel there and tell Bob that it has arrived"
     said = {each.spelled or each.norm for each in d.tokens[at + 1 : end]}
     of_thing = verb in data.get("being", ()) and said & set(data.get("of_things", ()))
-    if of_thing and d.thing is not None:
-        return gender_of_thing(d, d.thing) == gender
+    if of_thing and d.scene.thing is not None:
+        return gender_of_thing(d, d.scene.thing) == gender
     begins = [start]
     for position in range(start, at):
         word = d.tokens[position].norm
@@ -349,8 +351,10 @@ def _of_others(d: Discourse, person: Thing, word: str, data: Mapping[str, Any]) 
     "tell Alice that they agree", "wait for a visitor and tell Alice that they are here"."""
     several = word in data.get("plural", ())
     alone = person.known and person.group is None and not person.plural
-    asked = [each.who for each in d.surveys if isinstance(each.who, Recall)]
-    others = d.others or d.visitor is not None or any(who != person.value for who in asked)
+    asked = [each.who for each in d.answers.surveys if isinstance(each.who, Recall)]
+    others = (
+        d.people.others or d.people.visitor is not None or any(who != person.value for who in asked)
+    )
     return several and alone and others
 
 
@@ -374,7 +378,7 @@ def _noun_follows(d: Discourse, at: int, end: int, data: Mapping[str, Any]) -> b
 def remind(d: Discourse, node: Node) -> Steps:
     """ "remind me of the meeting", "remind Bob in ten minutes to come"."""
     delay: Steps = d.get(node, "delay") or []
-    d.guest = guest_spoken_of(d)
+    d.people.guest = guest_spoken_of(d)
     person: Thing | None = d.get(node, "person_ref")
     part = node.parts["text"]
     phrase = str(node.production.fixed.get("phrase", "reminder"))

@@ -50,7 +50,7 @@ class News:
 def just_went(d: Discourse) -> bool:
     """Whether the step before leads to a place."""
     last = d.done[-1] if d.done else None
-    return isinstance(d.at, Text) and last == Call("goto", {"place": d.at})
+    return isinstance(d.scene.at, Text) and last == Call("goto", {"place": d.scene.at})
 
 
 def said_themselves(d: Discourse, node: Node, person: Thing) -> bool:
@@ -61,7 +61,7 @@ def said_themselves(d: Discourse, node: Node, person: Thing) -> bool:
 
 def go_back(d: Discourse, more: Steps) -> Steps:
     """Back to who gave the command, unless the robot is there."""
-    before = () if d.in_loop else d.around
+    before = () if d.rounds.in_loop else d.around
     if not moved([*before, *d.done, *more]) or (d.done and not more and d.done[-1] == BACK):
         return []
     d.came_back()
@@ -73,9 +73,9 @@ def back_to_speaker(d: Discourse) -> Steps:
     that he has none". Whoever came along is there already."""
     steps = nodes((*d.around, d.done))
     led = any(isinstance(each, Call) and each.method in ("guide", "follow") for each in steps)
-    if led or d.in_loop or d.at == Recall(START):
+    if led or d.rounds.in_loop or d.scene.at == Recall(START):
         return []
-    if d.at is None and not d.away:
+    if d.scene.at is None and not d.scene.away:
         return go_back(d, [])
     d.came_back()
     return [BACK]
@@ -83,20 +83,20 @@ def back_to_speaker(d: Discourse) -> Steps:
 
 def in_round(d: Discourse) -> bool:
     """Whether the robot is at one of the places that it goes round."""
-    return d.in_loop and isinstance(d.at, Recall) and d.at == d.place
+    return d.rounds.in_loop and isinstance(d.scene.at, Recall) and d.scene.at == d.scene.place
 
 
 def told_at_end(d: Discourse, person: Thing | None) -> bool:
     """Whether what was just counted or seen is told when the round of places is done, for nobody is
     told of it at any of them: "go to every ward, count the patients and tell me how many"."""
-    found = d.report
+    found = d.reports.last
     if found is None or not in_round(d):
         return False
     if not found.about_here or found.value is None:
         return False
-    if not any(each is d.report_step for each in nodes(tuple(d.done))):
+    if not any(each is d.reports.step for each in nodes(tuple(d.done))):
         return False
-    d.after_round = (person, "each")
+    d.reports.after_round = (person, "each")
     return True
 
 
@@ -107,10 +107,10 @@ def take_back(d: Discourse, found: News) -> None:
         del d.done[len(d.done) - len(found.words) :]
         if d.done and d.done[-1] == BACK:
             d.done.pop()
-            d.at = None
-        d.news = replace(found, to_all=False, waiting=True)
+            d.scene.at = None
+        d.reports.news = replace(found, to_all=False, waiting=True)
     else:
-        d.news = replace(found, to_all=False)
+        d.reports.news = replace(found, to_all=False)
 
 
 @meaning("told_list")
@@ -125,4 +125,4 @@ def not_back_yet(d: Discourse) -> None:
     """What was to be told to the speaker is told elsewhere: the way back comes to nothing."""
     if d.done and d.done[-1] == BACK:
         d.done.pop()
-        d.at = None
+        d.scene.at = None

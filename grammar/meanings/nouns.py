@@ -44,8 +44,8 @@ def thing(d: Discourse, node: Node) -> Thing:
             raise unknown_person(d, d.words(node.start, node.end), node)
     else:
         one, known, many = str(node.production.fixed.get("what", "object")), False, False
-        if "superlative" in node.parts and d.thing is not None:
-            one = d.thing.noun or one  # "the biggest"
+        if "superlative" in node.parts and d.scene.thing is not None:
+            one = d.scene.thing.noun or one  # "the biggest"
     count = d.get(node, "number") if node.production.rule == "thing" else None
     found = replace(
         best_of_those(d, node, described(d, one, node, lies_about=True)),
@@ -56,7 +56,7 @@ def thing(d: Discourse, node: Node) -> Thing:
         every=bool(node.production.fixed.get("every")),
         noun=head_word(one, d.language),
     )
-    d.thing, d.thing_last = found, True
+    d.scene.thing, d.scene.thing_last = found, True
     return found
 
 
@@ -66,7 +66,7 @@ def best_of_those(d: Discourse, node: Node, found: Thing) -> Thing:
     named = isinstance(head, Leaf) and d.norms(head.start, head.end)[-1] not in (
         d.language.speech.get("one_words", ())
     )
-    those = d.thing
+    those = d.scene.thing
     if named or "superlative" not in node.parts or those is None:
         return found
     if not those.plural and not is_best(d, those):  # "... the heaviest and which is the lightest"
@@ -125,10 +125,10 @@ def instead_of_one(d: Discourse, node: Node, noun: str) -> str:
 
 def spoken_of(d: Discourse, node: Node) -> Thing:
     """The thing spoken of last. Raises `NotUnderstood` if there is none."""
-    if d.thing is None or not d.thing.noun:
+    if d.scene.thing is None or not d.scene.thing.noun:
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("which_other", words=words))
-    return d.thing
+    return d.scene.thing
 
 
 @meaning("thing_other")
@@ -136,11 +136,11 @@ def thing_other(d: Discourse, node: Node) -> Thing:
     """ "the other cup", after one of them: to be found where that was; "another cup"."""
     head = node.parts.get("head")
     noun = singular(d.noun_words(head.start, head.end), d.language) if head is not None else ""
-    before = d.thing
+    before = d.scene.thing
     new = node.production.fixed.get("new")
     other = None if new else other_of_two(d, head_word(noun, d.language) if noun else "")
     if other is not None:
-        d.thing, d.thing_last = other, True
+        d.scene.thing, d.scene.thing_last = other, True
         return other
     if before is None or not before.noun or (noun and head_word(noun, d.language) != before.noun):
         if new and noun:
@@ -158,7 +158,7 @@ def thing_other(d: Discourse, node: Node) -> Thing:
         other = replace(
             other, place=place, furniture=before.furniture, preposition=before.preposition
         )
-    d.thing, d.thing_last = other, True
+    d.scene.thing, d.scene.thing_last = other, True
     return other
 
 
@@ -192,27 +192,27 @@ def thing_something(d: Discourse, node: Node) -> Thing:
         word = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("bring_what", word=word), gap=(node.start, node.end))
     found = described(d, "object", node, lies_about=True)
-    d.thing, d.thing_last = found, True
+    d.scene.thing, d.scene.thing_last = found, True
     return found
 
 
 @meaning("thing_it")
 def thing_it(d: Discourse, node: Node) -> Thing:
     """ "it"; where a language has one word for things and people, whichever it can mean."""
-    somebody = d.person is not None or owner_of(d) is not None
+    somebody = d.scene.person is not None or owner_of(d) is not None
     either = node.production.fixed.get("or_whom") and somebody
     if either and (means_receiver(d, node) or not means_thing(d, node)):
         return person_pronoun(d, node)
-    if d.thing is not None:
-        if d.thing.several and not d.is_plural(node):  # "bring one of them"
-            return replace(d.thing, count=None, every=False, pronoun=True)
-        return replace(d.thing, pronoun=True)
-    if d.holding is not None:
-        return Thing(d.holding, pronoun=True)
+    if d.scene.thing is not None:
+        if d.scene.thing.several and not d.is_plural(node):  # "bring one of them"
+            return replace(d.scene.thing, count=None, every=False, pronoun=True)
+        return replace(d.scene.thing, pronoun=True)
+    if d.scene.holding is not None:
+        return Thing(d.scene.holding, pronoun=True)
     of_things = set(d.norms(node.start, node.end)) & set(
         d.language.speech.get("of_things_only", ())
     )
-    if d.person is not None and not of_things:  # "where is Victor? look for him"
+    if d.scene.person is not None and not of_things:  # "where is Victor? look for him"
         return person_pronoun(d, node)
     word = d.words(node.start, node.end)
     raise NotUnderstood(d.language.phrase("what_is_it", word=word), gap=(node.start, node.end))
@@ -225,8 +225,8 @@ def thing_opening(d: Discourse, node: Node) -> Thing:
     if not isinstance(place, Text):  # "this room", wherever that is
         word = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("what_is_it", word=word), gap=(node.start, node.end))
-    found = d.thing = Thing(Text(f"{d.called(place.value)} {d.get(node, 'opener')}"))
-    d.thing_last = True
+    found = d.scene.thing = Thing(Text(f"{d.called(place.value)} {d.get(node, 'opener')}"))
+    d.scene.thing_last = True
     return found
 
 
@@ -236,14 +236,18 @@ def one_of_them(d: Discourse, node: Node) -> Thing:
     folder" there are no several, unless it was brought to the speaker, who is surely there. Words
     for nobody ("keiner") are no others that can only be about things ("keine", "keins")."""
     articles = d.language.speech.get("articles", ())
-    said = d.thing.text.split()[-1].lower() if d.thing is not None and d.thing.text else ""
+    said = (
+        d.scene.thing.text.split()[-1].lower()
+        if d.scene.thing is not None and d.scene.thing.text
+        else ""
+    )
     named = [at for at in range(1, node.start) if d.words(at, at + 1).lower() == said]
     the_one = bool(named) and d.tokens[named[-1] - 1].norm in articles
     delivery = delivered_last(d)
     to_speaker = delivery is not None and delivery.spot is None and delivery.receiver is None
     no_person = to_speaker or bool(node.production.fixed.get("of_things"))
-    if d.thing is not None and d.thing_last and (no_person or not the_one):
-        return replace(d.thing, pronoun=True)
+    if d.scene.thing is not None and d.scene.thing_last and (no_person or not the_one):
+        return replace(d.scene.thing, pronoun=True)
     return person_kind(d, node)
 
 
@@ -252,5 +256,5 @@ def thing_from(d: Discourse, node: Node) -> Thing:
     """ "one from the supply room", of what was spoken of."""
     spot: Where = d.get(node, "from")
     found = replace(thing_it(d, node), place=spot.place, furniture=spot.furniture, pronoun=False)
-    d.thing, d.thing_last = found, True
+    d.scene.thing, d.scene.thing_last = found, True
     return found

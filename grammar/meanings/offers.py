@@ -50,28 +50,30 @@ def offer(d: Discourse, node: Node) -> Steps:
     }
     answer = remember_answer(d, (yes, no), "answer")
     steps = put(d, whom, Call("ask", arguments, save_as=answer), (yes, no))
-    survey = d.surveys[-1]
+    survey = d.answers.surveys[-1]
     known = survey.who is not None
     receiver = Thing(survey.who or person.value, known=known, person=True, here=True)
     giving = If(Compare(Recall(answer), "==", Text(yes)), tuple(brought_there(d, thing, receiver)))
-    d.offers.append(Offer(survey.call, thing, (giving,), receiver, d.depth))
+    d.deliveries.offers.append(Offer(survey.call, thing, (giving,), receiver, d.depth))
     return steps
 
 
 def brought_there(d: Discourse, thing: Thing, receiver: Thing) -> Steps:
     """How somebody gets a thing, without a change in what is spoken of."""
-    scene, outer, before = d.scene(), d.at_people, d.delivery
-    d.at_people = True
+    scene, outer, before = d.scene.copy(), d.rounds.at_people, d.deliveries.last
+    d.rounds.at_people = True
     steps = d.sequence(lambda: d.done.extend(deliver(d, thing, receiver, None)))
-    d.set_scene(scene)
-    d.at_people, d.delivery = outer, before
-    d.thing, d.thing_last = thing, True
+    d.scene = scene.copy()
+    d.rounds.at_people, d.deliveries.last = outer, before
+    d.scene.thing, d.scene.thing_last = thing, True
     return steps
 
 
 def if_they_want_it(d: Discourse, thing: Thing, person: Thing | None, steps: Steps) -> Steps:
     """ "offer Bob a coffee and bring it to him from the kitchen": if he says yes."""
-    made = next((each for each in reversed(d.offers) if each.thing.value == thing.value), None)
+    made = next(
+        (each for each in reversed(d.deliveries.offers) if each.thing.value == thing.value), None
+    )
     if made is None or not steps or d.depth > made.depth:
         return steps
     if person is not None and person.value != made.receiver.value:
@@ -91,7 +93,7 @@ def as_offered(d: Discourse, part: Leaf | Node, thing: Thing) -> str:
 def with_offers_kept(d: Discourse, steps: Steps) -> Steps:
     """All steps of a plan: what was offered is brought to whoever wants it, unless it is brought
     to anybody anyway."""
-    for made in d.offers:
+    for made in d.deliveries.offers:
         taken = (each for each in nodes(tuple(steps)) if is_grab_of(d, each, made.thing))
         if next(taken, None) is None:
             steps = list(noting(steps, made.asking, list(made.giving)))

@@ -28,10 +28,10 @@ One = Callable[[Any], Steps]
 
 def round_of_steps(d: Discourse, make: Make) -> Steps:
     """The steps of one round of a loop."""
-    d.with_person = d.holding = None
-    outer, d.in_loop = d.in_loop, True
+    d.scene.with_person = d.scene.holding = None
+    outer, d.rounds.in_loop = d.rounds.in_loop, True
     steps = d.sequence(lambda: d.done.extend(make()))
-    d.in_loop = outer
+    d.rounds.in_loop = outer
     return guard_finds(d, steps)
 
 

@@ -89,7 +89,7 @@ def _offered(d: Discourse, node: Node) -> tuple[str, ...]:
         offered = split_options(d, start, rest.end)
         if len(offered) > 1:
             return offered  # "ob sie oder Alice Dienst hat" leaves but one
-    if fixed.get("yes_no") or (d.asking_each and "each" in fixed):
+    if fixed.get("yes_no") or (d.answers.asking_each and "each" in fixed):
         return (d.language.phrase("yes"), d.language.phrase("no"))
     return ()
 

@@ -78,26 +78,31 @@ def report(d: Discourse, node: Node) -> Steps:
         if receiver is not None and receiver.start < info.start:
             person = sent_to(d, person) or person
         steps = found_for(d, person, found)
-        if is_me(person) and d.answer is not None and not mentions(steps, BACK):
+        if is_me(person) and d.answers.last is not None and not mentions(steps, BACK):
             steps = [*back_to_speaker(d), *steps]
-        d.told = steps[-1] if steps else None
+        d.reports.told = steps[-1] if steps else None
         return steps
     fixed = node.production.fixed
-    known = d.news is not None and d.news is d.round.present
+    known = d.reports.news is not None and d.reports.news is d.rounds.round.present
     if known and isinstance(info, Node) and info.means == "names_here":
         return told_again(d, person)  # "see if Alice and Bob are in, and tell me who is there"
     if isinstance(info, Node) and info.production.fixed.get("total") and in_round(d):
         return told_in_total(d, found, person)
-    d.report_open = person is None and bool(fixed.get("open", not fixed.get("to_me")))
-    d.report_counts = person is None and bool(fixed.get("counted"))
+    d.reports.open = person is None and bool(fixed.get("open", not fixed.get("to_me")))
+    d.reports.counts = person is None and bool(fixed.get("counted"))
     return found_out(d, found, person, back=bool(fixed.get("to_me")) or is_me(person))
 
 
 def looks_around(d: Discourse) -> bool:
     """ "look at the desk and tell Bob what you saw": sent there to look, with nothing told."""
-    untold = d.report is None and d.answer is None and d.code is None and d.claim is None
+    untold = (
+        d.reports.last is None
+        and d.answers.last is None
+        and d.answers.code is None
+        and d.branch.claim is None
+    )
     ways = [each for each in nodes(tuple(d.done)) if isinstance(each, Call)]
-    return untold and isinstance(d.at, Text) and [each.method for each in ways] == ["goto"]
+    return untold and isinstance(d.scene.at, Text) and [each.method for each in ways] == ["goto"]
 
 
 @meaning("news")
@@ -108,10 +113,14 @@ def news(d: Discourse, node: Node) -> Steps:
     if sent is not None:
         return told_to_sent(d, *sent)
     person: Thing | None = d.get(node, "whom")
-    if d.thing is not None and d.delivered == d.thing.value and _speaks_of_it(d, node):
+    if (
+        d.scene.thing is not None
+        and d.scene.delivered == d.scene.thing.value
+        and _speaks_of_it(d, node)
+    ):
         return []  # "get the key from Alice and come back with it": it is here by now
-    if d.asked_for is not None and d.thing is not None and _speaks_of_it(d, node):
-        return deliver(d, replace(d.thing, pronoun=True), person, None)
+    if d.answers.asked_for is not None and d.scene.thing is not None and _speaks_of_it(d, node):
+        return deliver(d, replace(d.scene.thing, pronoun=True), person, None)
     if search is not None:
         return where_it_is(d, search, person)
     if asks_where(node) and (told_there := told_where(d, person)) is not None:
@@ -123,7 +132,10 @@ def news(d: Discourse, node: Node) -> Steps:
     steps: Steps = list(first)
     place: Value | None = d.get(node, "at_place")
     if just_went(d) and (person is None or said_themselves(d, node, person)):
-        person, place = None, place or d.at  # "go to the kitchen and tell them what each wants"
+        person, place = (
+            None,
+            place or d.scene.at,
+        )  # "go to the kitchen and tell them what each wants"
     if "back" in node.parts or (
         (person is None or is_me(person)) and place is None and not fixed.get("screen")
     ):
@@ -137,8 +149,8 @@ def news(d: Discourse, node: Node) -> Steps:
     else:
         steps += words
     if steps:
-        d.told = steps[-1]
-    d.news = News(words, person is None and place is None)
+        d.reports.told = steps[-1]
+    d.reports.news = News(words, person is None and place is None)
     return steps
 
 
@@ -155,8 +167,8 @@ def wants_to_know(d: Discourse, node: Node) -> Steps:
     person: Thing = d.get(node, "whom")
     told: list[Told] = d.get(node, "told")
     words = [step for each in told for step in each.words]
-    d.news = News(words, False, waiting=True, whom=person)
-    d.person, d.thing_last = person, False
+    d.reports.news = News(words, False, waiting=True, whom=person)
+    d.scene.person, d.scene.thing_last = person, False
     return [step for each in told for step in each.first]
 
 
@@ -195,7 +207,7 @@ def tell_why(d: Discourse, node: Node) -> Steps:
     """ "and let Bob know, so that he can go with her": what was found out; why is left as it is."""
     why = node.parts["why"]
     d.background.append(d.words(why.start, why.end))
-    d.resolved.update(range(why.start, why.end))
+    d.command.resolved.update(range(why.start, why.end))
     return tell_that(d, node)
 
 
@@ -206,7 +218,7 @@ def tell_me_that(d: Discourse, node: Node) -> Steps:
         return told_to_sent(d, *sent)
     search = searched_last(d, node, "person_ref")
     of_answers(d, node)
-    d.report_open = False
+    d.reports.open = False
     if search is not None and search.person:
         return where_it_is(d, search, None)  # "find Alice and inform me"
     return coming_back(d, node, tell_speaker(d))
@@ -236,9 +248,9 @@ def told_again(d: Discourse, person: Thing | None) -> Steps:
         return again
     if person is None or is_me(person):
         return tell_speaker(d)
-    if d.claim is not None and d.claim.known == d.known_by_now():
-        return speak_to(d, person, [d.claim.saying])
-    if d.report is None:
+    if d.branch.claim is not None and d.branch.claim.known == d.known_by_now():
+        return speak_to(d, person, [d.branch.claim.saying])
+    if d.reports.last is None:
         return speak_to(d, person, known_words(d))
     return retold(d, person)
 
@@ -253,31 +265,31 @@ def tell_speaker(d: Discourse) -> Steps:
     if again is not None:
         return again
     last = d.done[-1] if d.done else None
-    if last is not None and last is d.told:
+    if last is not None and last is d.reports.told:
         return []
-    if d.claim is not None and d.claim.known == d.known_by_now():
-        return [*back_to_speaker(d), d.claim.saying]
-    if d.report is not None and d.report_step is last and d.at is not None:
+    if d.branch.claim is not None and d.branch.claim.known == d.known_by_now():
+        return [*back_to_speaker(d), d.branch.claim.saying]
+    if d.reports.last is not None and d.reports.step is last and d.scene.at is not None:
         start = d.start()
-        if d.at == start:
+        if d.scene.at == start:
             return []
         told_there = retold(d, None)
         d.went(start)
         return [BACK, *told_there]
-    if d.answer is None and d.code is None and (come := arrival_told(d)) is not None:
+    if d.answers.last is None and d.answers.code is None and (come := arrival_told(d)) is not None:
         return come
-    if d.answer is None and d.code is None and d.thing is not None:
+    if d.answers.last is None and d.answers.code is None and d.scene.thing is not None:
         if not (isinstance(last, Call) and last.method == "find"):
             raise NotUnderstood(d.language.phrase("say_what"))
         # "find the smallest cup and tell me what it is"
-        what = Ask("describe", {"thing": sought(d, d.thing)})
+        what = Ask("describe", {"thing": sought(d, d.scene.thing)})
         name = d.variable("description")
         d.went(d.start())
         return [Remember(name, what), BACK, Call("say", {"text": Recall(name)})]
-    if d.answer is not None or d.code is not None:
+    if d.answers.last is not None or d.answers.code is not None:
         words = known_words(d)
         start = d.start()
-        going = d.at is not None or moved([*(() if d.in_loop else d.around), *d.done])
+        going = d.scene.at is not None or moved([*(() if d.rounds.in_loop else d.around), *d.done])
         d.went(start)
         back = Call("goto", {"place": start})
         return [back, *words] if going and last != back else words
@@ -289,12 +301,12 @@ def tell_speaker(d: Discourse) -> Steps:
 def summed_at_end(d: Discourse) -> Steps:
     """What was counted in a round that nobody was told of: brought back to the speaker."""
     at = last_round(d)
-    found: Report | None = d.report
+    found: Report | None = d.reports.last
     if at is None and counted_alone(d):
         return tell_speaker(d)
-    if at is None or at != len(d.done) - 1 or found is None or not d.report_counts:
+    if at is None or at != len(d.done) - 1 or found is None or not d.reports.counts:
         return []
-    if found.name != "count" or not any(each is d.report_step for each in nodes(d.done[at])):
+    if found.name != "count" or not any(each is d.reports.step for each in nodes(d.done[at])):
         return []
     told = summed_or_said(d, found)
     return [*told.first, *go_back(d, []), *told.words]
@@ -302,16 +314,16 @@ def summed_at_end(d: Discourse) -> Steps:
 
 def news_again(d: Discourse, person: Thing | None) -> Steps | None:
     """The last news told to somebody else, too; None if there are none."""
-    found: News | None = d.news
+    found: News | None = d.reports.news
     if found is None:
         return None if person is None or is_me(person) else told_where(d, person)
     if person is None or is_me(person):
         if not found.waiting and d.done[len(d.done) - len(found.words) :] == found.words:
             return []  # it is told already
-        d.news = replace(found, waiting=False)
+        d.reports.news = replace(found, waiting=False)
         return [*go_back(d, []), *found.words]
     take_back(d, found)
-    d.news = replace(d.news, waiting=False)
+    d.reports.news = replace(d.reports.news, waiting=False)
     return speak_to(d, person, found.words)
 
 
@@ -328,6 +340,11 @@ def say_it(d: Discourse, node: Node) -> Steps:
     if to_me:
         return tell_speaker(d)
     somebody = person is not None and (person.known or person.plural or person.place is not None)
-    if somebody and (d.news or d.report) is not None and d.answer is None and d.code is None:
+    if (
+        somebody
+        and (d.reports.news or d.reports.last) is not None
+        and d.answers.last is None
+        and d.answers.code is None
+    ):
         return told_again(d, person)  # "lunch is ready; say it to Bob"
     return speak_to(d, person, known_words(d))

@@ -51,20 +51,24 @@ def guide(d: Discourse, node: Node) -> Steps:
     if isinstance(room, Node) and any(each.means == "place_there" for each in inside(room)):
         there = d.build(room).place
     source: Where | None = d.get(node, "source")
-    in_turn = id(pronoun) in d.bound  # met there already
+    in_turn = id(pronoun) in d.rounds.bound  # met there already
     if source is not None and source.place is not None and not in_turn:
         thing = replace(thing, place=source.place, here=False)
-    if thing.value == d.with_person:
+    if thing.value == d.scene.with_person:
         leave_out_fetching(d)
     steps = left_behind(d, node, thing) or meet(d, thing)
     spot: Where = (there is None and d.get(node, "spot")) or Where(there)
-    named_one = place_of_named(d, d.surveys[-1]) if d.surveys and d.surveys[-1].options else None
-    if "place" in node.parts and named_one is not None and spot.place in (None, d.at):
+    named_one = (
+        place_of_named(d, d.answers.surveys[-1])
+        if d.answers.surveys and d.answers.surveys[-1].options
+        else None
+    )
+    if "place" in node.parts and named_one is not None and spot.place in (None, d.scene.at):
         spot = Where(named_one)  # "ask whether they want to see Bob or Clara and take them there"
     if spot.place is None:
         raise NotUnderstood(d.language.phrase("guide_needs_place"))
     to_me = "place" in node.parts and what_it_means(node.parts["place"]) == "place_here"
-    if "place" in node.parts and not to_me and spot.place == d.at and d.done:
+    if "place" in node.parts and not to_me and spot.place == d.scene.at and d.done:
         # "ask the visitors whom they want to see and take them there": no place was spoken of
         raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
     further: list[Value] = d.get(node, "place_list") or []
@@ -76,7 +80,7 @@ def knows_the_way(d: Discourse, person: Thing | None) -> bool:
     but no visitor, nobody who has just come, and no stranger."""
     if person is None or is_me(person):
         return person is not None
-    if d.visitor is not None:
+    if d.people.visitor is not None:
         return False
     kinds = {each.kind for each in d.lexicon.people if Text(each.name) == person.value}
     return bool(kinds) and kinds.isdisjoint(GUESTS)
@@ -85,9 +89,9 @@ def knows_the_way(d: Discourse, person: Thing | None) -> bool:
 def left_behind(d: Discourse, node: Node, person: Thing) -> Steps:
     """The way back to somebody from where the robot went only to see whether a place is free."""
     part = node.parts.get("person_ref")
-    only_looked = d.looked_in is not None and d.at in (None, d.looked_in)
+    only_looked = d.scene.looked_in is not None and d.scene.at in (None, d.scene.looked_in)
     spoken_of = isinstance(part, Node) and part.means in ("person_kind", "person_me")
-    met = person.value in d.left or person.value == d.with_person
+    met = person.value in d.scene.left or person.value == d.scene.with_person
     if not (only_looked and spoken_of) or person.place is not None or met:
         return []
     d.start()
@@ -98,7 +102,7 @@ def left_behind(d: Discourse, node: Node, person: Thing) -> Steps:
 def led_on(d: Discourse, person: Thing, place: Value | None) -> Steps | None:
     """ "Emma abholen und zum Röntgen bringen": whoever was just fetched is led straight there."""
     fetched = d.done[-1] if d.done else None
-    if place is None or fetched is None or fetched is not d.fetched:
+    if place is None or fetched is None or fetched is not d.deliveries.fetched:
         return None
     leave_out_fetching(d)
     return [lead(d, person, place)]
@@ -106,7 +110,7 @@ def led_on(d: Discourse, person: Thing, place: Value | None) -> Steps | None:
 
 def leave_out_fetching(d: Discourse) -> None:
     """Who is fetched and then led somewhere is not brought here first, nor to be asked where to."""
-    at = next((at for at, step in enumerate(d.done) if step is d.fetched), None)
+    at = next((at for at, step in enumerate(d.done) if step is d.deliveries.fetched), None)
     if at is None:
         return
     between = d.done[at + 1 :]
@@ -118,15 +122,15 @@ def leave_out_fetching(d: Discourse) -> None:
 def guide_where_wanted(d: Discourse, node: Node) -> Steps:
     """ "take him where he wants to go": where he has answered, else he is asked."""
     thing = led(d, node)
-    if d.answer is not None and d.place == Recall(d.answer):
-        return [*meet(d, thing), lead(d, thing, d.place)]
+    if d.answers.last is not None and d.scene.place == Recall(d.answers.last):
+        return [*meet(d, thing), lead(d, thing, d.scene.place)]
     steps = meet(d, thing)
-    d.answer = d.variable("place")
-    d.answer_options, d.place = (), Recall(d.answer)
+    d.answers.last = d.variable("place")
+    d.answers.options, d.scene.place = (), Recall(d.answers.last)
     arguments: dict[str, Value] = {"question": Text(d.language.phrase("where_to"))}
     if thing.known:
         arguments["person"] = thing.value
-    return [*steps, Call("ask", arguments, save_as=d.answer), lead(d, thing, d.place)]
+    return [*steps, Call("ask", arguments, save_as=d.answers.last), lead(d, thing, d.scene.place)]
 
 
 def led(d: Discourse, node: Node) -> Thing:
@@ -136,11 +140,13 @@ def led(d: Discourse, node: Node) -> Thing:
         return Thing(Text(ANYONE), person=True, here=True)
     if person.coming or person.group is not None or person.count is not None:
         raise NotUnderstood(d.language.phrase("one_person"))
-    guest = d.led
-    absent = guest is not None and d.missing is not None and d.missing.value == person.value
+    guest = d.scene.led
+    absent = (
+        guest is not None and d.scene.missing is not None and d.scene.missing.value == person.value
+    )
     part = node.parts.get("person_ref")
     of_guest = isinstance(part, Node) and what_it_means(part) == "person_pronoun"
-    missing = d.missing is not None and d.missing.value == person.value and person.known
+    missing = d.scene.missing is not None and d.scene.missing.value == person.value and person.known
     if guest is None and missing and isinstance(part, Node) and of_guest and d.is_plural(part):
         host = named(d, person)  # "if Bob is not in, take them to the lounge"
         words = host if isinstance(host, str) else d.language.phrase("somebody")
@@ -160,7 +166,7 @@ def guide_back(d: Discourse, node: Node) -> Steps:
 
 
 def led_back(d: Discourse, person: Thing) -> Steps:
-    if d.done and d.done[-1] is d.fetched and person.value == d.with_person:
+    if d.done and d.done[-1] is d.deliveries.fetched and person.value == d.scene.with_person:
         return []  # "fetch Clara and bring her here"
     steps = meet(d, person)
     return [*steps, lead(d, person, d.start())]
@@ -172,7 +178,7 @@ def fetch_person(d: Discourse, node: Node) -> Steps:
     pronoun = node.parts.get("person_ref")
     if pronoun is not None and means_thing(d, pronoun):
         return fetch_it(d)
-    place = d.place
+    place = d.scene.place
     thing = led(d, node)
     source: Where | None = d.get(node, "source")
     if source is not None and source.place is not None:
@@ -182,12 +188,12 @@ def fetch_person(d: Discourse, node: Node) -> Steps:
         return announced
     also = led_before(d) if node.production.fixed.get("too") else None
     steps = meet(d, replace(thing, here=False)) or look_for(d, thing)
-    d.visitor = d.visitor if thing.known else thing
+    d.people.visitor = d.people.visitor if thing.known else thing
     if also is not None:
         return [*steps, lead(d, thing, also)]
-    d.fetched = lead(d, replace(thing, here=False), d.start())
-    d.place = place  # "take Alice to room 3, then get Bob and bring him there, too"
-    return [*steps, d.fetched]
+    d.deliveries.fetched = lead(d, replace(thing, here=False), d.start())
+    d.scene.place = place  # "take Alice to room 3, then get Bob and bring him there, too"
+    return [*steps, d.deliveries.fetched]
 
 
 def led_before(d: Discourse) -> Value | None:
@@ -223,10 +229,14 @@ def guide_nowhere(d: Discourse, node: Node) -> Steps:
     if (asked := place_just_named(d)) is not None:  # "... Bob or Clara, and take him"
         person = led(d, node)
         return [*meet(d, person), lead(d, person, asked)]
-    if d.host is not None and not d.done and (theirs := own_place(d, d.host)) is not None:
+    if (
+        d.people.host is not None
+        and not d.done
+        and (theirs := own_place(d, d.people.host)) is not None
+    ):
         person = led(d, node)  # "he has an appointment with Clara, take him"
         return [*meet(d, person), lead(d, person, theirs)]
-    if d.answer is not None and d.place == Recall(d.answer):
+    if d.answers.last is not None and d.scene.place == Recall(d.answers.last):
         return guide_where_wanted(d, node)  # "ask where she wants to go and accompany her"
     who = named(d, led(d, node))
     words = who if isinstance(who, str) else d.language.phrase("somebody")
@@ -250,7 +260,7 @@ def leads_people_only(d: Discourse, node: Node) -> bool:
 
 def carry_it(d: Discourse, node: Node) -> Steps:
     """ "take them to the kitchen", where "they" are cups."""
-    assert d.thing is not None
+    assert d.scene.thing is not None
     names = (("person_ref", "thing"), ("source", "from"), ("spot", "where"))
     parts = {new: node.parts[old] for old, new in names if old in node.parts}
     so_many = as_many_as_answered(d, replace(node, parts=parts))
@@ -258,7 +268,7 @@ def carry_it(d: Discourse, node: Node) -> Steps:
         return so_many
     spot: Where = d.get(node, "spot") or Where(d.get(node, "place"))
     source: Where | None = d.get(node, "source")
-    thing = replace(d.thing, pronoun=True)
+    thing = replace(d.scene.thing, pronoun=True)
     if source is not None:
         thing = replace(thing, place=source.place, furniture=source.furniture)
     return deliver(d, thing, None, spot)
@@ -266,18 +276,18 @@ def carry_it(d: Discourse, node: Node) -> Steps:
 
 def brought_here(d: Discourse, person: Thing) -> Steps:
     """ "get the visitor and bring them to me": once."""
-    if d.fetched is not None and d.done[-1:] == [d.fetched]:
-        d.fetched = None  # that is not all the same as to be fetched
+    if d.deliveries.fetched is not None and d.done[-1:] == [d.deliveries.fetched]:
+        d.deliveries.fetched = None  # that is not all the same as to be fetched
         return []
     return [*meet(d, person), lead(d, person, d.start())]
 
 
 def fetch_it(d: Discourse) -> Steps:
     """ "I want the cups from the kitchen, can you get them?": for the speaker, once."""
-    assert d.thing is not None
-    if d.delivered is not None and given_last(d):
+    assert d.scene.thing is not None
+    if d.scene.delivered is not None and given_last(d):
         return []
-    return deliver(d, replace(d.thing, pronoun=True), None, None)
+    return deliver(d, replace(d.scene.thing, pronoun=True), None, None)
 
 
 @meaning("guide_list")
@@ -313,12 +323,12 @@ def follow(d: Discourse, node: Node) -> Steps:
 def followed(d: Discourse, person: Thing, place: Value | None) -> Call:
     """Go after somebody, as far as a place if one is named."""
     arguments: dict[str, Value] = {"person": person.value}
-    d.at = None
+    d.scene.at = None
     if place is not None:
-        arguments["to"] = d.at = d.place = place
-    d.with_person = person.value
-    d.person = replace(person, place=None, furniture=None, here=True)
-    d.thing_last = False
+        arguments["to"] = d.scene.at = d.scene.place = place
+    d.scene.with_person = person.value
+    d.scene.person = replace(person, place=None, furniture=None, here=True)
+    d.scene.thing_last = False
     return Call("follow", arguments)
 
 
@@ -327,9 +337,9 @@ def greet(d: Discourse, node: Node) -> Steps:
     person: Thing | None = d.get(node, "person_ref")
     name: Value | str = person.value if person is not None and person.known else ""
     if not name and node.production.fixed.get("by_name"):
-        if d.answer is None:
+        if d.answers.last is None:
             raise NotUnderstood(d.language.phrase("whose_name"))
-        name = Recall(d.answer)
+        name = Recall(d.answers.last)
     words = ready_made(d, "hello_name", name=name) if name else ready_made(d, "hello")
     return speak_to(d, person, [words])
 
@@ -347,7 +357,7 @@ def call_person(d: Discourse, node: Node) -> Steps:
 
 def group_of(d: Discourse) -> tuple[Value, ...]:
     """The people spoken of together."""
-    return d.group.items if isinstance(d.group, Items) else ()
+    return d.scene.group.items if isinstance(d.scene.group, Items) else ()
 
 
 @meaning("greet_all")

@@ -24,10 +24,12 @@ def person_name(d: Discourse, node: Node) -> Thing:
     leaf = node.parts["person"]
     assert isinstance(leaf, Leaf)
     name = d.one_of(leaf).name
-    d.named.append(name)
-    d.person = d.last_named = Thing(Text(name), known=True, person=True)  # "Alice in her office"
+    d.people.named.append(name)
+    d.scene.person = d.people.last_named = Thing(
+        Text(name), known=True, person=True
+    )  # "Alice in her office"
     found = replace(described(d, name, node), value=Text(name), known=True, person=True)
-    d.person, d.thing_last = found, False
+    d.scene.person, d.scene.thing_last = found, False
     return found
 
 
@@ -60,7 +62,7 @@ def person_kind(d: Discourse, node: Node) -> Thing:
         if found.text == f"{kind} named {each.name}":
             found = replace(found, value=Text(each.name), known=True)
     found = where_spoken_of(d, node, found)
-    d.person, d.thing_last = found, False
+    d.scene.person, d.scene.thing_last = found, False
     return found
 
 
@@ -71,9 +73,9 @@ def where_spoken_of(d: Discourse, node: Node, found: Thing) -> Thing:
         return found
     if d.tokens[node.start].norm not in d.language.speech.get("definite", ()):
         return found
-    if d.with_person == found.value or found.value in d.left or d.at is not None:
+    if d.scene.with_person == found.value or found.value in d.scene.left or d.scene.at is not None:
         return found
-    spoken_of = (each for each in (d.person, d.visitor) if each is not None)
+    spoken_of = (each for each in (d.scene.person, d.people.visitor) if each is not None)
     before = next((each for each in spoken_of if each.value == found.value and each.place), None)
     return found if before is None else replace(found, place=before.place, first=before.first)
 
@@ -89,7 +91,7 @@ def kind_in_plural(d: Discourse, node: Node) -> bool:
 
 def by_furniture(d: Discourse, person: Thing) -> Thing:
     """A person told by the furniture they are at: "woman next to the door"."""
-    if person.furniture is None or person.furniture == d.at_furniture:
+    if person.furniture is None or person.furniture == d.scene.at_furniture:
         return person
     if person.preposition:
         return replace(person, value=sought(d, person), furniture=None)
@@ -101,10 +103,12 @@ def by_furniture(d: Discourse, person: Thing) -> Thing:
 def person_in(d: Discourse, node: Node) -> Thing:
     """ "bring it to him in his office": where he is to be found."""
     person: Thing = d.get(node, "person_ref")
-    d.person = person
+    d.scene.person = person
     place = d.get(node, "own_place")
-    d.person = person if d.with_person == person.value else replace(person, place=place, here=False)
-    return d.person
+    d.scene.person = (
+        person if d.scene.with_person == person.value else replace(person, place=place, here=False)
+    )
+    return d.scene.person
 
 
 @meaning("person_pronoun")
@@ -113,50 +117,56 @@ def person_pronoun(d: Discourse, node: Node) -> Thing:
     host = host_here(d, node)
     if host is not None:
         d.called_so(host, node.start, node.end)
-        d.named.append(host.text)
-        d.person = host
+        d.people.named.append(host.text)
+        d.scene.person = host
         return host
-    if d.person is not None and is_several(d.person) and d.last_named is not None:
+    if (
+        d.scene.person is not None
+        and is_several(d.scene.person)
+        and d.people.last_named is not None
+    ):
         several = d.language.speech.get("things_too", ())
         if not set(d.norms(node.start, node.end)) & set(several):
-            return d.last_named  # "him", after "Alice and Bob ... tell Dr Weber"
-    everybody = d.person is not None and d.person.every and d.person.group is not None
+            return d.people.last_named  # "him", after "Alice and Bob ... tell Dr Weber"
+    everybody = (
+        d.scene.person is not None and d.scene.person.every and d.scene.person.group is not None
+    )
     if everybody and not d.is_plural(node):
         # "ask every visitor ... and send him away": each in his turn
         raise NotUnderstood(d.language.phrase("one_person"))
-    if d.person is not None and not d.may_be(d.person, node.start, node.end):
+    if d.scene.person is not None and not d.may_be(d.scene.person, node.start, node.end):
         # "ask Bob if he is free; if so, tell Alice, if not, tell her ..."
         other = d.one_called(node.start, node.end)
         if other is not None:
-            return replace(other, here=d.with_person == other.value)
+            return replace(other, here=d.scene.with_person == other.value)
         guest = led_there(d)
         if guest is not None:
             d.called_so(guest, node.start, node.end)
             return guest
-    if d.person is not None:
-        d.called_so(d.person, node.start, node.end)
-        met = d.person.here or d.with_person == d.person.value
-        elsewhere = d.person.place is not None and not met
-        return replace(d.person, here=not elsewhere and (met or not d.person.known))
+    if d.scene.person is not None:
+        d.called_so(d.scene.person, node.start, node.end)
+        met = d.scene.person.here or d.scene.with_person == d.scene.person.value
+        elsewhere = d.scene.person.place is not None and not met
+        return replace(d.scene.person, here=not elsewhere and (met or not d.scene.person.known))
     owner = owner_of(d)
     if owner is not None:
-        d.named.append(owner.value)
+        d.people.named.append(owner.value)
         host = Thing(owner, known=True, person=True, here=True)
         d.called_so(host, node.start, node.end)
         return host
-    if d.last_named is not None and d.with_person is None and not d.is_plural(node):
-        return d.last_named  # somebody named in the other branch
-    return Thing(d.with_person or Text(ANYONE), person=True, here=True)
+    if d.people.last_named is not None and d.scene.with_person is None and not d.is_plural(node):
+        return d.people.last_named  # somebody named in the other branch
+    return Thing(d.scene.with_person or Text(ANYONE), person=True, here=True)
 
 
 def guest_for(d: Discourse, part: Leaf | Node | None, person: Thing | None) -> Thing | None:
     """ "take the visitor to Bob. If he is not there, tell him to wait": who is spoken to or led is
     not Bob, who was just said not to be there."""
-    guest: Thing | None = d.led
-    if guest is None or person is None or d.missing is None or not isinstance(part, Node):
+    guest: Thing | None = d.scene.led
+    if guest is None or person is None or d.scene.missing is None or not isinstance(part, Node):
         return person
     by_pronoun = part.means in ("person_pronoun", "thing_it")
-    missing = d.missing.value == person.value
+    missing = d.scene.missing.value == person.value
     return replace(guest, here=True) if by_pronoun and missing else person
 
 
@@ -164,7 +174,11 @@ def led_there(d: Discourse) -> Thing | None:
     """Somebody without a name who was led where the robot is: "take the visitor to Clara. If she is
     not there, tell him to wait"; he is not Clara."""
     named = {each.name for each in d.lexicon.people}
-    led = (each for each, place in d.left.items() if place == d.at and isinstance(each, Text))
+    led = (
+        each
+        for each, place in d.scene.left.items()
+        if place == d.scene.at and isinstance(each, Text)
+    )
     guest = next((each for each in led if each.value not in named), None)
     return None if guest is None else Thing(guest, person=True, here=True)
 
@@ -177,14 +191,14 @@ def is_several(person: Thing) -> bool:
 def host_here(d: Discourse, node: Node) -> Thing | None:
     """Whoever's place the robot was sent to, if nobody was spoken of since: "tell Alice that ...
     Then go to Bob's office and ask him ..."."""
-    owner = owner_of(d) if d.at is not None and d.place == d.at else None
-    before = d.person
+    owner = owner_of(d) if d.scene.at is not None and d.scene.place == d.scene.at else None
+    before = d.scene.person
     if owner is None or before is None or d.is_plural(node):
         return None
     host = Thing(owner, known=True, person=True, here=True)
-    said_to_be_here = before.place == d.at and not before.here
-    left = not before.known and d.with_person is None  # a visitor who was left behind
-    nearer = before is d.person_on_arrival and not said_to_be_here and before.value != owner
+    said_to_be_here = before.place == d.scene.at and not before.here
+    left = not before.known and d.scene.with_person is None  # a visitor who was left behind
+    nearer = before is d.scene.person_on_arrival and not said_to_be_here and before.value != owner
     if not (left or nearer):
         return None
     return host if d.may_be(host, node.start, node.end) else None
@@ -193,21 +207,21 @@ def host_here(d: Discourse, node: Node) -> Thing | None:
 @meaning("person_group")
 def person_group(d: Discourse, node: Node) -> Thing:
     """ "Alice, Bob and Carol"."""
-    d.person = together(listed(d, node))
-    d.group = d.person.group
-    return d.person
+    d.scene.person = together(listed(d, node))
+    d.scene.group = d.scene.person.group
+    return d.scene.person
 
 
 @meaning("person_either")
 def person_either(d: Discourse, node: Node) -> list[Thing] | Thing:
     """ "Alice or Bob": one of them; for a condition, both as a group."""
     people = listed(d, node)
-    return people if d.taking_apart else together(people)
+    return people if d.rounds.taking_apart else together(people)
 
 
 def known_by_name(d: Discourse, found: Thing, kind: str) -> tuple[Text, ...]:
     """All people of a kind, if the world knows them by name and nothing tells which are meant."""
-    here = found.place is not None or d.at is not None
+    here = found.place is not None or d.scene.at is not None
     if found.text != kind or here or kind in ("visitor", "patient"):
         return ()
     return tuple(Text(each.name) for each in d.lexicon.people if each.kind == kind)
@@ -222,15 +236,15 @@ def person_group_kind(d: Discourse, node: Node) -> Thing:
     named = known_by_name(d, found, kind)
     if named:
         left_out = but.group.items if but and isinstance(but.group, Items) else (but and but.value,)
-        d.group = Items(tuple(name for name in named if name not in left_out))
-        return replace(found, known=True, group=d.group)
+        d.scene.group = Items(tuple(name for name in named if name not in left_out))
+        return replace(found, known=True, group=d.scene.group)
     if but is not None:
         if found.text != ANYONE:
             raise NotUnderstood(d.language.phrase("but_whom"))
         found = replace(found, but=but.group or Items((but.value,)))
-    d.group = Ask("people")
-    d.person, d.thing_last = found, False
-    return replace(found, group=d.group, every=True)
+    d.scene.group = Ask("people")
+    d.scene.person, d.scene.thing_last = found, False
+    return replace(found, group=d.scene.group, every=True)
 
 
 @meaning("person_count")
@@ -243,10 +257,10 @@ def person_count(d: Discourse, node: Node) -> Thing:
     number = int(d.get(node, "count"))
     named = known_by_name(d, found, kind)
     if d.tokens[node.start].norm in d.language.speech.get("definite", ()) and len(named) == number:
-        d.group = Items(named)  # "the two doctors", where the world knows two
-        return replace(found, known=True, group=d.group)
+        d.scene.group = Items(named)  # "the two doctors", where the world knows two
+        return replace(found, known=True, group=d.scene.group)
     found = replace(found, count=number)
-    d.person, d.thing_last = replace(found, here=True, plural=False), False
+    d.scene.person, d.scene.thing_last = replace(found, here=True, plural=False), False
     return found
 
 
@@ -255,7 +269,7 @@ def person_coming(d: Discourse, node: Node) -> Thing:
     """ "every visitor who comes in": one after the other, without end."""
     kind = str(d.get(node, "kind_of_person", ANYONE))
     found = Thing(Text(kind), person=True, here=True)
-    d.person, d.thing_last = found, False
+    d.scene.person, d.scene.thing_last = found, False
     spot: Where | None = d.get(node, "from")
     return replace(found, coming=True, place=None if spot is None else spot.place)
 
@@ -263,34 +277,34 @@ def person_coming(d: Discourse, node: Node) -> Thing:
 @meaning("whoever_at")
 def whoever_at(d: Discourse, node: Node) -> Thing:
     """ "tell reception", "ask the kitchen": whoever is there."""
-    person = d.person = Thing(Text(ANYONE), d.get(node, "place"), person=True)
-    d.thing_last = False
+    person = d.scene.person = Thing(Text(ANYONE), d.get(node, "place"), person=True)
+    d.scene.thing_last = False
     return person
 
 
 @meaning("person_first")
 def person_first(d: Discourse, node: Node) -> Thing:
     """ "the first visitor you meet": whoever comes first; on guard, each of them."""
-    if d.came is not None:  # "wait for Alice or Bob and take whoever comes first ..."
-        d.person, d.thing_last = d.came, False
-        return d.came
-    if d.on_duty == "guard" and node.production.fixed.get("whoever"):
+    if d.people.came is not None:  # "wait for Alice or Bob and take whoever comes first ..."
+        d.scene.person, d.scene.thing_last = d.people.came, False
+        return d.people.came
+    if d.people.on_duty == "guard" and node.production.fixed.get("whoever"):
         return person_coming(d, node)
     kind = str(d.get(node, "kind_of_person", ANYONE))
     found = replace(by_furniture(d, described(d, kind, node)), person=True, first=True)
-    d.person, d.thing_last = replace(found, first=False, place=None, here=True), False
+    d.scene.person, d.scene.thing_last = replace(found, first=False, place=None, here=True), False
     return found
 
 
 @meaning("person_group_them")
 def person_group_them(d: Discourse, node: Node) -> Thing:
     """ "both of them", "each of them"."""
-    if d.group is None:
-        found = d.person or Thing(Text(ANYONE), person=True)
+    if d.scene.group is None:
+        found = d.scene.person or Thing(Text(ANYONE), person=True)
         if found.count is not None:  # "we expect two visitors": each of the two
             return replace(found, plural=True)
         return replace(found, here=True, plural=True, every=True)
-    return Thing(Text(ANYONE), person=True, plural=True, known=True, group=d.group)
+    return Thing(Text(ANYONE), person=True, plural=True, known=True, group=d.scene.group)
 
 
 @meaning("person_me")

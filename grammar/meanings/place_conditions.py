@@ -36,34 +36,34 @@ def trait_holds(d: Discourse, node: Node) -> Condition:
     if none and asked_yet(d) and not in_round(d):
         part = node.parts["place_trait"]
         return so_many_said(d, node, Said(part.start, part.end))
-    of_them = d.person is not None and d.gender(node.start, node.start + 1) is not None
-    known = d.at is not None or d.place is not None
+    of_them = d.scene.person is not None and d.gender(node.start, node.start + 1) is not None
+    known = d.scene.at is not None or d.scene.place is not None
     if place is None and (not known or (of_them and may_be_them(d, node))):  # "if she has a minute"
         words = d.words(node.start, node.end)
         gap = (node.start, node.end)
         raise NotUnderstood(d.language.phrase("cannot_check", what=words), gap=gap)
-    if place is None and d.at == Recall(START) and isinstance(d.place, Text):
-        place = d.place  # "is the library free? If it is, ...": told where it was asked
-    if place is not None and place != d.at:
+    if place is None and d.scene.at == Recall(START) and isinstance(d.scene.place, Text):
+        place = d.scene.place  # "is the library free? If it is, ...": told where it was asked
+    if place is not None and place != d.scene.at:
         d.went(place)
-        d.pending.append(Call("goto", {"place": place}))
-    d.room = place or d.at or d.place
+        d.command.pending.append(Call("goto", {"place": place}))
+    d.branch.room = place or d.scene.at or d.scene.place
     trait: Trait = d.get(node, "place_trait")
     checked = checked_just_now(d, trait) if place is None else None
     if checked is not None:
         return checked
     if place is None and trait.thing is not None and (looked := just_looked_for(d, trait.thing)):
-        d.met = Meeting(trait.thing, holds=not trait.denied, sought=not in_round(d))
+        d.branch.met = Meeting(trait.thing, holds=not trait.denied, sought=not in_round(d))
         return Not(looked) if trait.denied else looked
-    d.pending += trait.first
+    d.command.pending += trait.first
     if trait.thing is not None and in_round(d):
-        d.met = Meeting(trait.thing, holds=not trait.denied)
+        d.branch.met = Meeting(trait.thing, holds=not trait.denied)
     return negated(trait.condition) if none else trait.condition
 
 
 def may_be_them(d: Discourse, node: Node) -> bool:
     """Whether the pronoun that a condition begins with may be somebody: "if she is free"."""
-    who = d.person
+    who = d.scene.person
     if who is None or is_me(who) or who.text == ANYONE:
         return False
     return d.may_be(who, node.start, node.start + 1)
@@ -71,12 +71,14 @@ def may_be_them(d: Discourse, node: Node) -> bool:
 
 def checked_just_now(d: Discourse, trait: Trait) -> Condition | None:
     """ "check if anybody is in the hall. If it is empty, ...": what the step before looked at."""
-    if d.report is None:
+    if d.reports.last is None:
         return None
-    about: Thing | None = d.report.thing
+    about: Thing | None = d.reports.last.thing
     known = just_checked(d, trait.thing or Thing(Text(ANYONE), person=True))
     if known is None or about is None:
         return None
     # Those who are in a room may be several, so that "her" is somebody else.
-    d.met = Meeting(replace(about, plural=about.person or about.plural), holds=not trait.denied)
+    d.branch.met = Meeting(
+        replace(about, plural=about.person or about.plural), holds=not trait.denied
+    )
     return Not(known) if trait.denied else known

@@ -36,12 +36,12 @@ def all_places(d: Discourse, node: Node) -> Value:
     if but == [None] and number is None and not fixed.get("other"):
         return kind_places(d, kind)
     if fixed.get("other"):
-        but = [d.place, *(d.get(node, "place_list") or [])]
+        but = [d.scene.place, *(d.get(node, "place_list") or [])]
     known = d.lexicon.place_kinds[kind] if kind else d.lexicon.places
     but = [owned_by(d, known, each) if isinstance(each, str) else each for each in but]
     names = [Text(each.name) for each in known if Text(each.name) not in but]
     lost = [each for each in but if each is not None and not isinstance(each, Text)]
-    if lost or (fixed.get("other") and (d.place is None or len(names) == len(known))):
+    if lost or (fixed.get("other") and (d.scene.place is None or len(names) == len(known))):
         raise NotUnderstood(d.language.phrase("which_places"))
     if number is not None and int(number) != len(names):
         if not fixed.get("from_first") or int(number) > len(names):
@@ -167,7 +167,7 @@ def place_tail(d: Discourse, node: Node) -> Value:
     """ "b" in "ward a, b and c": a place of the same kind as the one before."""
     leaf = node.parts["place_tail"]
     assert isinstance(leaf, Leaf)
-    before = d.place.value if isinstance(d.place, Text) else ""
+    before = d.scene.place.value if isinstance(d.scene.place, Text) else ""
     kind = next((place.kind for place in d.lexicon.places if place.name == before), None)
     alike = [name.name for name in leaf.value if name.kind == kind and name.name != before]
     if len(alike) > 1:  # of the same series: "meeting room 1 or 2"
@@ -181,8 +181,8 @@ def place_tail(d: Discourse, node: Node) -> Value:
             tuple(name.name for name in leaf.value),
             (node.start, node.end),
         )
-    d.place = Text(alike[0])
-    return d.place
+    d.scene.place = Text(alike[0])
+    return d.scene.place
 
 
 @meaning("places_owned")

@@ -20,7 +20,7 @@ LIKE_ENOUGH: Final = 55
 @meaning("place_name")
 def place_name(d: Discourse, node: Node) -> Value:
     place: Value = d.get(node, "place")
-    d.place = place
+    d.scene.place = place
     return place
 
 
@@ -35,7 +35,7 @@ def each_place(d: Discourse, node: Node) -> Value:
 
 def only_taken_apart(d: Discourse, node: Node) -> None:
     """Refuse a phrase that speaks of several where nothing makes a loop of it."""
-    if not d.taking_apart:
+    if not d.rounds.taking_apart:
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("one_of_several", words=words))
 
@@ -75,8 +75,8 @@ def place_called_after(d: Discourse, owner: str, node: Leaf | Node) -> Value:
         raise unknown_place(d, d.words(node.start, node.end), node)
     if len(own) > 1:
         raise d.which(node.start, node.end, tuple(own))
-    d.place = Text(own[0])
-    return d.place
+    d.scene.place = Text(own[0])
+    return d.scene.place
 
 
 @meaning("place_any")
@@ -102,10 +102,10 @@ def place_either(d: Discourse, node: Node) -> list[Value]:
 def place_where(d: Discourse, node: Node) -> Thing:
     """ "where Bob is", "a room with a printer": wherever that is found."""
     only_taken_apart(d, node)
-    spoken_of = d.thing, d.thing_last
+    spoken_of = d.scene.thing, d.scene.thing_last
     found: Thing = d.get(node, "thing") or d.get(node, "person_ref")
     if stands_behind_it(d, node):
-        d.thing, d.thing_last = spoken_of
+        d.scene.thing, d.scene.thing_last = spoken_of
     return found
 
 
@@ -121,7 +121,9 @@ def where_owned(d: Discourse, node: Node) -> Where:
     """ "Bob's desk", "his desk": the desk in Bob's office."""
     if "person" in node.parts:
         return Where(place_of_owner(d, node), d.get(node, "furniture"))
-    owner = d.person.value if d.person is not None and d.person.known else owner_of(d)
+    owner = (
+        d.scene.person.value if d.scene.person is not None and d.scene.person.known else owner_of(d)
+    )
     if not isinstance(owner, Text):
         word = d.words(node.start, node.start + 1)
         raise NotUnderstood(d.language.phrase("what_is_it", word=word), gap=(node.start, node.end))
@@ -194,9 +196,9 @@ def extraposed(d: Discourse, part: Leaf | Node | None) -> tuple[Where, Where] | 
 @meaning("where_it")
 def where_it(d: Discourse, node: Node) -> Where:
     """ "go to the shelf and put the cup on it"."""
-    if d.at is None and d.at_furniture is None:
+    if d.scene.at is None and d.scene.at_furniture is None:
         raise NotUnderstood(d.language.phrase("where_is_there"))
-    return Where(d.at, d.at_furniture)
+    return Where(d.scene.at, d.scene.at_furniture)
 
 
 @meaning("where_is")
@@ -214,8 +216,8 @@ def home_of(d: Discourse, furniture: str) -> Value | None:
         for each in d.lexicon.furniture
         if furniture in (each.name, *each.aliases) and each.inside
     }
-    if isinstance(d.at, Text) and d.at.value in homes:
-        return d.at
+    if isinstance(d.scene.at, Text) and d.scene.at.value in homes:
+        return d.scene.at
     return Text(homes.pop()) if len(homes) == 1 else None
 
 
@@ -233,7 +235,7 @@ def place_of_furniture(d: Discourse, node: Node) -> Value:
     home = home_of(d, furniture)
     if home is None:
         raise NotUnderstood(d.language.phrase("unknown_place", name=furniture))
-    d.place = home
+    d.scene.place = home
     return home
 
 
@@ -249,9 +251,9 @@ def kind_places(d: Discourse, kind: str | Value | None) -> Value:
 
 def owner_of(d: Discourse) -> Text | None:
     """Whose place was spoken of last: Bob, after "Bob's office"."""
-    if isinstance(d.place, Text):
+    if isinstance(d.scene.place, Text):
         for person in d.lexicon.people:
-            if is_of(d, d.place.value, person.name):
+            if is_of(d, d.scene.place.value, person.name):
                 return Text(person.name)
     return None
 
@@ -274,8 +276,8 @@ def at_own_place(d: Discourse, person: Thing) -> Thing:
     """Somebody who "is in", unless the robot was just sent to a place: where they work."""
     last = d.done[-1] if d.done else None
     sent = last is None or (isinstance(last, Call) and last.method in ("goto", "guide"))
-    spoken_of = (d.at is not None or d.place is not None) and sent
-    return person if spoken_of or d.in_loop else replace(person, place=own_place(d, person))
+    spoken_of = (d.scene.at is not None or d.scene.place is not None) and sent
+    return person if spoken_of or d.rounds.in_loop else replace(person, place=own_place(d, person))
 
 
 def listed(d: Discourse, node: Node) -> list[Thing]:

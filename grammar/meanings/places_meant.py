@@ -27,20 +27,24 @@ def place_of_kind(d: Discourse, node: Node) -> Value:
     """ "the office": the only one there is, else the question which."""
     kind = d.get(node, "kind")
     places = d.lexicon.place_kinds[kind]
-    if isinstance(d.place, Text) and any(each.name == d.place.value for each in places):
-        return d.place  # "go to the bathroom and count the people in the room"
-    own = own_place(d, d.person) if d.person is not None and d.person.known else None
+    if isinstance(d.scene.place, Text) and any(each.name == d.scene.place.value for each in places):
+        return d.scene.place  # "go to the bathroom and count the people in the room"
+    own = (
+        own_place(d, d.scene.person)
+        if d.scene.person is not None and d.scene.person.known
+        else None
+    )
     named = [each for each in d.lexicon.people if each.name.lower() in d.text.lower()]
     if own is not None and len(named) == 1 and any(each.name == own.value for each in places):
         return own  # "if Clara is not in the office": in hers, where she alone was spoken of
     if len(places) > 1:
         answered = place_just_named(d, kind)
         if answered is not None:  # "ask whom he wants to visit and lead him to the office"
-            d.place = answered
+            d.scene.place = answered
             return answered
         raise d.which(node.start, node.end, tuple(place.name for place in places))
-    d.place = Text(places[0].name)
-    return d.place
+    d.scene.place = Text(places[0].name)
+    return d.scene.place
 
 
 @meaning("place_own")
@@ -48,7 +52,7 @@ def place_own(d: Discourse, node: Node) -> Value:
     """ "his office", after Bob: Bob's office; of nobody by name, the only office there is."""
     kind = d.get(node, "kind")
     said: Thing | None = d.get(node, "owner")
-    who = said or d.person or d.one_called(node.start, node.end)
+    who = said or d.scene.person or d.one_called(node.start, node.end)
     another = who is not None and not said and not d.may_be(who, node.start, node.end)
     if who is not None and ((not who.known and who.group is None) or another):
         # a visitor has none; and Bob is no "her"
@@ -59,7 +63,7 @@ def place_own(d: Discourse, node: Node) -> Value:
         who = replace(who, value=who.group.items[-1])
     named = place_just_named(d, kind) if who is None or not who.known else None
     if named is not None:  # "ask her whom she wants to see, and take her to their office"
-        d.place = named
+        d.scene.place = named
         return named
     owner = who.text if who is not None and who.known else None
     if kind is None:  # "her room", whatever it is called here
@@ -77,30 +81,38 @@ def place_own(d: Discourse, node: Node) -> Value:
         )
     if len(own or places) > 1:
         raise d.which(node.start, node.end, tuple(each.name for each in own or places))
-    d.place = Text((own or places)[0].name)
-    return d.place
+    d.scene.place = Text((own or places)[0].name)
+    return d.scene.place
 
 
 @meaning("place_there")
 def place_there(d: Discourse, node: Node) -> Value:
     named = place_just_named(d)
     if named is not None:
-        d.place = named
+        d.scene.place = named
         return named
-    if d.host is not None and not d.done:  # "he has an appointment with Clara. Take him there"
-        if (theirs := own_place(d, d.host)) is None:
+    if (
+        d.people.host is not None and not d.done
+    ):  # "he has an appointment with Clara. Take him there"
+        if (theirs := own_place(d, d.people.host)) is None:
             raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
         return theirs
-    unsaid = d.place in (None, Recall(START))
-    if unsaid and (d.round.such is not None or first_of_round(d)):
-        return Recall(str(d.round.such))  # "find an empty room, come back, and take them there"
-    if d.place is None:
+    unsaid = d.scene.place in (None, Recall(START))
+    if unsaid and (d.rounds.round.such is not None or first_of_round(d)):
+        return Recall(
+            str(d.rounds.round.such)
+        )  # "find an empty room, come back, and take them there"
+    if d.scene.place is None:
         raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
-    if d.place_before is not None and d.taken_from is None and taken_elsewhere(d, node):
-        d.place = d.place_before
-    if d.delivered is not None and d.place == Recall(START):
-        d.place = before_fetching(d, node)
-    return d.place
+    if (
+        d.command.place_before is not None
+        and d.deliveries.taken_from is None
+        and taken_elsewhere(d, node)
+    ):
+        d.scene.place = d.command.place_before
+    if d.scene.delivered is not None and d.scene.place == Recall(START):
+        d.scene.place = before_fetching(d, node)
+    return d.scene.place
 
 
 def taken_elsewhere(d: Discourse, node: Node) -> bool:
@@ -108,33 +120,33 @@ def taken_elsewhere(d: Discourse, node: Node) -> bool:
     command itself takes somebody or something from, so that it is not meant by "there"."""
     end = node.end - 1 if d.tokens[node.end - 1].kind == "word" else node.end - 2
     words = " ".join(d.norms(max(end - 6, 0), end))
-    called = d.place.value.lower() if isinstance(d.place, Text) else None
-    return bool(called) and d.place != d.place_before and words.endswith(str(called))
+    called = d.scene.place.value.lower() if isinstance(d.scene.place, Text) else None
+    return bool(called) and d.scene.place != d.command.place_before and words.endswith(str(called))
 
 
 @meaning("place_answered")
 def place_answered(d: Discourse, node: Node) -> Value:
     """ "the place they chose": what was answered last, if that was where somebody wants to go."""
-    if d.answer is None or d.place != Recall(d.answer):
+    if d.answers.last is None or d.scene.place != Recall(d.answers.last):
         raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
-    return d.place
+    return d.scene.place
 
 
 def before_fetching(d: Discourse, node: Node) -> Value:
     """ "If there is none in the lab, get one from the store and bring it there": to where it was
     looked for in vain, or where the robot was sent, not to whoever speaks."""
-    if d.missing is not None and d.missing.place is not None:
-        return d.missing.place
+    if d.scene.missing is not None and d.scene.missing.place is not None:
+        return d.scene.missing.place
     sent = [
         step.arguments["place"]
         for step in d.done
         if isinstance(step, Call) and step.method == "goto" and "place" in step.arguments
     ]
-    places = [place for place in sent if place not in (d.at_pick_up, Recall(START))]
+    places = [place for place in sent if place not in (d.scene.at_pick_up, Recall(START))]
     if (
-        not places and d.stop is not None
+        not places and d.rounds.stop is not None
     ):  # "for each lab, get a cup in the kitchen and put it there"
-        return d.stop
+        return d.rounds.stop
     if not places:
         raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
     return places[-1]
@@ -154,10 +166,12 @@ def place_start(d: Discourse, node: Node) -> Value:
 @meaning("place_found")
 def place_found(d: Discourse, node: Node) -> Value:
     """ "where you found it"."""
-    place = d.thing.place or source_of(d, d.thing) if d.thing is not None else None
+    place = (
+        d.scene.thing.place or source_of(d, d.scene.thing) if d.scene.thing is not None else None
+    )
     if place is None:
         raise NotUnderstood(d.language.phrase("where_is_there"))
-    d.place = place
+    d.scene.place = place
     return place
 
 
@@ -169,17 +183,17 @@ def place_other(d: Discourse, node: Node) -> Value:
     if other is not None:
         return other
     places = d.lexicon.place_kinds[d.get(node, "kind") or kind_of_place(d, node)]
-    others = [each.name for each in places if Text(each.name) != d.place]
+    others = [each.name for each in places if Text(each.name) != d.scene.place]
     if len(others) == 1:
-        d.place = Text(others[0])
-        return d.place
+        d.scene.place = Text(others[0])
+        return d.scene.place
     raise d.which(node.start, node.end, tuple(others))
 
 
 def kind_of_place(d: Discourse, node: Node) -> str:
     """The kind of the place that was spoken of last."""
     for kind, places in d.lexicon.place_kinds.items():
-        if len(places) > 1 and any(Text(each.name) == d.place for each in places):
+        if len(places) > 1 and any(Text(each.name) == d.scene.place for each in places):
             return kind
     raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
 
@@ -187,11 +201,15 @@ def kind_of_place(d: Discourse, node: Node) -> str:
 def not_chosen(d: Discourse) -> Value | None:
     """The place that was not chosen, if there were two to choose from."""
     known = {each.name for each in d.lexicon.places}
-    if d.answer is None or len(d.answer_options) != 2 or not known.issuperset(d.answer_options):
+    if (
+        d.answers.last is None
+        or len(d.answers.options) != 2
+        or not known.issuperset(d.answers.options)
+    ):
         return None
-    one, two = map(Text, d.answer_options)
+    one, two = map(Text, d.answers.options)
     other = Recall(d.variable("other"))
-    chosen = Compare(Recall(d.answer), "==", two)
+    chosen = Compare(Recall(d.answers.last), "==", two)
     d.done += [Remember(other.name, two), If(chosen, (Remember(other.name, one),))]
-    d.place = other
+    d.scene.place = other
     return other

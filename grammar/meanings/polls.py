@@ -78,8 +78,8 @@ def polled(d: Discourse, kind: str, said: Said | None) -> Told:
     if kind not in ("answers", "missing"):
         surveys = of_one_question(surveys)
     if said is not None:
-        d.said = _meant(d, surveys, said)
-    answer: Wanted = d.said or yes(d)
+        d.answers.said = _meant(d, surveys, said)
+    answer: Wanted = d.answers.said or yes(d)
     if kind == "list":  # of those who said yes, or of what they said
         agree, refuse = d.language.phrase("yes"), d.language.phrase("no")
         kind = "who" if set(surveys[-1].options) == {agree, refuse} else "answers"
@@ -113,10 +113,10 @@ def _meant(d: Discourse, surveys: list[Survey], said: Said) -> Wanted:
 def _kept(d: Discourse, key: tuple[Any, ...], name: str) -> tuple[Recall, bool]:
     """A variable for what is noted of a poll, and whether it is new."""
     key = (*key, *(id(survey.call) for survey in asked_before(d)))
-    if key in d.notes:
-        return Recall(d.notes[key]), False
-    d.notes[key] = d.variable(name)
-    return Recall(d.notes[key]), True
+    if key in d.answers.notes:
+        return Recall(d.answers.notes[key]), False
+    d.answers.notes[key] = d.variable(name)
+    return Recall(d.answers.notes[key]), True
 
 
 def _before_all(d: Discourse, name: Recall, value: Value) -> None:
@@ -161,7 +161,7 @@ def how_many(d: Discourse, surveys: list[Survey], answer: Wanted) -> Value:
     """How many gave an answer: those whose names are kept, or a number of its own."""
     key = ("who", answer, *(survey.who for survey in surveys))
     ids = tuple(id(survey.call) for survey in surveys)
-    named = d.notes.get((*key, *ids))
+    named = d.answers.notes.get((*key, *ids))
     return counted(d, surveys, answer) if named is None else Length(Recall(named))
 
 
@@ -244,7 +244,7 @@ def thing_chosen(d: Discourse, node: Node) -> Thing:
     found = Thing(chosen_most(d, asked_before(d)))
     if spot is not None:
         found = replace(found, place=spot.place, furniture=spot.furniture)
-    d.thing, d.thing_last = found, True
+    d.scene.thing, d.scene.thing_last = found, True
     return found
 
 
@@ -332,7 +332,7 @@ def answer_of(d: Discourse, node: Node) -> Told:
         return polled(d, "answers" if said is None else "who", said)
     answer = Recall(str(survey.call.save_as))
     if said is None:
-        last = survey.call.save_as == d.answer
+        last = survey.call.save_as == d.answers.last
         return Told([Call("say", {"text": said_in_all(d) if last else answer})], [])
     meant = wanted(d, survey, said)
     told_yes, told_no = d.say("yes_said", answer=answer), d.say("no_said", answer=answer)
@@ -381,7 +381,7 @@ def told_as_asked(d: Discourse, start: int, end: int) -> Told | None:
         return None
     if in_loop(d, survey.call) or several_asked(d):
         return polled(d, "answers", None)
-    d.resolved.update(range(start, end))
+    d.command.resolved.update(range(start, end))
     return Told([Call("say", {"text": Recall(survey.call.save_as)})], [])
 
 
@@ -400,14 +400,16 @@ def _of_several(d: Discourse, node: Node, person: Thing | None) -> bool:
 def _in_turn(d: Discourse) -> bool:
     """Whether what is said is for each of several who were asked, in turn: "ask them whether they
     have a car; if so ask how big it is, and tell me what they said"."""
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
-    return survey is not None and isinstance(survey.who, Recall) and d.with_person == survey.who
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
+    return (
+        survey is not None and isinstance(survey.who, Recall) and d.scene.with_person == survey.who
+    )
 
 
 def asked_there(d: Discourse, trait: Leaf | Node) -> bool:
     """Whether people were asked in a round what is told of the places: "ask in each office if they
     need toner and tell me which office needs some"."""
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
     asked = isinstance(trait, Node) and trait.means == "trait_asked" and asked_yet(d)
     if survey is None or survey.where is None or not asked:
         return False

@@ -50,7 +50,7 @@ NONE_AND_SOME: Final = ("nobody_of_them", "these_are_there")
 def presence_told(d: Discourse, node: Node) -> Told:
     """ "which of Alice and Bob are in their offices", "who of them is there", "who is missing"."""
     if "people" not in node.parts:
-        return found_told(d) if d.news is not None else met_on_round(d, None)
+        return found_told(d) if d.reports.news is not None else met_on_round(d, None)
     people = people_of(d, node)
     if "kind" not in node.parts:
         missing = bool(node.production.fixed.get("missing"))
@@ -68,8 +68,8 @@ def presence_told(d: Discourse, node: Node) -> Told:
         here = Holds(Ask("sees", {"thing": person.value}))
         first.append(Call("goto", {"place": Text(place)}))
         first.append(If(here, (Collect(found, person.value),)))
-    d.at = d.with_person = None
-    d.round.present_found = found, people
+    d.scene.at = d.scene.with_person = None
+    d.rounds.round.present_found = found, people
     none = d.say("nobody_of_them")
     some = d.say("these_are_there", names=Recall(found))
     return Told([if_any(found, none, some)], first)
@@ -84,7 +84,7 @@ def those_met(
     at = last_round(d) if place is None else None
     at = round_of_visits(d) if at is None and place is None else at
     loop = None if at is None else d.done[at]
-    if loop is None and d.at is None:
+    if loop is None and d.scene.at is None:
         raise NotUnderstood(d.language.phrase("which_places"))
     found = d.variable("found")
     seen = [Holds(Ask("sees", {"thing": each.value})) for each in people]
@@ -99,7 +99,7 @@ def those_met(
     else:
         first += notes
     if not missing:
-        d.round.present_found = found, people
+        d.rounds.round.present_found = found, people
     none, some = ("nobody_missing", "who_missing") if missing else NONE_AND_SOME
     return Told([if_any(found, d.say(none), d.say(some, names=Recall(found)))], first)
 
@@ -123,23 +123,27 @@ def if_any(found: str, none: Step, some: Step) -> If:
 def presence(d: Discourse, node: Node) -> Steps:
     """ "see if Alice or Bob is in the office": told to the speaker, if nobody else is named."""
     told = presence_told(d, node)
-    d.report = d.counted = d.checked = d.round.lookout = None
+    d.reports.last = d.reports.counted = d.reports.checked = d.rounds.round.lookout = None
     back = go_back(d, told.first)
-    d.news, d.told = News(told.words, True), told.words[-1]
-    d.round.present = d.news
+    d.reports.news, d.reports.told = News(told.words, True), told.words[-1]
+    d.rounds.round.present = d.reports.news
     return [*told.first, *back, *told.words]
 
 
 @meaning("present_so_many")
 def present_so_many(d: Discourse, node: Node) -> Condition:
     """ "see if Alice and Bob are in. If both are there, ...", "if neither is in"."""
-    if d.round.present_found is None or d.news is None or d.news is not d.round.present:
+    if (
+        d.rounds.round.present_found is None
+        or d.reports.news is None
+        or d.reports.news is not d.rounds.round.present
+    ):
         return seen_here(d, node)
-    found, people = d.round.present_found
-    take_back(d, d.news)
-    d.news = None
-    d.person, d.thing_last = together(people), False
-    d.group, d.met = d.person.group, None
+    found, people = d.rounds.round.present_found
+    take_back(d, d.reports.news)
+    d.reports.news = None
+    d.scene.person, d.scene.thing_last = together(people), False
+    d.scene.group, d.branch.met = d.scene.person.group, None
     how = str(node.production.fixed["how"])
     operator, number = {
         "all": ("==", len(people)),
@@ -153,13 +157,13 @@ def present_so_many(d: Discourse, node: Node) -> Condition:
     some = d.say("these_are_there", names=Recall(found))
     either = if_any(found, none, some)
     so: Step = none if how == "none" else either if how == "not_all" else some
-    d.round.claims = Claims(condition, so, either)
+    d.rounds.round.claims = Claims(condition, so, either)
     return condition
 
 
 def seen_here(d: Discourse, node: Node) -> Condition:
     """The same of those who were spoken of, where nobody has looked for them yet."""
-    group = d.person.group if d.person is not None else None
+    group = d.scene.person.group if d.scene.person is not None else None
     how = str(node.production.fixed["how"])
     if not isinstance(group, Items) or how == "one":
         words = d.words(node.start, node.end)
@@ -180,7 +184,7 @@ def who_where(d: Discourse, node: Node) -> Told:
     """ "who is where", "who is in each of them", "who is in offices 1 to 4"."""
     if "kinds" in node.parts or "place_list" in node.parts:
         return met_on_round(d, places_of(d, node))
-    return found_told(d) if d.news is not None else met_on_round(d, None)
+    return found_told(d) if d.reports.news is not None else met_on_round(d, None)
 
 
 def met_on_round(d: Discourse, places: Value | None) -> Told:
@@ -198,12 +202,12 @@ def met_on_round(d: Discourse, places: Value | None) -> Told:
     notes: Steps = [Remember(names, Ask("people")), If(anybody, (Collect(found, line),))]
     first: Steps = [Remember(found, Items(()))]
     if at is not None and isinstance(loop, ForEach):
-        said = any(each is d.report_step for each in nodes(loop))
+        said = any(each is d.reports.step for each in nodes(loop))
         loop = replace(loop, steps=loop.steps if said else (*loop.steps, *notes))
-        d.done[at] = replacing(loop, d.report_step, notes) if said else loop
+        d.done[at] = replacing(loop, d.reports.step, notes) if said else loop
         d.done.insert(0, first.pop())
     elif places is not None:
         first.append(round_of(d, places, notes, here.name))
-    d.report = d.round.lookout = None
+    d.reports.last = d.rounds.round.lookout = None
     some = d.say("people_seen", value=Recall(found))
     return Told([if_any(found, d.say("nobody_there"), some)], first)

@@ -105,7 +105,7 @@ def _about(d: Discourse, node: Node, person: Thing | None, subject: int | None) 
 def _about_before(d: Discourse) -> str | None:
     """Whether the question just before was about one or several others: "if the guests are here and
     where they are waiting". None if it was about the one who was asked."""
-    before = d.surveys[-1].call.arguments["question"] if d.surveys else None
+    before = d.answers.surveys[-1].call.arguments["question"] if d.answers.surveys else None
     words = d.language.tokens_of(before.value) if isinstance(before, Text) else ()
     data = d.language.speech["asked_pronouns"]
     if words and words[0] in d.language.words_called("who"):
@@ -132,7 +132,7 @@ def _of_another(
         return True
     gender = d.gender(at, at + 1)
     if subject is None:  # "who could help Alice with her computer"
-        return d.asking_each and _named_before(d, start, at, str(gender))
+        return d.answers.asking_each and _named_before(d, start, at, str(gender))
     return gender != d.gender(subject, subject + 1)
 
 
@@ -200,7 +200,7 @@ def of_each(d: Discourse, node: Node) -> bool:
     anybody = d.language.speech.get("asked_pronouns", {}).get("anybody", ())
     subject = node.parts.get("subject")
     return (
-        d.asking_each
+        d.answers.asking_each
         and subject is not None
         and subject.end - subject.start == 1
         and d.tokens[subject.start].norm in anybody

@@ -113,7 +113,7 @@ def distributed(d: Discourse, node: Node, make: Make) -> Steps:
     again = [] if put_more_exactly(d, node) else sourced(d, node)
     if again is not None:
         return again
-    scene, known = d.scene(), frozenset(d.variables)
+    scene, known = d.scene.copy(), frozenset(d.variables)
     within = setting_of(node) or node
     several = [part for part in phrases(within) if speaks_of_several(d, node, part)]
     several.sort(key=lambda part: part.production.rule == "thing")  # things change hands inside
@@ -131,9 +131,9 @@ def distributed(d: Discourse, node: Node, make: Make) -> Steps:
     within_source = {id(part) for part in inside(node.parts.get("from"))}
     sources = [part for part in several if id(part) in within_source]  # "out of all offices"
     several = [part for part in several if id(part) not in within_source]
-    outer, d.only_fetches = d.only_fetches, only_fetches(node)
+    outer, d.deliveries.only_fetches = d.deliveries.only_fetches, only_fetches(node)
     steps = over(d, sources, lambda: taken_from_there(d, node, several, make))
-    d.only_fetches = outer
+    d.deliveries.only_fetches = outer
     if node.means in FETCHES:
         keep_fetching(d, lambda: distributed(d, node, make), steps, scene, known)
     return steps
@@ -142,15 +142,15 @@ def distributed(d: Discourse, node: Node, make: Make) -> Steps:
 def gone_among(d: Discourse, part: Node) -> Steps | None:
     """ "go to every patient in ward a and ask them ...": to where they are, for nobody knows who
     they are; what is asked or said next is for each of them. None of people who have names."""
-    scene = d.scene()
+    scene = d.scene.copy()
     people = d.build(part)
     if part.means not in ("person_kind", "person_group_kind") or isinstance(people.group, Items):
         people = None
     if people is None or people.place is None:
-        d.set_scene(scene)
+        d.scene = scene.copy()
         return None
     going = go(d, people.place)
-    d.person, d.thing_last = replace(people, place=None, here=True), False
+    d.scene.person, d.scene.thing_last = replace(people, place=None, here=True), False
     return going
 
 
@@ -162,21 +162,23 @@ def only_fetches(node: Node) -> bool:
 
 def taken_from_there(d: Discourse, node: Node, several: list[Node], make: Make) -> Steps:
     """The steps of a command for several things, of which is said where they are taken from."""
-    outer, place = d.taken_from, d.place
+    outer, place = d.deliveries.taken_from, d.scene.place
     things = any(OVER[part.means] in OF_THINGS for part in several)
-    d.taken_from = d.get(node, "from") if things and "from" in node.parts else outer
+    d.deliveries.taken_from = d.get(node, "from") if things and "from" in node.parts else outer
     if "source" in node.parts and any(OVER[part.means] is over_people for part in several):
-        d.taken_from = d.get(node, "source")  # "take everybody from the lounge to the exit"
-    d.place = place  # "there" is not where they are taken from
+        d.deliveries.taken_from = d.get(
+            node, "source"
+        )  # "take everybody from the lounge to the exit"
+    d.scene.place = place  # "there" is not where they are taken from
     steps = over(d, several, make)
-    d.taken_from = outer
+    d.deliveries.taken_from = outer
     return steps
 
 
 def hands_one_of_several(d: Discourse, node: Node) -> bool:
     """ "get the flyers and give one to everybody", "... put one in each office": straight there."""
     part = node.parts.get("thing")
-    if d.thing is None or not d.thing.several or not isinstance(part, Node):
+    if d.scene.thing is None or not d.scene.thing.several or not isinstance(part, Node):
         return False
     hands = node.means == "bring" or (node.means == "put" and not d.is_plural(part))
     return hands and part.means == "thing_it"
@@ -188,13 +190,15 @@ def one_each(d: Discourse, node: Node, several: list[Node]) -> list[Node]:
     things = [part for part in several if OVER[part.means] in (over_it, over_things)]
     if not people or len(things) != 1:
         return several
-    scene = d.scene()
+    scene = d.scene.copy()
     thing: Thing = d.build(things[0])
     enough = thing.count is None or as_many(d, node, d.build(people[0]), thing.count)
-    d.set_scene(scene)
+    d.scene = scene.copy()
     if not enough or "every" in things[0].production.fixed:
         return several
-    d.bound[id(things[0])] = replace(thing, every=False, plural=False, pronoun=False, count=None)
+    d.rounds.bound[id(things[0])] = replace(
+        thing, every=False, plural=False, pronoun=False, count=None
+    )
     return people
 
 
@@ -221,7 +225,7 @@ def phrases(node: Node) -> Iterator[Node]:
 def speaks_of_several(d: Discourse, node: Node, part: Node) -> bool:
     """Whether a noun phrase of a command makes a loop."""
     together = node.means in TOGETHER
-    if id(part) in d.bound:
+    if id(part) in d.rounds.bound:
         return False
     if (node.means, part.means) in KNOWN_TO:
         return False
@@ -236,12 +240,12 @@ def speaks_of_several(d: Discourse, node: Node, part: Node) -> bool:
         )
         several_of = node.means == "bring" and definite and kind_in_plural(d, part)
         return bool(part.production.fixed.get("plural")) or several_of
-    if part.means == "person_pronoun" and d.thing_last:
-        several = d.thing is not None and (d.thing.several or d.thing.listed)
+    if part.means == "person_pronoun" and d.scene.thing_last:
+        several = d.scene.thing is not None and (d.scene.thing.several or d.scene.thing.listed)
         return bool(several) and d.is_plural(part)
     if part.means == "person_pronoun":
         each = node.means in HANDED and each_asked(d) is not None
-        last = d.person
+        last = d.scene.person
         group = last is not None and (last.group is not None or last.count is not None)
         return (group or each) and d.is_plural(part)
     if part.means == "thing" and part.production.rule == "simple_thing":
@@ -250,7 +254,7 @@ def speaks_of_several(d: Discourse, node: Node, part: Node) -> bool:
         told = {*part.parts, *part.production.fixed}
         return bool(told & {"number", "every"}) or (node.means in HANDED and all_of(d, node, part))
     if part.means == "thing_it":
-        several = d.thing is not None and d.thing.several and d.is_plural(part)
+        several = d.scene.thing is not None and d.scene.thing.several and d.is_plural(part)
         return several or (node.means in HANDED and bool(list_before(d, part)))
     return True
 
@@ -268,10 +272,10 @@ def all_of(d: Discourse, node: Node, part: Node) -> bool:
         return False
     if "from" in node.parts or any(each.means == "each_place" for each in inside(part)):
         return True  # "the cups in the meeting rooms"
-    before = d.thing, d.thing_last
+    before = d.scene.thing, d.scene.thing_last
     thing: Thing = d.build(part)
-    d.thing, d.thing_last = before
-    in_round = d.in_loop and isinstance(d.at, Recall)
+    d.scene.thing, d.scene.thing_last = before
+    in_round = d.rounds.in_loop and isinstance(d.scene.at, Recall)
     somewhere = in_round or thing.place is not None or bool(thing.furniture)
     # Where the world knows no such thing, its plural may be the name of one: "the pickles".
     return not thing.here and (somewhere or (isinstance(head, Leaf) and head.slot == "object"))
@@ -291,19 +295,19 @@ def over(d: Discourse, several: list[Node], make: Make) -> Steps:
     if not several:
         return make()
     first, *rest = several
-    d.taking_apart = True
+    d.rounds.taking_apart = True
     try:
         phrase = d.build(first)
     finally:
-        d.taking_apart = False
+        d.rounds.taking_apart = False
 
     def one(bound: Any) -> Steps:
         """The steps for one of them."""
-        d.bound[id(first)] = bound
+        d.rounds.bound[id(first)] = bound
         try:
             return over(d, rest, make)
         finally:
-            del d.bound[id(first)]
+            del d.rounds.bound[id(first)]
 
     return OVER[first.means](d, first, phrase, one)
 
@@ -313,8 +317,8 @@ def over_people(d: Discourse, node: Node, person: Thing, one: One) -> Steps:
         steps = each_their_own(d, one)  # "bring everyone what they asked for"
         if steps is not None:
             return steps
-    if person.place is None and d.taken_from is not None:
-        person = replace(person, place=d.taken_from.place)
+    if person.place is None and d.deliveries.taken_from is not None:
+        person = replace(person, place=d.deliveries.taken_from.place)
     group = person.group
     if isinstance(group, Items):
         return each_named(d, group, person, one)
@@ -324,20 +328,20 @@ def over_people(d: Discourse, node: Node, person: Thing, one: One) -> Steps:
 def each_named(d: Discourse, group: Value, person: Thing, one: One) -> Steps:
     """Each of several people whom the world knows."""
     who = Recall(d.variable("person"))
-    d.at = None
+    d.scene.at = None
     fetched = d.done[-1] if d.done and fetches(d, d.done[-1], group) else None
     body = round_of_steps(d, lambda: one(Thing(who, known=True, person=True)))
     if fetched is not None and any(leads(each) for each in nodes(tuple(body))):
         d.done.remove(fetched)  # "get Alice and Bob and take them to the lounge": not here first
-    d.at = d.with_person = None
-    d.person, d.thing_last = person, False
+    d.scene.at = d.scene.with_person = None
+    d.scene.person, d.scene.thing_last = person, False
     return [ForEach(who.name, group, tuple(body))]
 
 
 def fetches(d: Discourse, step: Step, group: Value) -> bool:
     """Whether a step does nothing but bring these people to the speaker."""
     round_of_them = isinstance(step, ForEach) and step.items == group
-    return round_of_them and any(each is d.fetched for each in nodes(step))
+    return round_of_them and any(each is d.deliveries.fetched for each in nodes(step))
 
 
 def leads(step: object) -> bool:
@@ -347,16 +351,16 @@ def leads(step: object) -> bool:
 def each_met(d: Discourse, person: Thing, one: One) -> Steps:
     """Each of those who are at a place, or come to it."""
     going = go(d, person.place) if person.place is not None else []
-    here = d.at
+    here = d.scene.at
     who: Value = person.value
     by_name = person.every and person.text == ANYONE
     if by_name:
         who = Recall(d.variable("person"))
     met = Thing(who, known=by_name, person=True, here=True)
-    outer = d.at_people
-    d.at_people = d.at_people or bool(going)
+    outer = d.rounds.at_people
+    d.rounds.at_people = d.rounds.at_people or bool(going)
     body = round_of_steps(d, lambda: one(met))
-    d.at_people = outer
+    d.rounds.at_people = outer
     moment = [*takewhile(_is_moment, body)] if not person.coming and person.count is None else []
     if len(moment) < len(body):  # "remind everyone at five": that is one time for all of them
         going, body = [*going, *moment], body[len(moment) :]
@@ -365,17 +369,20 @@ def each_met(d: Discourse, person: Thing, one: One) -> Steps:
     meeting: Steps = [] if by_name else [Call("wait_for", {"thing": who})]
     if leaves(body, here):
         meeting.insert(0, Call("goto", {"place": d.start() if here is None else here}))
-        d.at = d.with_person = None
+        d.scene.at = d.scene.with_person = None
     waited = None if by_name or person.coming else waited_for(d, who)
     if waited is not None:  # "wait for two visitors and take each of them to the lounge"
-        d.person, d.thing_last = replace(person, place=None, here=True, count=None), False
+        d.scene.person, d.scene.thing_last = (
+            replace(person, place=None, here=True, count=None),
+            False,
+        )
         return [Repeat(waited, (Call("wait_for", {"thing": who}), *body))]
     fetched = fetched_before(body, who, here) if not by_name and not person.coming else 0
     if fetched:  # whoever is met is forgotten on the way to what they get
         meeting = [*body[:fetched], meeting[-1]]
     steps = (*meeting, *body[fetched:])
-    d.person = replace(person, place=None, here=True, coming=False)
-    d.thing_last = False
+    d.scene.person = replace(person, place=None, here=True, coming=False)
+    d.scene.thing_last = False
     if person.coming:
         return [*going, Forever(steps)]
     if person.count is not None:
@@ -407,8 +414,8 @@ def fetched_before(body: Steps, who: Value, here: Value | None) -> int:
 
 def over_them(d: Discourse, node: Node, person: Thing, one: One) -> Steps:
     """ "them": people, or things that were spoken of after them."""
-    if d.thing_last and d.thing is not None:
-        return over_it(d, node, d.thing, one)
+    if d.scene.thing_last and d.scene.thing is not None:
+        return over_it(d, node, d.scene.thing, one)
     steps = each_their_own(d, one)
     return over_people(d, node, person, one) if steps is None else steps
 
@@ -425,20 +432,20 @@ def each_their_own(d: Discourse, one: One) -> Steps | None:
     asked = each_asked(d)
     if asked is None:
         return None
-    scene = d.scene()
-    d.at = None
+    scene = d.scene.copy()
+    d.scene.at = None
     steps = one(asked)
     if uses_answer(d, steps):
         return steps
     wished = if_wished(d, steps)
     if wished is None:
-        d.set_scene(scene)
+        d.scene = scene.copy()
     return wished
 
 
 def if_wished(d: Discourse, steps: Steps) -> Steps | None:
     """ "ask the people whether they would like tea and bring it to them": to those who would."""
-    survey: Survey = d.surveys[-1]
+    survey: Survey = d.answers.surveys[-1]
     question = survey.call.arguments["question"]
     agree = d.language.phrase("yes")
     if agree not in survey.options or not isinstance(question, Text) or not survey.call.save_as:
@@ -459,9 +466,9 @@ def if_wished(d: Discourse, steps: Steps) -> Steps | None:
 
 def over_those_who(d: Discourse, node: Node, person: Thing, one: One) -> Steps:
     """ "each one who said yes": for whoever was asked, if that is what they answered."""
-    survey = d.surveys[-1]
+    survey = d.answers.surveys[-1]
     answer: Condition = wanted(d, survey, d.get(node, "said")).given(survey)
-    d.at = None
+    d.scene.at = None
     return [If(answer, tuple(round_of_steps(d, lambda: one(person))))]
 
 
@@ -472,7 +479,7 @@ def over_either_person(d: Discourse, node: Node, people: list[Thing], one: One) 
     if not isinstance(looked_for[-1], If) or not isinstance(looked_for[-1].condition, Not):
         return looked_for
     whoever = Thing(Text(ANYONE), person=True, here=True)
-    d.person, d.with_person, d.thing_last = whoever, whoever.value, False
+    d.scene.person, d.scene.with_person, d.scene.thing_last = whoever, whoever.value, False
     anybody = Either(tuple(Holds(Ask("find", found(d, each).arguments)) for each in people))
     return [If(Not(anybody), (not_found(d, whoever),))]
 

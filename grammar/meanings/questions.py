@@ -72,7 +72,7 @@ LONGEST_OFFERED: Final = 3
 def ask(d: Discourse, node: Node) -> Steps:
     """Ask somebody a question and remember the answer."""
     person: Thing | None = guest_for(d, node.parts.get("person_ref"), d.get(node, "person_ref"))
-    d.message = node
+    d.answers.message = node
     question = node.parts.get("question")
     if person is None and isinstance(question, Node) and "asked_one" in question.parts:
         person = d.build(question.parts["asked_one"])  # "find out what Bob wants"
@@ -81,17 +81,22 @@ def ask(d: Discourse, node: Node) -> Steps:
         return asked_in_each(d, there, lambda everybody: ask_one(d, node, everybody))
     if person is None:
         person = just_visited(d) or all_meant(d, node) or gone_to(d) or spoken_of(d)
-    nobody = person is None and d.with_person is None and d.at is None and not d.in_loop
+    nobody = (
+        person is None
+        and d.scene.with_person is None
+        and d.scene.at is None
+        and not d.rounds.in_loop
+    )
     if nobody and node.production.fixed.get("of_those_there"):
         raise NotUnderstood(d.language.phrase("no_question"))
     if person is not None and person.coming:
         going = go(d, person.place) if person.place is not None else []
         waiting = Call("wait_for", {"thing": person.value})
-        d.person = replace(person, coming=False, place=None)
-        return [*going, Forever((waiting, *ask_one(d, node, d.person)))]
+        d.scene.person = replace(person, coming=False, place=None)
+        return [*going, Forever((waiting, *ask_one(d, node, d.scene.person)))]
     steps = ask_one(d, node, person)
     if node.production.fixed.get("to_me"):
-        d.put = d.surveys[-1]
+        d.answers.put = d.answers.surveys[-1]
     return steps
 
 
@@ -117,19 +122,21 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
     elif question.production.fixed.get("where"):
         if len(d.lexicon.places) <= MOST_OPTIONS:
             arguments["options"] = Ask("places")
-        d.place = Recall(name)
+        d.scene.place = Recall(name)
     elif (places := places_asked_for(d, question)) is not None:
         arguments["options"] = places
-        d.place = Recall(name)
+        d.scene.place = Recall(name)
     spoken_of = places_named(d, question.start, question.end)
-    if len(spoken_of) == 1 and d.place != Recall(name):
-        d.place = Text(spoken_of[0])  # "ask whether they want to see the lab; take them there"
+    if len(spoken_of) == 1 and d.scene.place != Recall(name):
+        d.scene.place = Text(
+            spoken_of[0]
+        )  # "ask whether they want to see the lab; take them there"
     # "ask Bob whether Alice is in; if so, tell her ..."
-    d.named.extend(people_named(d, question.start, question.end))
+    d.people.named.extend(people_named(d, question.start, question.end))
     if whom.many and asks_for_some(d, question):
-        d.polled_for = "who"
+        d.answers.polled_for = "who"
     if node.production.fixed.get("vote"):
-        d.polled_for = "each"  # nobody asks who voted for what
+        d.answers.polled_for = "each"  # nobody asks who voted for what
     offered(d, question, options, name)
     return put(
         d, whom, Call("ask", arguments, save_as=name), options, nouns_of(d, question, options)
@@ -138,11 +145,11 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
 
 def worded(d: Discourse, question: Node, whom: Audience) -> tuple[str, tuple[str, ...]]:
     """The words of a question for those who are asked, and the answers that it offers."""
-    d.asking_each = whom.many
-    d.asking_one = None if whom.many else whom.person
+    d.answers.asking_each = whom.many
+    d.answers.asking_one = None if whom.many else whom.person
     text: str = capital(put_for(d, "asked_singly", d.build(question)))
     options = named_themselves(d, options_of(d, question), whom.person)
-    d.asking_each, d.asking_one = False, None
+    d.answers.asking_each, d.answers.asking_one = False, None
     return text, options
 
 
@@ -151,7 +158,7 @@ def ask_everybody_here(d: Discourse, start: int, end: int) -> Steps:
     forms: dict[str, Any] | None = d.language.speech.get("poll_forms")
     first = d.tokens[start].norm
     known = forms is not None and any(first in forms[each] for each in ("be", "aux", "verbs"))
-    if forms is None or not known or d.at is None:  # only those who are where it was sent
+    if forms is None or not known or d.scene.at is None:  # only those who are where it was sent
         raise NotUnderstood(d.language.phrase("no_question"))
     kind = next((each for each in ("be", "aux") if first in forms[each]), "verb")
     verb = first if kind == "aux" else base_form(d, past_base(d, first) or first)
@@ -185,50 +192,73 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
     ):
         subject = None  # "whether I may borrow the projector"
     rest = subject or question.parts.get("rest")
-    d.asked_for = None
+    d.answers.asked_for = None
     if question.production.fixed.get("wanted"):
         asked_for = question.parts["noun"]
         what = singular(d.noun_words(asked_for.start, asked_for.end), d.language)
         if isinstance(asked_for, Node):  # "the key to the supply room"
             what = d.build(asked_for).text
-        d.asked_for = Text(what)
-        d.held = d.asked_for if d.language.phrase("yes") in options else None
-        d.thing, d.thing_last = Thing(d.asked_for, noun=head_word(what, d.language)), True
+        d.answers.asked_for = Text(what)
+        d.answers.held = d.answers.asked_for if d.language.phrase("yes") in options else None
+        d.scene.thing, d.scene.thing_last = (
+            Thing(d.answers.asked_for, noun=head_word(what, d.language)),
+            True,
+        )
         return
     counted = question.parts.get("wh")
     noun = counted.parts.get("noun") if isinstance(counted, Node) else None
     asks_thing = counted is not None and d.tokens[counted.start].norm in d.language.speech.get(
         "asks_thing", ()
     )
-    if asks_thing and not options and "subject" not in question.parts and d.place != Recall(name):
-        d.thing, d.thing_last = Thing(Recall(name)), False  # "what he would like to drink"
+    if (
+        asks_thing
+        and not options
+        and "subject" not in question.parts
+        and d.scene.place != Recall(name)
+    ):
+        d.scene.thing, d.scene.thing_last = (
+            Thing(Recall(name)),
+            False,
+        )  # "what he would like to drink"
     elif noun is not None:  # "how many blankets they need"
         what = singular(d.noun_words(noun.start, noun.end), d.language)
-        d.thing, d.thing_last = Thing(Text(what)), False
+        d.scene.thing, d.scene.thing_last = Thing(Text(what)), False
     elif (
         not options
         and {"verb", "aux"} & question.parts.keys()
-        and d.thing is None
-        and d.place != Recall(name)
+        and d.scene.thing is None
+        and d.scene.place != Recall(name)
         and not _no_thing(d, counted)
         and not _no_thing(d, question.parts.get("aux"))
     ):
-        d.thing, d.thing_last = Thing(Recall(name)), False  # "ask what they need and bring it"
-    elif "noun" in question.parts and d.place != Recall(name):
-        d.thing, d.thing_last = Thing(Recall(name)), False  # "ask for her favourite fruit"
+        d.scene.thing, d.scene.thing_last = (
+            Thing(Recall(name)),
+            False,
+        )  # "ask what they need and bring it"
+    elif "noun" in question.parts and d.scene.place != Recall(name):
+        d.scene.thing, d.scene.thing_last = (
+            Thing(Recall(name)),
+            False,
+        )  # "ask for her favourite fruit"
     about = question.parts.get("subject")
     if isinstance(about, Leaf) and about.slot in ("noun", "object"):  # "si la soupe est prête"
         if not names_people(d, about.start, about.end):
-            d.thing, d.thing_last = Thing(Text(d.noun_words(about.start, about.end))), True
+            d.scene.thing, d.scene.thing_last = (
+                Thing(Text(d.noun_words(about.start, about.end))),
+                True,
+            )
     elif isinstance(about, Node) and any(each in about.parts for each in ("noun", "object")):
         start, end = without_little_words(d, about.start, about.end)
-        d.thing, d.thing_last = Thing(Text(d.noun_words(start, end))), False
+        d.scene.thing, d.scene.thing_last = Thing(Text(d.noun_words(start, end))), False
     if (lost := sought_after(d, question)) is not None:
-        d.thing, d.thing_last = lost, True
+        d.scene.thing, d.scene.thing_last = lost, True
         return
     numbers = all(each.isdigit() for each in options)
-    if "options" in question.parts and not numbers and d.place != Recall(name):
-        d.thing, d.thing_last = Thing(Recall(name)), False  # "what they want: tea or coffee"
+    if "options" in question.parts and not numbers and d.scene.place != Recall(name):
+        d.scene.thing, d.scene.thing_last = (
+            Thing(Recall(name)),
+            False,
+        )  # "what they want: tea or coffee"
     offer = bool(question.production.fixed.get("offer"))  # "offer him a coffee"
     having = rest is not None and says_having(d, rest.start)  # "whether they have got a pen"
     if rest is None or not (offer or having or {"verb", "aux"} & question.parts.keys()):
@@ -237,7 +267,7 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
     if options and last is not None and all(each.isdigit() for each in options):
         what = singular(d.noun_words(last + 1, rest.end), d.language)
         if what:  # "one, two or three boxes"
-            d.thing, d.thing_last = Thing(Text(what)), False
+            d.scene.thing, d.scene.thing_last = Thing(Text(what)), False
         return
     if len(options) > 1 and not question.production.fixed.get("where"):
         yes_no = options == (d.language.phrase("yes"), d.language.phrase("no"))
@@ -246,13 +276,13 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
         little = d.language.words_called("how_much")
         while start < end - 1 and d.tokens[start].norm in little:
             start, _ = without_little_words(d, start + 1, end)  # "still need their computer"
-        if not yes_no and d.place != Recall(name):
-            d.thing, d.thing_last = Thing(Recall(name)), False
+        if not yes_no and d.scene.place != Recall(name):
+            d.scene.thing, d.scene.thing_last = Thing(Recall(name)), False
         elif yes_no and not names_people(d, start, end):
-            d.thing = asked_about(d, start, end)
-            d.thing_last = False
-            if d.thing is not None and isinstance(d.thing.value, Text):
-                asks_who_has(d, question, d.thing.value)
+            d.scene.thing = asked_about(d, start, end)
+            d.scene.thing_last = False
+            if d.scene.thing is not None and isinstance(d.scene.thing.value, Text):
+                asks_who_has(d, question, d.scene.thing.value)
 
 
 def sought_after(d: Discourse, question: Node) -> Thing | None:
@@ -280,7 +310,7 @@ def sought_after(d: Discourse, question: Node) -> Thing | None:
 def asked_about(d: Discourse, start: int, end: int) -> Thing | None:
     """The thing that some words of a question speak of, and where it is said to be."""
     if set(d.norms(start, end)) <= d.language.words_called("it"):
-        return d.thing
+        return d.scene.thing
     place, last = None, end
     for at in range(start + 1, end):
         if d.tokens[at].norm in d.language.words_called("after_options"):
@@ -288,7 +318,7 @@ def asked_about(d: Discourse, start: int, end: int) -> Thing | None:
             place, last = (None, end) if name is None else (Text(name), at)
             break
     if not 0 < last - start <= LONGEST_OFFERED:
-        return d.thing
+        return d.scene.thing
     what = d.noun_words(start, last)
     return Thing(Text(what), place, noun=head_word(what, d.language))
 
@@ -304,7 +334,7 @@ def question(d: Discourse, node: Node) -> str:
         gap = (node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words), gap=gap)
     past = node.production.fixed.get("past")
-    turned_each = d.asking_each and "each" in node.production.fixed
+    turned_each = d.answers.asking_each and "each" in node.production.fixed
     if turned_each:
         fixed = node.production.fixed
         form, past = str(fixed["each"]), fixed.get("each_past")
@@ -314,10 +344,10 @@ def question(d: Discourse, node: Node) -> str:
         "another" in node.production.fixed
         and asked is not None
         and bool(else_ & set(d.norms(asked.start, asked.end)))
-        and d.asking_one is not None
-        and d.asking_one.known
+        and d.answers.asking_one is not None
+        and d.answers.asking_one.known
     )
-    meant = meant_in(d, node, d.asking_one)
+    meant = meant_in(d, node, d.answers.asking_one)
     if meant.subject:
         past = past and about_another(d, str(past), meant)
         form = about_another(d, form, meant)
@@ -356,19 +386,23 @@ def question(d: Discourse, node: Node) -> str:
         values["rest"] = f"{values['rest']} {particle}"
     rest = node.parts.get("rest")
     it = rest is not None and set(d.norms(rest.start, rest.end)) <= d.language.words_called("it")
-    if it and d.thing is not None and d.thing.text:
-        values["rest"] = the(d.called(d.thing.text), d.language)  # who is asked did not hear of it
+    if it and d.scene.thing is not None and d.scene.thing.text:
+        values["rest"] = the(
+            d.called(d.scene.thing.text), d.language
+        )  # who is asked did not hear of it
     one = rest is not None and " ".join(d.norms(rest.start, rest.end)) in d.language.words_called(
         "one_of_such"
     )
-    if one and d.thing is not None and d.thing.text and not d.thing.known:
-        values["rest"] = some(d.called(d.thing.text), d.language)  # "ask Clara if she has one"
+    if one and d.scene.thing is not None and d.scene.thing.text and not d.scene.thing.known:
+        values["rest"] = some(
+            d.called(d.scene.thing.text), d.language
+        )  # "ask Clara if she has one"
     form = form if values["rest"].strip() else form.replace(" {rest},", ",")
     text = " ".join(form.format_map(values).split())
     for pattern, instead in d.language.speech.get("question_joined", ()):
         text = re.sub(pattern, instead, text)  # "Est-ce que Alice" -> "Est-ce qu'Alice"
     mark = d.language.speech.get("question_mark", "?")
-    if d.surveys and says_the_same(d, text):  # whoever is asked does not know as what
+    if d.answers.surveys and says_the_same(d, text):  # whoever is asked does not know as what
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
     return capital(text.replace(" ?", mark).replace(" ,", ",").replace(" .", "."))

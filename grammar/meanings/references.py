@@ -33,7 +33,7 @@ def answer_named(d: Discourse, node: Node) -> Told:
             d.language.phrase("not_understood", part=words), gap=(node.start, node.end)
         )
     value = answer_to(d, survey)
-    d.resolved.update(range(part.start, part.end))
+    d.command.resolved.update(range(part.start, part.end))
     if value is None:
         return polled(d, "answers", None)
     return Told([Call("say", {"text": value})], [])
@@ -43,14 +43,14 @@ def survey_named(d: Discourse, start: int, end: int) -> Survey | None:
     """The question whose answer a noun speaks of; the last one, if of several."""
     words = d.norms(start, end)
     noun = singular(words[-1], d.language)
-    surveys: list[Survey] = d.surveys
+    surveys: list[Survey] = d.answers.surveys
     return next((each for each in reversed(surveys) if noun in each.nouns), None)
 
 
 def answer_to(d: Discourse, survey: Survey) -> Value | None:
     """The one answer to a question; None if it was put to several who need not agree."""
-    if d.agreed is not None and d.agreed[0] is survey.call:
-        agreed: Value = d.agreed[1]
+    if d.answers.agreed is not None and d.answers.agreed[0] is survey.call:
+        agreed: Value = d.answers.agreed[1]
         return agreed
     last = d.done[-1] if d.done else None
     each = isinstance(last, Forever) and any(node is survey.call for node in nodes(last))
@@ -109,11 +109,13 @@ def _kinds(d: Discourse, options: tuple[str, ...]) -> Iterator[str]:
 
 def answers_in(d: Discourse, text: str, start: int, end: int) -> Value:
     """A text made of some words, with the answers in it that these words speak of."""
-    if d.round.such is not None and d.norms(end - 1, end)[0] in d.language.speech.get("there", ()):
+    if d.rounds.round.such is not None and d.norms(end - 1, end)[0] in d.language.speech.get(
+        "there", ()
+    ):
         # "find an empty office and tell Bob to meet me there": he has to hear which one it is
         words = text.rstrip(".!")
         end_of_it = (Text(text[len(words) :]),) if text != words else ()
-        return Sentence((Text(f"{words}: "), Recall(d.round.such), *end_of_it))
+        return Sentence((Text(f"{words}: "), Recall(d.rounds.round.such), *end_of_it))
     parts: list[Value] = []
     rest = text
     for first, last, value in list(_spoken_of(d, start, end)):
@@ -129,7 +131,7 @@ def answers_in(d: Discourse, text: str, start: int, end: int) -> Value:
             parts.append(Text(before))
         parts.append(value)
         rest = rest[found.end() :]
-        d.resolved.update(range(first, last))
+        d.command.resolved.update(range(first, last))
     if not parts:
         return Text(text)
     if rest:
@@ -139,7 +141,7 @@ def answers_in(d: Discourse, text: str, start: int, end: int) -> Value:
 
 def _spoken_of(d: Discourse, start: int, end: int) -> Iterator[tuple[int, int, Value]]:
     """Where among some tokens an answer is spoken of, and the answer."""
-    if not d.surveys:
+    if not d.answers.surveys:
         return
     always = [d.language.tokens_of(each) for each in d.language.speech.get("that_answer", ())]
     pointing = set(d.language.speech.get("that_noun", ()))
@@ -155,7 +157,7 @@ def _spoken_of(d: Discourse, start: int, end: int) -> Iterator[tuple[int, int, V
             continue
         for phrase in always:
             if _stand_here(d, phrase, at, end):
-                survey, last = d.surveys[-1], at + len(phrase)
+                survey, last = d.answers.surveys[-1], at + len(phrase)
         more = d.tokens[at + 2].norm if at + 2 < end else ""
         points = d.tokens[at].norm in pointing and at + 1 < end and more not in further
         points = points or (d.tokens[at].norm in theirs and at + 2 == end)

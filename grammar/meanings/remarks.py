@@ -49,14 +49,14 @@ def remark(d: Discourse, node: Node) -> Steps:
                 raise NotUnderstood(d.language.phrase("not_understood", part=words))
             with contextlib.suppress(NotUnderstood):  # it may speak of what nobody knows
                 d.build(part)
-                if node.production.fixed.get("coming") and d.person is not None:
-                    d.person = expected(d.person)
+                if node.production.fixed.get("coming") and d.scene.person is not None:
+                    d.scene.person = expected(d.scene.person)
     named = people_named(d, node.start, node.end)
     if len(named) == 1:  # "a letter came for Bob"
-        d.person, d.thing_last = Thing(Text(named[0]), person=True, known=True), False
+        d.scene.person, d.scene.thing_last = Thing(Text(named[0]), person=True, known=True), False
     if not node.production.fixed.get("own"):
-        d.report = Report("only", Text(sentence_form(_said(d, node))), about_here=False)
-        d.report_step = None
+        d.reports.last = Report("only", Text(sentence_form(_said(d, node))), about_here=False)
+        d.reports.step = None
     return aside(d, node)
 
 
@@ -100,7 +100,7 @@ def _said(d: Discourse, node: Node) -> str:
 @meaning("remark_name")
 def remark_name(d: Discourse, node: Node) -> Steps:
     """ "her name is Grace": "her" and "my wife" are Grace from now on."""
-    before = d.person
+    before = d.scene.person
     person: Thing = d.get(node, "person_ref")
     if before is not None and not before.known and person.known:
         d.done[:] = [replaced(step, before.value, person.value) for step in d.done]
@@ -112,8 +112,8 @@ def remark_thing(d: Discourse, node: Node) -> Steps:
     """ "somebody lost a scarf": what, and who, is spoken of then."""
     d.get(node, "person_ref")
     thing: Thing = d.get(node, "thing")
-    d.thing, d.thing_last = thing, True
-    d.mislaid = thing.value
+    d.scene.thing, d.scene.thing_last = thing, True
+    d.deliveries.mislaid = thing.value
     return aside(d, node)
 
 
@@ -122,9 +122,11 @@ def remark_where(d: Discourse, node: Node) -> Steps:
     """ "bring it to Alice, she is in ward a", "I forgot my bag in the cafeteria": where to look."""
     who_is = node.parts.get("person_ref")
     person: Thing | list[Thing] | None = d.build(who_is) if who_is is not None else None
-    crowd = d.person is not None and d.person.plural and d.person.group is None
-    if person is None and crowd and d.gender(node.start, node.start + 2) and d.last_named:
-        d.person = d.last_named  # "tell Ada how many visitors are in the lobby, she is in ..."
+    crowd = d.scene.person is not None and d.scene.person.plural and d.scene.person.group is None
+    if person is None and crowd and d.gender(node.start, node.start + 2) and d.people.last_named:
+        d.scene.person = (
+            d.people.last_named
+        )  # "tell Ada how many visitors are in the lobby, she is in ..."
     spot: Where = d.get(node, "where")  # "Alice is in her office": after her
     place = spot.place
     thing: Thing | None = d.get(node, "thing")
@@ -134,21 +136,26 @@ def remark_where(d: Discourse, node: Node) -> Steps:
         person = None
     it = node.production.fixed.get("it") or (person is None and may_be_it(d, node))
     it = it or mislaid(d, who_is) is not None
-    either = isinstance(place, Items) and d.thing is not None  # things are in one place or another
-    if either or (is_me(d.person) and d.gender(node.start, node.start + 2)):
+    either = (
+        isinstance(place, Items) and d.scene.thing is not None
+    )  # things are in one place or another
+    if either or (is_me(d.scene.person) and d.gender(node.start, node.start + 2)):
         it = True  # "hol mir meine Brille, sie ist im Büro": no word for whoever says so
-    who = person or (d.person if thing is None and not it else None)
+    who = person or (d.scene.person if thing is None and not it else None)
     if thing is None and who is not None:
-        d.person, d.thing_last = replace(who, place=place, furniture=spot.furniture), False
-        d.with_person = None
+        d.scene.person, d.scene.thing_last = (
+            replace(who, place=place, furniture=spot.furniture),
+            False,
+        )
+        d.scene.with_person = None
         known_to_be(d, who.value, place)
         fetched_there(d, who, place)
     else:
-        what = thing or d.thing
+        what = thing or d.scene.thing
         if isinstance(what, Thing):  # of several, each is where it is
             there = replace(what, place=place, furniture=spot.furniture)
-            d.thing, d.thing_last = all_there_are(there), True
-            told_where(d, d.thing)
+            d.scene.thing, d.scene.thing_last = all_there_are(there), True
+            told_where(d, d.scene.thing)
             known_to_be(d, what.value, place)
     return aside(d, node)
 
@@ -158,9 +165,9 @@ def remark_lacking(d: Discourse, node: Node) -> Steps:
     """ "there is no whiteboard in lecture hall 2": one that is brought then goes there."""
     thing: Thing = d.get(node, "thing")
     spot: Where = d.get(node, "where") or Where(d.get(node, "place"))
-    d.thing, d.thing_last = replace(thing, place=None, furniture=None), True
-    d.lacking = replace(thing, place=spot.place, furniture=spot.furniture)
-    d.place = spot.place
+    d.scene.thing, d.scene.thing_last = replace(thing, place=None, furniture=None), True
+    d.scene.lacking = replace(thing, place=spot.place, furniture=spot.furniture)
+    d.scene.place = spot.place
     return aside(d, node)
 
 
@@ -168,19 +175,23 @@ def mislaid(d: Discourse, part: Leaf | Node | None) -> Thing | None:
     """What "il" and "elle" speak of where somebody was said to wait or to look for something: "le
     docteur attend son dossier, il est à l'accueil"."""
     pronoun = part is not None and what_it_means(part) == "person_pronoun"
-    known = d.thing_last and d.thing is not None and d.thing.value == d.mislaid
-    return d.thing if pronoun and known else None
+    known = (
+        d.scene.thing_last
+        and d.scene.thing is not None
+        and d.scene.thing.value == d.deliveries.mislaid
+    )
+    return d.scene.thing if pronoun and known else None
 
 
 def may_be_it(d: Discourse, node: Node) -> bool:
     """Whether the pronoun here may stand for the thing that was spoken of last: "er liegt auf dem
     Tisch", said of a scarf."""
     gender = d.gender(node.start, node.start + 2)
-    if gender is not None and d.thing is not None and d.person is not None:
-        thing = gender_of_thing(d, d.thing) in (None, gender)
-        return thing and not d.may_have(d.person, gender)
+    if gender is not None and d.scene.thing is not None and d.scene.person is not None:
+        thing = gender_of_thing(d, d.scene.thing) in (None, gender)
+        return thing and not d.may_have(d.scene.person, gender)
     things = set(d.language.speech.get("things_too", ()))
-    return d.thing_last and bool(things & set(d.norms(node.start, node.start + 2)))
+    return d.scene.thing_last and bool(things & set(d.norms(node.start, node.start + 2)))
 
 
 def fetched_there(d: Discourse, who: Thing, place: Value | None) -> None:

@@ -93,7 +93,7 @@ def same_for(d: Discourse, node: Node) -> Steps:
     what is his in the place of what was theirs; "for the next two visitors": that often more."""
     if not d.done:
         raise NotUnderstood(d.language.phrase("repeat_what"))
-    before = d.person
+    before = d.scene.person
     person: Thing = d.get(node, "person_ref")
     if person.count is not None:
         return [Repeat(Number(person.count), all_before(d, keep=True))]
@@ -114,7 +114,7 @@ def done_with(d: Discourse, before: Value, person: Value) -> Steps:
     lost = unknown_places(d, steps)
     if lost:
         raise NotUnderstood(d.language.phrase("unknown_place", name=lost[0]))
-    d.with_person = person if d.with_person == before else d.with_person
+    d.scene.with_person = person if d.scene.with_person == before else d.scene.with_person
     return steps
 
 
@@ -162,7 +162,7 @@ def same_at(d: Discourse, node: Node) -> Steps:
             for step in done_at(d, steps, old, place)
         ]
     variable = d.variable("place")
-    d.at = d.with_person = None
+    d.scene.at = d.scene.with_person = None
     body = tuple(replaced(step, old, Recall(variable)) for step in steps)
     return [ForEach(variable, kind_places(d, kinds), body)]
 
@@ -170,14 +170,14 @@ def same_at(d: Discourse, node: Node) -> Steps:
 def done_at(d: Discourse, steps: Steps, old: Text, place: Value) -> Steps:
     """The steps at one place once more at another; with whoever works there, where they were with
     whoever works at the one."""
-    d.place = old
+    d.scene.place = old
     before = owner_of(d)
     d.went(place)
-    d.place = place
+    d.scene.place = place
     person = owner_of(d)
     if before is not None and person is not None and mentions(tuple(steps), before):
         steps = [replaced(step, before, person) for step in steps]
-        d.person, d.thing_last = Thing(person, known=True, person=True), False
+        d.scene.person, d.scene.thing_last = Thing(person, known=True, person=True), False
     return [replaced(step, old, place) for step in steps]
 
 

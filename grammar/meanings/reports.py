@@ -67,15 +67,15 @@ def gone_to_tell(d: Discourse, person: Thing) -> Thing:
     """ "look at the lobby, then go to Bob's office and tell Bob how many are waiting": what is told
     there is of the place before, for he sees himself who is with him."""
     before, last = d.done[-2:] if len(d.done) > 1 else (None, None)
-    if d.at is None or last != Call("goto", {"place": d.at}) or before == BACK:
+    if d.scene.at is None or last != Call("goto", {"place": d.scene.at}) or before == BACK:
         return person
     looked = isinstance(before, Call) and before.method == "goto"
-    if not looked or person.place is not None or not is_their_place(d, d.at, person):
+    if not looked or person.place is not None or not is_their_place(d, d.scene.at, person):
         return person
     assert isinstance(before, Call)
     d.done.pop()
-    own, d.at = d.at, before.arguments["place"]
-    d.place = d.at
+    own, d.scene.at = d.scene.at, before.arguments["place"]
+    d.scene.place = d.scene.at
     return replace(person, place=own)
 
 
@@ -91,7 +91,7 @@ def found_for(d: Discourse, person: Thing | None, found: Steps) -> Steps:
 
     def told_there(steps: tuple[Step, ...]) -> tuple[Step, ...]:
         at = steps.index(BACK)
-        d.at = d.with_person = None
+        d.scene.at = d.scene.with_person = None
         return (*steps[:at], *speak_to(d, person, list(steps[at + 1 :])))
 
     then, otherwise = told_there(search.then), told_there(search.otherwise)
@@ -100,25 +100,25 @@ def found_for(d: Discourse, person: Thing | None, found: Steps) -> Steps:
 
 def told_in_total(d: Discourse, found: Report, person: Thing | None) -> Steps:
     """ "go to every lab, count the chairs and tell me how many there are altogether"."""
-    known = d.report is not None and d.report.name == "count"
-    counted = known and any(each is d.report_step for each in nodes(tuple(d.done)))
+    known = d.reports.last is not None and d.reports.last.name == "count"
+    counted = known and any(each is d.reports.step for each in nodes(tuple(d.done)))
     steps = [] if counted else told(d, replace(found, place=None), None)
-    d.after_round = (person, "total")
+    d.reports.after_round = (person, "total")
     return steps
 
 
 def found_out(d: Discourse, found: Report, person: Thing | None, *, back: bool) -> Steps:
     """Go where something is to be found out, and tell it to a person, or to the speaker."""
     asked_by_me = person is None or is_me(person)
-    if asked_by_me and found == d.report_asked and d.done and d.done[-1] == d.report_step:
+    if asked_by_me and found == d.reports.asked and d.done and d.done[-1] == d.reports.step:
         return []  # "check who is there and tell me their names"
-    if found is d.report_asked and not asked_by_me and d.done and d.done[-1] is d.report_step:
+    if found is d.reports.asked and not asked_by_me and d.done and d.done[-1] is d.reports.step:
         return retold(d, person)  # "see what is on the desk and tell Alex what is there"
-    d.report_asked = found
+    d.reports.asked = found
     if asked_by_me:
         not_yet_back(d, found)
     steps: Steps = []
-    if found.place is not None and found.place != d.at:
+    if found.place is not None and found.place != d.scene.at:
         d.start()
         steps.append(Call("goto", {"place": found.place}))
         d.went(found.place)
@@ -127,8 +127,8 @@ def found_out(d: Discourse, found: Report, person: Thing | None, *, back: bool) 
     if (
         back
         and asked_by_me
-        and d.at is not None
-        and not d.in_loop
+        and d.scene.at is not None
+        and not d.rounds.in_loop
         and found.about_here
         and found.value is not None
     ):
@@ -145,18 +145,18 @@ def found_out(d: Discourse, found: Report, person: Thing | None, *, back: bool) 
     seen_here = found.about_here and found.value is not None
     if back and asked_by_me and seen_here and in_round(d):
         steps += told(d, found, None)
-        d.after_round = (None, "each")
+        d.reports.after_round = (None, "each")
         return steps
     far = person is not None and not is_here(d, person) and found.about_here
     if far and seen_here and in_round(d) and person is not None and person.known:
         steps += told(d, found, None)
-        d.after_round = (person, "each")  # they are told when all places have been seen
+        d.reports.after_round = (person, "each")  # they are told when all places have been seen
         return steps
     if far and found.value is not None and not isinstance(found.value, Recall):
         name = d.variable(found.name)
         steps.append(Remember(name, found.value))  # found out here, told there
         found = replace(found, value=Recall(name))
-        if person is not None and not is_their_place(d, d.at, person):
+        if person is not None and not is_their_place(d, d.scene.at, person):
             d.done += steps  # whoever is to be told what is here is not here
             steps = []
     return [*steps, *told(d, found, person)]
@@ -182,8 +182,8 @@ def not_yet_back(d: Discourse, found: Report) -> None:
 def told(d: Discourse, found: Report, person: Thing | None) -> Steps:
     """Say it."""
     saying = saying_of(d, found)
-    d.report, d.report_step = found, saying
-    d.answer = d.news = d.counted = d.checked = None
+    d.reports.last, d.reports.step = found, saying
+    d.answers.last = d.reports.news = d.reports.counted = d.reports.checked = None
     return speak_to(d, person, [saying])
 
 
@@ -206,8 +206,8 @@ def saying_of(d: Discourse, found: Report) -> Call | If:
 
 def kept(d: Discourse) -> str | None:
     """The variable with what the last report told; the report itself is dropped."""
-    found: Report | None = d.report
-    at = next((at for at, step in enumerate(d.done) if step is d.report_step), None)
+    found: Report | None = d.reports.last
+    at = next((at for at, step in enumerate(d.done) if step is d.reports.step), None)
     if found is None or found.value is None or at is None:
         return None
     if isinstance(found.value, Recall):
@@ -220,13 +220,13 @@ def kept(d: Discourse) -> str | None:
 
 def known_words(d: Discourse) -> Steps:
     """Say the last answer, those of all who were asked, or what the last code says."""
-    if d.answer is not None:
+    if d.answers.last is not None:
         several = several_asked(d) or asked_one_after_the_other(d)
-        if d.surveys and (several or in_loop(d, d.surveys[-1].call)):
-            return polled(d, d.polled_for or "answers", None).words
+        if d.answers.surveys and (several or in_loop(d, d.answers.surveys[-1].call)):
+            return polled(d, d.answers.polled_for or "answers", None).words
         return said_one_by_one(d) or [Call("say", {"text": said_in_all(d)})]
-    if d.code is not None:
-        return [d.say("code_is", value=Recall(d.code))]
+    if d.answers.code is not None:
+        return [d.say("code_is", value=Recall(d.answers.code))]
     if (come := arrival(d)) is not None:
         return [come]
     raise NotUnderstood(d.language.phrase("say_what"))
@@ -234,9 +234,9 @@ def known_words(d: Discourse) -> Steps:
 
 def retold(d: Discourse, person: Thing | None) -> Steps:
     """Tell the last report to somebody else, or somewhere else."""
-    found: Report = d.report
-    d.report_counts = d.report_counts and (person is None or is_me(person))
-    at = next((at for at, step in enumerate(d.done) if step is d.report_step), None)
+    found: Report = d.reports.last
+    d.reports.counts = d.reports.counts and (person is None or is_me(person))
+    at = next((at for at, step in enumerate(d.done) if step is d.reports.step), None)
     if at is not None and not isinstance(found.value, Recall) and found.value is not None:
         name = d.variable(found.name)
         d.done[at] = Remember(name, found.value)
@@ -245,8 +245,8 @@ def retold(d: Discourse, person: Thing | None) -> Steps:
         d.done.pop()  # it is told to them and not to the speaker
         if d.done and d.done[-1] == Call("goto", {"place": Recall(START)}):
             d.done.pop()
-            d.at = found.place
-    elif at is not None and d.report_open and not (person is None or is_me(person)):
+            d.scene.at = found.place
+    elif at is not None and d.reports.open and not (person is None or is_me(person)):
         del d.done[at]  # nobody else was to be told on the way to them
         if at and d.done[at - 1] == BACK:
             del d.done[at - 1]
@@ -256,7 +256,7 @@ def retold(d: Discourse, person: Thing | None) -> Steps:
 def counted_alone(d: Discourse) -> bool:
     """Whether the last step is to say a number where nobody is who asked for it: "go to the lab and
     count the people"."""
-    found: Report | None = d.report
-    counted = found is not None and found.name in ("count", "counts") and d.report_counts
-    told_here = bool(d.done) and d.done[-1] is d.report_step
-    return counted and told_here and d.at not in (None, Recall(START))
+    found: Report | None = d.reports.last
+    counted = found is not None and found.name in ("count", "counts") and d.reports.counts
+    told_here = bool(d.done) and d.done[-1] is d.reports.step
+    return counted and told_here and d.scene.at not in (None, Recall(START))

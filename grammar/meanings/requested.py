@@ -22,7 +22,7 @@ class Request:
 
 def put_as_question(d: Discourse) -> None:
     """Make a question of the request that the clause just before has made."""
-    request: Request | None = d.request
+    request: Request | None = d.answers.request
     last = d.done[-1] if d.done else None
     if request is None or last is None or not _ends_with(last, request.saying):
         return

@@ -15,9 +15,9 @@ def room_spoken_of(d: Discourse, start: int, end: int) -> dict[int, str]:
     pronoun = words[0] in d.language.words_called("room_pronouns")
     if not pronoun or not d.language.words_called("room_states").intersection(words):
         return {}
-    place = d.room
-    if d.met is not None and d.met.thing.text == ANYONE:
-        place = d.met.thing.place or d.place
+    place = d.branch.room
+    if d.branch.met is not None and d.branch.met.thing.text == ANYONE:
+        place = d.branch.met.thing.place or d.scene.place
     return (
         {start: place_called(place.value, d.lexicon, d.language)} if isinstance(place, Text) else {}
     )

@@ -62,53 +62,60 @@ def brought_back(d: Discourse, node: Node, told: Told) -> Steps:
     """The report, told to who asked for it, or to somebody else."""
     person: Thing | None = d.get(node, "whom")
     d.done.extend(told.first)
-    d.at = None
-    d.news = News(told.words, person is None)
+    d.scene.at = None
+    d.reports.news = News(told.words, person is None)
     if person is not None and not is_me(person):
         return speak_to(d, person, told.words)
     start = d.start()
     d.went(start)
-    d.told = told.words[-1]
+    d.reports.told = told.words[-1]
     return [Call("goto", {"place": start}), *told.words]
 
 
 def summed_up(d: Discourse, kind: str, thing: Thing | None = None) -> Told:
     """What was counted in each place, put together."""
-    if d.counted is None and thing is None and kind == "total" and d.polled_for is not None:
+    if (
+        d.reports.counted is None
+        and thing is None
+        and kind == "total"
+        and d.answers.polled_for is not None
+    ):
         return polled(d, "many", None)  # "ask who wants coffee, and tell me how many it is"
-    if kind == "total" and d.counted is None and numbers_asked(d):
+    if kind == "total" and d.reports.counted is None and numbers_asked(d):
         return polled(d, "sum", None)  # "ask them how many they need, and tell me the total"
-    if d.counted is None:
-        d.counted = _counting(d, thing)
-    elif d.news is not None:
-        take_back(d, d.news)  # "count them in the lobby and the hall and tell me where most are"
-    counting, place, things = d.counted
+    if d.reports.counted is None:
+        d.reports.counted = _counting(d, thing)
+    elif d.reports.news is not None:
+        take_back(
+            d, d.reports.news
+        )  # "count them in the lobby and the hall and tell me where most are"
+    counting, place, things = d.reports.counted
     first, notes, told = _kept(d, kind, counting.name, place, things)
     note(d, counting, notes, first)
-    d.report = None
+    d.reports.last = None
     return Told(told, [])
 
 
 def numbers_asked(d: Discourse) -> bool:
     """Whether the last that was found out are answers, and nothing was counted."""
-    if not asked_yet(d) or d.report is not None or last_round(d) is not None:
+    if not asked_yet(d) or d.reports.last is not None or last_round(d) is not None:
         return False
-    return d.language.phrase("yes") not in d.surveys[-1].options
+    return d.language.phrase("yes") not in d.answers.surveys[-1].options
 
 
 def _counting(d: Discourse, thing: Thing | None) -> tuple[Remember, Recall, str]:
     """The step in the last round that counts, now with a name for the number; where the round is;
     what is counted."""
-    found = d.report
+    found = d.reports.last
     for at in range(len(d.done) - 1, -1, -1):
         loop = d.done[at]
         if not isinstance(loop, ForEach):
             continue
         here = Recall(loop.variable)
-        if found is not None and found.name == "count" and _holds(loop, d.report_step):
+        if found is not None and found.name == "count" and _holds(loop, d.reports.step):
             assert found.value is not None
             counting = Remember(d.variable("count"), found.value)
-            d.done[at] = replacing(loop, d.report_step, [counting])
+            d.done[at] = replacing(loop, d.reports.step, [counting])
             return counting, here, dict(found.words)["things"]
         if thing is not None and loop.steps and goes_to(loop.steps[0], loop.variable):
             counting = Remember(d.variable("count"), Ask("count", {"thing": sought(d, thing)}))
@@ -119,19 +126,19 @@ def _counting(d: Discourse, thing: Thing | None) -> tuple[Remember, Recall, str]
 
 def told_after_round(d: Discourse, loop: ForEach) -> Steps:
     """A round, and what was found out in it told behind it."""
-    if d.after_round is None:
+    if d.reports.after_round is None:
         return [loop]
-    (person, kind), d.after_round = d.after_round, None
+    (person, kind), d.reports.after_round = d.reports.after_round, None
     if not _holds(
-        loop, d.report_step
+        loop, d.reports.step
     ):  # "..., and if it is missing, bring one": that is done instead
         return [loop]
-    if d.report.name == "count":
+    if d.reports.last.name == "count":
         d.done.append(loop)
         words, steps = summed_up(d, kind).words, [d.done.pop()]
     else:
         words, steps = _lines(d, loop)
-    d.report, d.news, d.told = None, News(words, person is None), words[-1]
+    d.reports.last, d.reports.news, d.reports.told = None, News(words, person is None), words[-1]
     if person is None or is_me(person):
         return [*steps, *go_back(d, steps), *words]
     return [*steps, *speak_to(d, person, words)]
@@ -145,21 +152,21 @@ def found_on_round(d: Discourse, found: Report) -> Told | None:
     if loop is None or not seen or found.before:
         return None
     saying = saying_of(d, found)
-    d.report, d.report_step = found, saying
+    d.reports.last, d.reports.step = found, saying
     loop = replace(loop, steps=(*loop.steps, saying))
     d.done.pop()
     if found.name == "count":
         d.done.append(loop)
         return summed_up(d, "each")
     words, steps = _lines(d, loop)
-    d.report = None
+    d.reports.last = None
     d.done += steps
     return Told(words, [])
 
 
 def _lines(d: Discourse, loop: ForEach) -> tuple[Steps, Steps]:
     """What was seen at each place of a round: how it is told, and the round with notes of it."""
-    found, here = d.report, Recall(loop.variable)
+    found, here = d.reports.last, Recall(loop.variable)
     noted = d.variable("found")
     if found.otherwise is not None:  # "see whether anybody is there": where there is somebody
         notes: Steps = [If(Holds(found.value), (Collect(noted, here),))]
@@ -175,7 +182,7 @@ def _lines(d: Discourse, loop: ForEach) -> tuple[Steps, Steps]:
         if found.value in (Ask("people"), Ask("objects")):
             none = d.say("nobody_there" if found.value == Ask("people") else "no_such_places")
             words = [If(Compare(Length(Recall(noted)), "==", Number(0)), (none,), tuple(words))]
-    return words, [Remember(noted, Items(())), replacing(loop, d.report_step, notes)]
+    return words, [Remember(noted, Items(())), replacing(loop, d.reports.step, notes)]
 
 
 def _holds(step: Step, inner: Step | None) -> bool:
@@ -213,31 +220,31 @@ def _kept(
     if kind == "most":
         none_there = Compare(Recall(most), "==", Number(0))
     told = If(none_there, (none,), (some,))
-    d.place = Recall(best)
+    d.scene.place = Recall(best)
     return [Remember(most, Number(0)), Remember(best, Text(""))], [kept], [told]
 
 
 def best_counted(d: Discourse, most: bool) -> Recall:
     """ "count the people in each lab and go to the one with the most": of the last round."""
-    if d.counted is None:
-        d.counted = _counting(d, None)
-    elif d.news is not None:
-        take_back(d, d.news)
-    counting, place, things = d.counted
+    if d.reports.counted is None:
+        d.reports.counted = _counting(d, None)
+    elif d.reports.news is not None:
+        take_back(d, d.reports.news)
+    counting, place, things = d.reports.counted
     first, notes, _ = _kept(d, "most" if most else "fewest", counting.name, place, things)
     note(d, counting, notes, first)
-    d.report = None
-    assert isinstance(d.place, Recall)
-    return d.place
+    d.reports.last = None
+    assert isinstance(d.scene.place, Recall)
+    return d.scene.place
 
 
 @meaning("round_count")
 def round_count(d: Discourse, node: Node) -> Steps:
     """ "which ward has the most visitors?", "count the people in the lobby and the kitchen"."""
-    found, best = counted_around(d, node), d.place
+    found, best = counted_around(d, node), d.scene.place
     steps = brought_back(d, node, found)
     if str(node.production.fixed["kind"]) in ("most", "fewest"):  # "go there"
-        d.place = best
+        d.scene.place = best
     return steps
 
 
@@ -251,11 +258,11 @@ def around(d: Discourse, kind: str, thing: Thing, places: Value) -> Told:
     place, count = d.variable("place"), d.variable("count")
     first, notes, told = _kept(d, kind, count, Recall(place), things_called(d, thing))
     counting = Remember(count, Ask("count", {"thing": sought(d, thing)}))
-    d.counted = (counting, Recall(place), things_called(d, thing))
+    d.reports.counted = (counting, Recall(place), things_called(d, thing))
     d.done += [*first, round_of(d, places, [counting, *notes], place)]
     if thing.person and kind in ("most", "fewest"):  # "which lab has most people? Tell them ..."
-        d.person = replace_thing(thing, place=d.place, plural=True, here=False)
-        d.with_person, d.thing_last = None, False
+        d.scene.person = replace_thing(thing, place=d.scene.place, plural=True, here=False)
+        d.scene.with_person, d.scene.thing_last = None, False
     return Told(told, [])
 
 
@@ -267,8 +274,8 @@ def places_told(d: Discourse, node: Node) -> Told:
     """ "which labs have no stapler", "how many offices are empty", "which of them are"."""
     named = any(name in node.parts for name in ("kinds", "place_list"))
     named = named or bool(node.production.fixed.get("all"))
-    if d.round.such is not None and not named and last_round(d) is not None:
-        return Told([d.say("it_is_there", place=Recall(d.round.such))], [])
+    if d.rounds.round.such is not None and not named and last_round(d) is not None:
+        return Told([d.say("it_is_there", place=Recall(d.rounds.round.such))], [])
     trait_part = node.parts["place_trait"]
     tell = str(node.production.fixed.get("tell", "which"))
     of_them = "many" if tell == "many" else "who"
@@ -286,9 +293,9 @@ def places_told(d: Discourse, node: Node) -> Told:
     if not named and of_people and asked_yet(d):
         # "ask them whether they have a key and tell me which ones have none"
         return polled(d, of_them, Said(trait_part.start, trait_part.end))
-    if d.news is not None:  # what was checked on the round is told only as is said now
-        take_back(d, d.news)
-    d.round.lookout = None
+    if d.reports.news is not None:  # what was checked on the round is told only as is said now
+        take_back(d, d.reports.news)
+    d.rounds.round.lookout = None
     at = last_round(d)
     if named and at is None and same_places(d, node, looked_over(d)):
         at = round_of_visits(d)
@@ -301,9 +308,9 @@ def places_told(d: Discourse, node: Node) -> Told:
         return told_where(d, None if sought_for.denied else sought_for.thing)
     loop = None if at is None else d.done[at]
     place = loop.variable if isinstance(loop, ForEach) else d.variable("place")
-    before, d.at = d.at, Recall(place)
+    before, d.scene.at = d.scene.at, Recall(place)
     trait: Trait = d.get(node, "place_trait")
-    d.at = before
+    d.scene.at = before
     found = d.variable("found")
     told_of = trait.condition
     if node.production.fixed.get("as_it_is"):  # "are all labs empty?": where they are not is told
@@ -333,11 +340,11 @@ def places_told(d: Discourse, node: Node) -> Told:
 def without_check(d: Discourse, loop: ForEach) -> ForEach:
     """A round whose check nobody is told of at each place, for it is told behind the round: "see
     whether there is a stapler in each of them, and tell me where there is none"."""
-    found = d.report
-    if found is None or found.otherwise is None or not _holds(loop, d.report_step):
+    found = d.reports.last
+    if found is None or found.otherwise is None or not _holds(loop, d.reports.step):
         return loop
-    less: ForEach = replacing(loop, d.report_step, [])
-    d.report = None
+    less: ForEach = replacing(loop, d.reports.step, [])
+    d.reports.last = None
     return less
 
 
@@ -437,5 +444,5 @@ def nth_place(d: Discourse, node: Node) -> Value:
             tuple(each.name for each in places[:3]),
             (node.start, node.end),
         )
-    d.place = Text(places[number - 1 if number > 0 else number].name)
-    return d.place
+    d.scene.place = Text(places[number - 1 if number > 0 else number].name)
+    return d.scene.place

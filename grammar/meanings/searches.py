@@ -115,10 +115,12 @@ def just_awaited(d: Discourse, thing: Thing) -> Condition | None:
     last = d.done[-1] if d.done else None
     if not isinstance(last, Call) or last.method != "wait_for" or "timeout" not in last.arguments:
         return None
-    if last.arguments["thing"] != thing.value or thing.place not in (None, d.at):
+    if last.arguments["thing"] != thing.value or thing.place not in (None, d.scene.at):
         return None
     d.done.pop()
-    d.looked_in = d.at  # others are not looked for just there: "if he does not come, tell Alice"
+    d.scene.looked_in = (
+        d.scene.at
+    )  # others are not looked for just there: "if he does not come, tell Alice"
     return Holds(Ask("wait_for", last.arguments))
 
 
@@ -171,7 +173,9 @@ def either_way(d: Discourse, step: If, *, looks_on: bool) -> Steps:
 def thing_sought(d: Discourse, condition: Condition) -> Thing:
     """What a condition looks for, as it was spoken of."""
     value = searches(condition)[0].arguments["thing"]
-    spoken_of = (each for each in (d.thing, d.person) if each is not None and each.value == value)
+    spoken_of = (
+        each for each in (d.scene.thing, d.scene.person) if each is not None and each.value == value
+    )
     return next(spoken_of, Thing(value))
 
 

@@ -23,9 +23,9 @@ def sent_to(d: Discourse, person: Thing | None) -> Thing | None:
     elif own is None or d.done[-1] != Call("goto", {"place": own}):
         return None
     d.done.pop()
-    d.at = d.with_person = None
+    d.scene.at = d.scene.with_person = None
     later = replace(person, here=False, pronoun=False, place=own)
-    d.person, d.thing_last = later, False
+    d.scene.person, d.scene.thing_last = later, False
     return later
 
 
@@ -33,17 +33,20 @@ def searched_before(d: Discourse, node: Node) -> tuple[Thing, Thing] | None:
     """ "find Alice, then go to Bob and tell him where she is": who was looked for, and who hears
     it."""
     part = node.parts.get("whom") or node.parts.get("person_ref")
-    if any(each is not None for each in (d.report, d.answer, d.code, d.claim, d.news)):
+    if any(
+        each is not None
+        for each in (d.reports.last, d.answers.last, d.answers.code, d.branch.claim, d.reports.news)
+    ):
         return None
-    if part is None or what_it_means(part) != "person_pronoun" or d.person is None:
+    if part is None or what_it_means(part) != "person_pronoun" or d.scene.person is None:
         return None
     looked = named_in(d, d.done[-2]) if len(d.done) > 1 else None
-    if looked is None or looked.value == d.person.value:
+    if looked is None or looked.value == d.scene.person.value:
         return None
-    receiver = sent_to(d, d.person)
+    receiver = sent_to(d, d.scene.person)
     if receiver is None:
         return None
-    d.thing_last = not looked.person
+    d.scene.thing_last = not looked.person
     return looked, receiver
 
 

@@ -41,10 +41,10 @@ from grammar.plan import (
 
 def over_places(d: Discourse, node: Node, places: Value, one: One) -> Steps:
     place = Recall(d.variable("place"))
-    d.at = None
-    d.loops[place.name] = places
+    d.scene.at = None
+    d.rounds.loops[place.name] = places
     body = round_of_steps(d, lambda: one(place))
-    d.at = d.with_person = None
+    d.scene.at = d.scene.with_person = None
     return until_found(d, place, places, body) or [
         ForEach(place.name, places, tuple(another_one(d, body)))
     ]
@@ -58,10 +58,10 @@ def until_found(d: Discourse, place: Recall, places: Value, body: Steps) -> Step
     if search is None or not isinstance(first, If):
         return []
     known = named_places(d, places)
-    thing = d.thing if d.thing_last else d.person
+    thing = d.scene.thing if d.scene.thing_last else d.scene.person
     if known is not None and thing is not None:
-        d.thing, d.person = (
-            replace(each, place=None) if each else each for each in (d.thing, d.person)
+        d.scene.thing, d.scene.person = (
+            replace(each, place=None) if each else each for each in (d.scene.thing, d.scene.person)
         )
         return search_in(d, replace(thing, place=None), known)
     missing = first.then
@@ -82,7 +82,7 @@ def over_either_place(d: Discourse, node: Node, places: list[Value], one: One) -
         return by_choice(d, chosen, places, one)
     looked: Value | None = None
     for place in places:
-        d.at = None
+        d.scene.at = None
         search = d.sequence(lambda p=place: d.done.extend(one(p)))  # type: ignore[misc]
         first = search[0] if len(search) == 1 else None
         if not (isinstance(first, Call) and first.method == "find"):
@@ -98,38 +98,38 @@ def over_any_place(d: Discourse, node: Node, places: Value, one: One) -> Steps:
     if isinstance(places, Text):
         return one(places)
     place = Recall(d.variable("place"))
-    d.place = place
+    d.scene.place = place
     return [Remember(place.name, Choice(places)), *one(place)]
 
 
 def over_place_best(d: Discourse, node: Node, best: Best, one: One) -> Steps:
     """ "the office with the fewest people": gone round for first."""
     going, place = survey(d, best)
-    d.place = place
+    d.scene.place = place
     return [*going, *one(place)]
 
 
 def over_place_such(d: Discourse, node: Node, such: Such, one: One) -> Steps:
     """ "an empty office": the first that is; if none is, that is said."""
     going, place, none = first_such(d, such)
-    d.place = place
+    d.scene.place = place
     return [*going, If(none, (d.say("no_such_places"),), tuple(guard_finds(d, one(place))))]
 
 
 def over_place_where(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
     """ "where Bob is": he is looked for, and that is the place."""
-    spoken_of = d.thing, d.thing_last
+    spoken_of = d.scene.thing, d.scene.thing_last
     behind_it = stands_behind_it(d, node)
-    held = d.holding is not None
+    held = d.scene.holding is not None
     searching = look_for(d, thing)
     place = Recall(d.variable("place"))
-    d.at = d.place = place
+    d.scene.at = d.scene.place = place
     if behind_it:
-        d.thing, d.thing_last = spoken_of
-        d.at = place if held else None
-    outer, d.at_people = d.at_people, True  # what is brought there need not be there
+        d.scene.thing, d.scene.thing_last = spoken_of
+        d.scene.at = place if held else None
+    outer, d.rounds.at_people = d.rounds.at_people, True  # what is brought there need not be there
     body = one(place)
-    d.at_people = outer
+    d.rounds.at_people = outer
     it = spoken_of[0] if behind_it else None
     if it is not None and body[:1] == [Call("grab", {"thing": it.value})]:
         if (

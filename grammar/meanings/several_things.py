@@ -56,39 +56,43 @@ def over_things(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
     if is_there_already(d, node, d.done[-1] if d.done else None):
         return []
     around = take_back(d) if node.means != "thing" else None
-    if thing.place is None and d.taken_from is not None:
-        thing = replace(thing, place=d.taken_from.place, furniture=d.taken_from.furniture)
+    if thing.place is None and d.deliveries.taken_from is not None:
+        thing = replace(
+            thing, place=d.deliveries.taken_from.place, furniture=d.deliveries.taken_from.furniture
+        )
     thing = where_told(d, thing)
     put = last_deed(d)
-    if thing.place is None and d.at is not None and (put is None or put.method != "put"):
-        thing = replace(thing, place=d.at)  # but "..., and three pillows to ward b"
-    at = d.at
+    if thing.place is None and d.scene.at is not None and (put is None or put.method != "put"):
+        thing = replace(thing, place=d.scene.at)  # but "..., and three pillows to ward b"
+    at = d.scene.at
     single = thing.single
     if thing.count is None:  # "them" are all of them
         thing = replace(thing, every=True)
 
-    d.at = None if thing.count is not None else thing.place
-    d.thing, d.thing_last = single, True
-    body = round_of_steps(d, lambda: one(single if d.at is None else replace(single, here=True)))
+    d.scene.at = None if thing.count is not None else thing.place
+    d.scene.thing, d.scene.thing_last = single, True
+    body = round_of_steps(
+        d, lambda: one(single if d.scene.at is None else replace(single, here=True))
+    )
     if not body:
         return []
     if thing.here and thing.count is not None and thing.place is None and not is_grab(body):
         back = Call("goto", {"place": d.start()})  # "these two cups": the second is here, too
-        d.thing, d.thing_last = thing, True
+        d.scene.thing, d.scene.thing_last = thing, True
         return [Repeat(Number(thing.count), (back, *body))]
     if is_grab(body):  # "collect the cups": where to is said next
-        d.collected, d.thing, d.thing_last = thing, thing, True
-        d.at = at
+        d.deliveries.collected, d.scene.thing, d.scene.thing_last = thing, thing, True
+        d.scene.at = at
         return []
-    d.collected = None
+    d.deliveries.collected = None
     if moves_nothing(body):
         raise NotUnderstood(d.language.phrase("one_thing"))
     steps = rounds(d, node, thing, single, body)
-    if d.delivered is not None:
-        d.delivered_in = steps[-1]
+    if d.scene.delivered is not None:
+        d.deliveries.delivered_in = steps[-1]
     if around is not None:
         steps = [structs.replace(around, steps=(*around.steps[:-1], *steps))]
-    d.thing, d.thing_last = thing, True
+    d.scene.thing, d.scene.thing_last = thing, True
     return steps
 
 
@@ -105,17 +109,21 @@ def put_more_exactly(d: Discourse, node: Node) -> bool:
     """ "bring three folders to the lab and put them on the table": each is put down once, there."""
     last, where = last_deed(d), node.parts.get("where")
     they = node.parts.get("thing")
-    them = isinstance(they, Node) and they.means == "thing_it" and d.thing is not None
+    them = isinstance(they, Node) and they.means == "thing_it" and d.scene.thing is not None
     if node.means != "put" or not them or where is None or last is None or not d.done:
         return False
-    if d.thing is None or not d.thing.several or last.arguments != {"thing": d.thing.value}:
+    if (
+        d.scene.thing is None
+        or not d.scene.thing.several
+        or last.arguments != {"thing": d.scene.thing.value}
+    ):
         return False
     if last.method != "put":  # and not only fetched
         return False
-    scene = d.scene()
+    scene = d.scene.copy()
     spot: Where = d.build(where)
     if spot.place or not spot.furniture:
-        d.set_scene(scene)
+        d.scene = scene.copy()
         return False
     there = structs.replace(last, arguments={**last.arguments, "where": Text(spot.furniture)})
     d.done[-1] = ending(d.done[-1], there)
@@ -192,7 +200,7 @@ def is_search(step: Step) -> bool:
 
 def is_other(d: Discourse, source: Recall, target: Value) -> Condition:
     """Whether a place is none of those that something is brought to."""
-    targets = d.loops.get(target.name) if isinstance(target, Recall) else None
+    targets = d.rounds.loops.get(target.name) if isinstance(target, Recall) else None
     if targets is None:
         return Compare(source, "!=", target)
     return Not(Compare(source, "in", targets))
@@ -227,22 +235,27 @@ def take_back(d: Discourse) -> ForEach | None:
     last = d.done[at] if at >= 0 else None
     around = last if isinstance(last, ForEach) and last.steps else None
     inner = last if around is None else around.steps[-1]
-    if d.delivered_in is not None and inner is d.delivered_in:
+    if d.deliveries.delivered_in is not None and inner is d.deliveries.delivered_in:
         del d.done[at]
-        d.delivered_in = d.delivered = None
+        d.deliveries.delivered_in = d.scene.delivered = None
         return around
-    if d.listed_last and d.done[-len(d.listed_last) :] == d.listed_last:
-        del d.done[-len(d.listed_last) :]  # "find three cups in the ward and bring them here"
-        d.listed_last = []
+    if (
+        d.deliveries.listed_last
+        and d.done[-len(d.deliveries.listed_last) :] == d.deliveries.listed_last
+    ):
+        del d.done[
+            -len(d.deliveries.listed_last) :
+        ]  # "find three cups in the ward and bring them here"
+        d.deliveries.listed_last = []
     return None
 
 
 def begun_before(d: Discourse) -> Thing | None:
     """Several things that were to be fetched, before it was said for whom."""
-    several = d.thing if d.thing is not None and d.thing.several else None
+    several = d.scene.thing if d.scene.thing is not None and d.scene.thing.several else None
     if several is not None:
         take_back(d)
-        d.collected = d.holding = None
+        d.deliveries.collected = d.scene.holding = None
     return several
 
 
@@ -281,11 +294,11 @@ def over_either_thing(d: Discourse, node: Node, things: list[Thing], one: One) -
         source = things[-1].place  # "a tea or a coffee from the kitchen": either is from there
         things = [replace(each, place=each.place or source) for each in things]
         steps = by_choice(d, chosen, things, one)
-        d.thing, d.thing_last = Thing(Recall(str(d.answer))), True
+        d.scene.thing, d.scene.thing_last = Thing(Recall(str(d.answers.last))), True
         return steps
     # "a tea or a coffee from the kitchen": either is from there, if they are but named
     unplaced = all(each.place is None and each.furniture is None for each in things[:-1])
-    spot = d.taken_from or Where(things[-1].place, things[-1].furniture)
+    spot = d.deliveries.taken_from or Where(things[-1].place, things[-1].furniture)
     if unplaced and spot.place is not None:
         things = [replace(each, place=spot.place, furniture=spot.furniture) for each in things]
     return first_found(d, things, one)
@@ -293,19 +306,19 @@ def over_either_thing(d: Discourse, node: Node, things: list[Thing], one: One) -
 
 def first_found(d: Discourse, things: list[Thing], one: One) -> Steps:
     """Look for one after the other; the steps are those for the first that is found."""
-    before = (d.at, d.holding, d.with_person, frozenset(d.variables))
+    before = (d.scene.at, d.scene.holding, d.scene.with_person, frozenset(d.variables))
     otherwise: Steps = [not_found(d, things[-1])]
     for thing in reversed(things):
-        d.at, d.holding, d.with_person = before[:3]
+        d.scene.at, d.scene.holding, d.scene.with_person = before[:3]
         d.variables.intersection_update(before[3])  # the same names in either branch
-        d.found_already = True
+        d.rounds.found_already = True
         body = round_of_steps(d, lambda t=thing: one(replace(t, here=True)))  # type: ignore[misc]
-        d.found_already = False
+        d.rounds.found_already = False
         if not body:
             otherwise = [If(Not(Holds(Ask("find", found(d, thing).arguments))), tuple(otherwise))]
             continue
         otherwise = [
             If(Holds(Ask("find", found(d, thing).arguments)), tuple(body), tuple(otherwise))
         ]
-    d.at = d.with_person = None
+    d.scene.at = d.scene.with_person = None
     return otherwise

@@ -44,12 +44,12 @@ def one_more(d: Discourse, node: Node) -> Thing:
 @meaning("one_there")
 def one_there(d: Discourse, node: Node) -> Thing:
     """ "the one in the lounge": another of what was spoken of, or somebody if that was no thing."""
-    if d.thing is not None and (d.thing_last or d.person is None):
+    if d.scene.thing is not None and (d.scene.thing_last or d.scene.person is None):
         return one_more(d, node)
     spot: Where = d.get(node, "where")
-    d.person = Thing(Text(ANYONE), person=True, place=spot.place, furniture=spot.furniture)
-    d.thing_last = False
-    return d.person
+    d.scene.person = Thing(Text(ANYONE), person=True, place=spot.place, furniture=spot.furniture)
+    d.scene.thing_last = False
+    return d.scene.person
 
 
 @meaning("several_of")
@@ -104,8 +104,8 @@ def lacking_there(d: Discourse, node: Node) -> Steps:
     """ "two chairs are missing in the lab": what is brought next is for there."""
     spot: Where = d.get(node, "where")
     thing: Thing = d.get(node, "thing")
-    d.thing, d.thing_last = thing, True
-    d.lacking = replace(thing, place=spot.place, furniture=spot.furniture)
+    d.scene.thing, d.scene.thing_last = thing, True
+    d.scene.lacking = replace(thing, place=spot.place, furniture=spot.furniture)
     d.background.append(d.words(node.start, node.end))
     return []
 
@@ -129,10 +129,10 @@ def shared_out(
             d.language.phrase("not_all_shared", number=whole.count, shares=len(given))
         )
     first = where_told(d, whole or given[0].thing)
-    source = source or d.taken_from
+    source = source or d.deliveries.taken_from
     place = first.place if source is None else source.place
     furniture = first.furniture if source is None else source.furniture
-    place = place or d.at
+    place = place or d.scene.at
     steps: Steps = []
     for each in given:
         thing = off_the_list(d, each.thing)
@@ -142,7 +142,7 @@ def shared_out(
             place = source_in(d, steps, thing)  # and not where the share before was put
             thing = replace(thing, place=place)
         if thing.place is None:
-            d.at = None  # nobody says that it is where the share before was brought to
+            d.scene.at = None  # nobody says that it is where the share before was brought to
         steps += d.sequence(partial(hand_out, d, thing, each))
     return steps
 

@@ -26,8 +26,13 @@ from grammar.wordforms import plural, singular
 
 def names_answered(d: Discourse, node: Node) -> Report | None:
     """ "ask Clara which students come and tell Bob their names": what she has answered."""
-    survey = d.surveys[-1] if d.surveys else None
-    if survey is None or d.answer is None or d.answer != survey.call.save_as or survey.options:
+    survey = d.answers.surveys[-1] if d.answers.surveys else None
+    if (
+        survey is None
+        or d.answers.last is None
+        or d.answers.last != survey.call.save_as
+        or survey.options
+    ):
         return None
     asked = survey.call.arguments["question"]
     words = d.language.tokens_of(asked.value) if isinstance(asked, Text) else ()
@@ -35,14 +40,14 @@ def names_answered(d: Discourse, node: Node) -> Report | None:
     theirs = d.language.words_called("of_them_all") & set(d.norms(node.start, node.end))
     if not of_others or not theirs or in_loop(d, survey.call):
         return None
-    return Report("only", Recall(d.answer), about_here=False)
+    return Report("only", Recall(d.answers.last), about_here=False)
 
 
 @meaning("names_here")
 def names_here(d: Discourse, node: Node) -> Report | Steps:
     """ "who is in the lobby?", "the name of the person in the kitchen"; "their names", behind a
     condition on what they were asked, of those who said so."""
-    of_who_said_so = (d.depth > 1 and d.said is not None) or d.polled_for == "who"
+    of_who_said_so = (d.depth > 1 and d.answers.said is not None) or d.answers.polled_for == "who"
     if of_who_said_so and asked_yet(d) and names_whom(d, node):
         return polled(d, "who", None).words
     if (theirs := names_answered(d, node)) is not None:
@@ -59,7 +64,7 @@ def names_here(d: Discourse, node: Node) -> Report | Steps:
     if person is None:
         person = described(d, ANYONE, node)
         away = person.place is not None
-        d.person = Thing(Text(ANYONE), person.place, person=True, plural=True, here=not away)
+        d.scene.person = Thing(Text(ANYONE), person.place, person=True, plural=True, here=not away)
     elif "mods" in node.parts and not person.known:  # "the man's name in the bedroom"
         person = replace(person, place=described(d, "", node).place or person.place)
     elif "mods_after" in node.parts and not person.known:  # "which man in the hall is waving"
@@ -67,11 +72,11 @@ def names_here(d: Discourse, node: Node) -> Report | Steps:
         place, furniture = person.place or more.place, person.furniture or more.furniture
         who = replace(more, place=place, furniture=furniture, person=True)
         return Report("only", Ask("describe", {"thing": sought(d, who)}), place, name="description")
-    elif person.here and isinstance(d.report_asked, Report):
-        if d.report_asked.value == Ask("people"):  # those who were seen
-            return d.report_asked
+    elif person.here and isinstance(d.reports.asked, Report):
+        if d.reports.asked.value == Ask("people"):  # those who were seen
+            return d.reports.asked
         person = replace(person, place=None)
-    elif person.here or d.with_person == person.value:  # wherever that is by now
+    elif person.here or d.scene.with_person == person.value:  # wherever that is by now
         person = replace(person, place=None)
     if is_told_apart(d, person):  # "the woman at the sofa": a description says her name
         look = Ask("describe", {"thing": sought(d, person)})
@@ -100,10 +105,10 @@ def names_whom(d: Discourse, node: Node) -> bool:
 def who_came(d: Discourse, node: Node) -> Report:
     """ "who has come"; "there is somebody in the hall, see who it is"."""
     come = who_has_come(d)
-    if come is None and d.person is not None and d.person.place is not None:
-        d.person = replace(d.person, pronoun=False)
-        look = Ask("describe", {"thing": sought(d, d.person)})
-        return Report("only", look, d.person.place, name="description")
+    if come is None and d.scene.person is not None and d.scene.person.place is not None:
+        d.scene.person = replace(d.scene.person, pronoun=False)
+        look = Ask("describe", {"thing": sought(d, d.scene.person)})
+        return Report("only", look, d.scene.person.place, name="description")
     if come is None:
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
@@ -112,12 +117,12 @@ def who_came(d: Discourse, node: Node) -> Report:
 
 def who_has_come(d: Discourse) -> Report | None:
     """Whoever was met: by the name they gave, or as a visitor."""
-    if d.visitor is None:
+    if d.people.visitor is None:
         return None
     survey = survey_named_so(d, "name")
     if survey is not None:
         return Report("is_here", Recall(survey), about_here=False, name="name")
-    words = (("thing", some(d.called(d.visitor.text), d.language)),)
+    words = (("thing", some(d.called(d.people.visitor.text), d.language)),)
     return Report("somebody_here", words=words, about_here=False)
 
 
@@ -125,17 +130,17 @@ def name_given(d: Discourse, node: Node, person: Thing | None) -> Report | None:
     """ "ask for her name, take her to Bob and tell him her name": the name that she gave."""
     survey = survey_named_so(d, "name")
     part = node.parts.get("person_ref")
-    if survey is None or d.visitor is None or person is None or "mods" in node.parts:
+    if survey is None or d.people.visitor is None or person is None or "mods" in node.parts:
         return None
     pronoun = isinstance(part, Node) and part.means == "person_pronoun"
-    if not pronoun and person.value != d.visitor.value:
+    if not pronoun and person.value != d.people.visitor.value:
         return None
     return Report("only", Recall(survey), about_here=False, name="name")
 
 
 def survey_named_so(d: Discourse, noun: str) -> str | None:
     """The variable with the one answer to a question for a name."""
-    for survey in reversed(d.surveys):
+    for survey in reversed(d.answers.surveys):
         if noun in survey.nouns and survey.call.save_as and not in_loop(d, survey.call):
             name: str = survey.call.save_as
             return name
@@ -145,7 +150,7 @@ def survey_named_so(d: Discourse, noun: str) -> str | None:
 @meaning("seen_here")
 def seen_here(d: Discourse, node: Node) -> Report | Steps:
     """ "what you see"; "everything", after people were asked, is all that they said."""
-    if node.end - node.start == 1 and asked_yet(d) and d.report is None:
+    if node.end - node.start == 1 and asked_yet(d) and d.reports.last is None:
         return polled(d, "answers", None).words
     place = described(d, "", node, lies_about=True)
     if place.text:  # "what is behind the cup?", "what is on the far left of the shelf?"
@@ -154,8 +159,8 @@ def seen_here(d: Discourse, node: Node) -> Report | Steps:
         place = replace(place, place=d.get(node, "at_place"))
     if place.furniture:
         return things_on(d, place)
-    if place.place is None and isinstance(d.report_asked, Report) and d.report_asked.looked:
-        return d.report_asked  # "see what is on the desk and tell Alex what is there"
+    if place.place is None and isinstance(d.reports.asked, Report) and d.reports.asked.looked:
+        return d.reports.asked  # "see what is on the desk and tell Alex what is there"
     return Report("objects_seen", Ask("objects"), place.place, name="things")
 
 
@@ -168,14 +173,17 @@ def one_there(d: Discourse, node: Node) -> Report:
         found = whatever_there(d, thing, every)
     else:
         found = best_there(d, thing)
-        d.thing, d.thing_last = replace(thing, noun=noun, here=thing.place is None), True
+        d.scene.thing, d.scene.thing_last = (
+            replace(thing, noun=noun, here=thing.place is None),
+            True,
+        )
     return found
 
 
 def seen_around(d: Discourse) -> Report:
     """All that is to be seen where the robot is."""
-    if d.at_furniture:
-        return things_on(d, Thing(Text(""), d.at, d.at_furniture))
+    if d.scene.at_furniture:
+        return things_on(d, Thing(Text(""), d.scene.at, d.scene.at_furniture))
     return Report("objects_seen", Ask("objects"), None, name="things", looked=True)
 
 
@@ -189,7 +197,7 @@ def things_on(d: Discourse, place: Thing) -> Report:
 def whatever_there(d: Discourse, thing: Thing, every: Thing) -> Report:
     """All things that are as one and "every" one is said to be, or that there is nothing. What is
     there is "it" then."""
-    d.thing, d.thing_last = replace(thing, here=thing.place is None), True
+    d.scene.thing, d.scene.thing_last = replace(thing, here=thing.place is None), True
     one, everything = sought(d, thing), sought(d, every)
     assert isinstance(one, Text)
     where = d.called(one.value.removeprefix(d.language.phrase("objects")).strip())
@@ -239,7 +247,7 @@ def looks_of(d: Discourse, node: Node) -> Report | Steps:
     thing: Thing = (
         d.get(node, "thing")
         or d.get(node, "person_ref")
-        or d.person  # "there is somebody in the kitchen, report the gender"
+        or d.scene.person  # "there is somebody in the kitchen, report the gender"
         or Thing(Text(ANYONE), person=True, here=True)
     )
     extra = described(d, "", node)
@@ -273,7 +281,7 @@ def best_of(d: Discourse, node: Node) -> Report:
             thing, place=thing.place or more.place, furniture=thing.furniture or more.furniture
         )
     found = best_there(d, thing)
-    d.thing, d.thing_last = replace(thing, here=thing.place is None), True
+    d.scene.thing, d.scene.thing_last = replace(thing, here=thing.place is None), True
     return found
 
 
@@ -283,9 +291,9 @@ def _best(d: Discourse, node: Node) -> Thing:
     if isinstance(head, Leaf):
         said = str(head.value[0]) if head.value else d.noun_words(head.start, head.end)
         noun = singular(said, d.language)
-    elif d.thing is not None and (d.thing.plural or is_best(d, d.thing)):
+    elif d.scene.thing is not None and (d.scene.thing.plural or is_best(d, d.scene.thing)):
         # "check the drinks and tell me which is biggest"
-        noun = d.thing.noun or noun
+        noun = d.scene.thing.noun or noun
     return best_of_those(d, node, described(d, noun, node))
 
 
@@ -293,7 +301,7 @@ def _best(d: Discourse, node: Node) -> Thing:
 def counted_info(d: Discourse, node: Node) -> Report | Steps:
     """ "how many cups are in the kitchen?"; "how many cups", after somebody was asked just that, is
     what they said."""
-    if asked_yet(d) and d.report is None and node.parts.keys() == {"thing"}:
+    if asked_yet(d) and d.reports.last is None and node.parts.keys() == {"thing"}:
         said = told_as_asked(d, node.start, node.end)
         if said is not None:
             return said.words
@@ -309,15 +317,19 @@ def counted_info(d: Discourse, node: Node) -> Report | Steps:
         place=thing.place or more.place or (first.place if first else None),
         furniture=thing.furniture or more.furniture or (first.furniture if first else None),
     )
-    nowhere = thing.place is None and d.at in (None, Recall(START))
-    if nowhere and no_kind(node) and d.last_counted is not None:
-        thing = replace(thing, place=d.last_counted.place)  # of those who were counted there
-    d.last_counted = thing
+    nowhere = thing.place is None and d.scene.at in (None, Recall(START))
+    if nowhere and no_kind(node) and d.reports.last_counted is not None:
+        thing = replace(
+            thing, place=d.reports.last_counted.place
+        )  # of those who were counted there
+    d.reports.last_counted = thing
     if not thing.person:
-        d.thing = replace(thing, plural=True)  # "..., and which one is the smallest"
-    if thing.person and d.person is not None:
-        there = d.person.place or thing.place
-        d.person = replace(d.person, plural=True, place=there)  # who are counted are several
+        d.scene.thing = replace(thing, plural=True)  # "..., and which one is the smallest"
+    if thing.person and d.scene.person is not None:
+        there = d.scene.person.place or thing.place
+        d.scene.person = replace(
+            d.scene.person, plural=True, place=there
+        )  # who are counted are several
     return count_report(d, thing)
 
 
@@ -348,7 +360,7 @@ def _spot_words(d: Discourse, thing: Thing) -> str:
     """Where things were counted, as a name."""
     if thing.furniture:
         return place_called(thing.furniture, d.lexicon, d.language)
-    place = thing.place or d.at
+    place = thing.place or d.scene.at
     return place_called(place.value, d.lexicon, d.language) if isinstance(place, Text) else ""
 
 
@@ -385,7 +397,7 @@ def whether_seen(d: Discourse, node: Node) -> Report | Steps:
         (("thing", named),),
         otherwise="nobody_seen" if named == d.language.phrase("somebody") else "no_seen",
         name="seen",
-        thing=replace(thing, place=thing.place or d.at),
+        thing=replace(thing, place=thing.place or d.scene.at),
     )
 
 
@@ -408,7 +420,9 @@ def does_something(node: Node) -> bool:
 def where_found(d: Discourse, node: Node) -> Steps:
     """ "where is the stapler?": look for it, come back and say where it is, unless somebody was
     asked just that, who has said it."""
-    said = told_as_asked(d, node.start, node.end) if asked_yet(d) and d.report is None else None
+    said = (
+        told_as_asked(d, node.start, node.end) if asked_yet(d) and d.reports.last is None else None
+    )
     if said is not None:
         return said.words
     thing: Thing = d.get(node, "thing") or d.get(node, "person_ref")
@@ -417,7 +431,7 @@ def where_found(d: Discourse, node: Node) -> Steps:
     if (
         again
         and isinstance(last, If)
-        and last == d.told
+        and last == d.reports.told
         and mentions((last.condition,), thing.value)
     ):
         return []  # "where is Victor? Go and see where he is": looked for already
@@ -460,7 +474,9 @@ def located(d: Discourse, thing: Thing) -> Steps:
 @meaning("counted_there")
 def counted_there(d: Discourse, node: Node) -> Report:
     """ "How many people are in the kitchen, and how many in the lobby?"."""
-    if d.last_counted is None:
+    if d.reports.last_counted is None:
         raise NotUnderstood(d.language.phrase("count_what"))
     spot: Where = d.get(node, "spot")
-    return count_report(d, replace(d.last_counted, place=spot.place, furniture=spot.furniture))
+    return count_report(
+        d, replace(d.reports.last_counted, place=spot.place, furniture=spot.furniture)
+    )

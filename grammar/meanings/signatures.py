@@ -21,18 +21,18 @@ def get_signed(d: Discourse, node: Node) -> Steps:
     """ "have Clara sign the form", "take it to Clara and get it signed"."""
     thing: Thing = d.get(node, "thing") or thing_it(d, node)
     taken_there = kept_in_hand(d, asking=False) if thing.pronoun else None
-    person: Thing | None = d.get(node, "person_ref") or d.person
+    person: Thing | None = d.get(node, "person_ref") or d.scene.person
     if person is None:
         raise NotUnderstood(d.language.phrase("signed_by"))
     steps = pick_up(d, thing)
-    if taken_there is None or person.value != d.with_person:
+    if taken_there is None or person.value != d.scene.with_person:
         steps += meet(d, replace(person, here=False))
     phrase = str(node.production.fixed.get("phrase", "please_sign"))
     arguments: dict[str, Value] = {"question": d.sentence(phrase)}
     if person.known:
         arguments["person"] = person.value
-    d.person, d.shown, d.holding = person, thing.value, thing.value
-    d.thing, d.thing_last = replace(thing, pronoun=True, place=None), True
+    d.scene.person, d.deliveries.shown, d.scene.holding = person, thing.value, thing.value
+    d.scene.thing, d.scene.thing_last = replace(thing, pronoun=True, place=None), True
     return [*steps, Call("ask", arguments)]
 
 

@@ -62,17 +62,17 @@ def at_none(d: Discourse, node: Node) -> Condition | None:
 
 def so_in(d: Discourse, node: Node, how: str) -> Condition:
     such = sought_place(d, node)
-    if how == "some" and not d.round.told_of:
+    if how == "some" and not d.rounds.round.told_of:
         return one_such(d, such)
     found = d.variable("found")
     so = such.trait.condition if how != "all" else negated(such.trait.condition)
     noted = If(so, (Collect(found, Recall(such.variable)),))
-    d.pending += [
+    d.command.pending += [
         Remember(found, Items(())),
         round_of(d, such.places, [*such.trait.first, noted], such.variable),
     ]
-    d.at = d.with_person = None
-    d.away = True
+    d.scene.at = d.scene.with_person = None
+    d.scene.away = True
     condition = enough(d, node, how, Length(Recall(found)), such.places)
     named = d.say("such_places", places=Recall(found))
     yes, no = named, d.say("no_such_places")
@@ -82,26 +82,29 @@ def so_in(d: Discourse, node: Node, how: str) -> Condition:
         yes, no = no, yes
     elif how != "some":
         no = d.say("so_many_places", number=Length(Recall(found)))
-    d.round.claims = Claims(condition, yes, no)
-    d.met = None
+    d.rounds.round.claims = Claims(condition, yes, no)
+    d.branch.met = None
     return condition
 
 
 def one_such(d: Discourse, such: Such) -> Condition:
     """The first place that is so is where the robot stays, and what "there" means."""
     going, place, none = first_such(d, such)
-    d.pending += going
-    d.round.such = place.name
-    d.round.claims = Claims(
+    d.command.pending += going
+    d.rounds.round.such = place.name
+    d.rounds.round.claims = Claims(
         negated(none), d.say("it_is_there", place=place), d.say("no_such_places")
     )
-    d.at = d.place = place
+    d.scene.at = d.scene.place = place
     thing = such.trait.thing
     if thing is not None and thing.person and not such.trait.denied:
-        d.person, d.thing_last = Thing(thing.value, person=True, here=True, plural=True), False
-        d.with_person = None if thing.text != ANYONE else thing.value
+        d.scene.person, d.scene.thing_last = (
+            Thing(thing.value, person=True, here=True, plural=True),
+            False,
+        )
+        d.scene.with_person = None if thing.text != ANYONE else thing.value
     elif thing is not None and not thing.person:
-        d.thing, d.thing_last = thing, True
+        d.scene.thing, d.scene.thing_last = thing, True
     return negated(none)
 
 
@@ -125,11 +128,11 @@ def if_any_such(d: Discourse, node: Node) -> Steps:
     told_of = bool(means & TELLING)
     if not told_of and "guide" not in means:
         return for_each_place_such(d, node)
-    outer, d.pending, d.round.told_of = d.pending, [], told_of
+    outer, d.command.pending, d.rounds.round.told_of = d.command.pending, [], told_of
     condition = so_in(d, node, "some")
-    before, d.pending = d.pending, outer
+    before, d.command.pending = d.command.pending, outer
     if told_of:
-        d.claim = Claim(d.round.claims.yes, d.known_by_now())
+        d.branch.claim = Claim(d.rounds.round.claims.yes, d.known_by_now())
     return [*before, If(condition, tuple(d.build(node.parts["steps"])))]
 
 
@@ -138,15 +141,15 @@ def for_each_place_such(d: Discourse, node: Node) -> Steps:
     """ "bring a stapler to every office that has none": done where it is seen to be so."""
     place = Recall(d.variable("place"))
     thing: Thing | None = d.get(node, "thing")
-    d.at = d.place = place
+    d.scene.at = d.scene.place = place
     trait: Trait = d.get(node, "place_trait")
-    outer, d.in_loop = d.in_loop, True
+    outer, d.rounds.in_loop = d.rounds.in_loop, True
     if thing is not None:
-        d.at = None
+        d.scene.at = None
         body = deliver(d, thing, None, Where(place))
     else:
         body = d.build(node.parts["steps"])
-    d.in_loop = outer
-    d.at = d.with_person = None
+    d.rounds.in_loop = outer
+    d.scene.at = d.scene.with_person = None
     found_out = (*trait.first, If(trait.condition, tuple(body)))
     return [round_of(d, kind_places(d, d.get(node, "kinds")), [*found_out], place.name)]

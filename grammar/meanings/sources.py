@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import Any
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, Where
@@ -17,6 +16,7 @@ from grammar.doubts import NotUnderstood
 from grammar.language import Language
 from grammar.meanings.deliveries import inside
 from grammar.meanings.registry import meaning
+from grammar.memory import Scene
 from grammar.plan import Ask, Call, Items, Recall, Step, Text, Value
 from grammar.tidy import nodes
 from grammar.wordforms import singular
@@ -30,7 +30,7 @@ class Fetching:
     """Makes it once more."""
     steps: Steps
     things: frozenset[Value]
-    scene: dict[str, Any]
+    scene: Scene
     """The scene in which it began."""
     variables: frozenset[str]
 
@@ -40,11 +40,11 @@ def told_where(d: Discourse, thing: Thing) -> None:
     follow."""
     if thing.person or not isinstance(thing.place, Text | Items):
         return
-    d.said_to_be.append(thing)
+    d.deliveries.said_to_be.append(thing)
     source = Where(thing.place)
     fetching = just_fetched(d)
     if fetching is not None and any(is_called(d, thing, each) for each in fetching.things):
-        of_one = d.fetched_list is not None  # what is said of one of a list
+        of_one = d.deliveries.fetched_list is not None  # what is said of one of a list
         d.done.extend(made_anew(d, fetching, None if of_one else source))
 
 
@@ -57,11 +57,18 @@ def all_there_are(thing: Thing) -> Thing:
 def where_told(d: Discourse, thing: Thing) -> Thing:
     """A thing that is to be fetched, with the place where such a thing is said to be."""
     said_of_it = thing.place is not None or thing.furniture is not None or thing.here
-    if said_of_it or thing.pronoun or thing.value in d.now_at or d.holding == thing.value:
+    if (
+        said_of_it
+        or thing.pronoun
+        or thing.value in d.scene.now_at
+        or d.scene.holding == thing.value
+    ):
         return thing
-    if d.taken_from is not None:
-        return replace(thing, place=d.taken_from.place, furniture=d.taken_from.furniture)
-    known = (each for each in reversed(d.said_to_be) if is_called(d, each, thing.value))
+    if d.deliveries.taken_from is not None:
+        return replace(
+            thing, place=d.deliveries.taken_from.place, furniture=d.deliveries.taken_from.furniture
+        )
+    known = (each for each in reversed(d.deliveries.said_to_be) if is_called(d, each, thing.value))
     there = next(known, None)
     if there is None:
         return thing
@@ -90,13 +97,13 @@ def keep_fetching(
     d: Discourse,
     again: Callable[[], Steps],
     steps: Steps,
-    scene: dict[str, Any],
+    scene: Scene,
     known: frozenset[str],
 ) -> None:
     """Keep a command that takes things from nobody knows where."""
     things = frozenset(unsourced(steps))
     if things:
-        d.fetching = Fetching(again, steps, things, scene, known)
+        d.deliveries.fetching = Fetching(again, steps, things, scene, known)
 
 
 def unsourced(steps: Steps) -> Iterator[Value]:
@@ -123,7 +130,7 @@ def has_place(search: Call | Ask) -> bool:
 
 def just_fetched(d: Discourse) -> Fetching | None:
     """That command, if nothing has been done since."""
-    fetching: Fetching | None = d.fetching
+    fetching: Fetching | None = d.deliveries.fetching
     last: Step | None = d.done[-1] if d.done else None
     if fetching is None or last is None or last is not fetching.steps[-1]:
         return None
@@ -133,11 +140,11 @@ def just_fetched(d: Discourse) -> Fetching | None:
 def made_anew(d: Discourse, fetching: Fetching, source: Where | None) -> Steps:
     """The steps of a command, with what is fetched taken from there."""
     del d.done[-len(fetching.steps) :]
-    d.set_scene(fetching.scene)
+    d.scene = fetching.scene.copy()
     d.variables.intersection_update(fetching.variables)
-    outer, d.taken_from = d.taken_from, source
+    outer, d.deliveries.taken_from = d.deliveries.taken_from, source
     steps = fetching.again()
-    d.taken_from = outer
+    d.deliveries.taken_from = outer
     return steps
 
 

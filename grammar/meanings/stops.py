@@ -6,7 +6,7 @@ To drive somewhere and do nothing there makes no sense: what is only said is sai
 from __future__ import annotations
 
 from collections.abc import Set
-from typing import Any, Final
+from typing import Final
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Steps
@@ -16,6 +16,7 @@ from grammar.meanings.deliveries import first_clause
 from grammar.meanings.going_on import about_places, conditional, depends_on_stop
 from grammar.meanings.gone_round import round_of_visits
 from grammar.meanings.registry import meaning
+from grammar.memory import Scene
 from grammar.plan import Ask, Call, End, ForEach, Holds, If, Items, Recall, Step, Text, Value
 from grammar.tidy import nodes
 
@@ -59,7 +60,7 @@ def said_at_each(d: Discourse, places: Items | None, steps: Steps) -> Items | No
     return places
 
 
-def said_on_tour(d: Discourse, before: int, scene: dict[str, Any]) -> None:
+def said_on_tour(d: Discourse, before: int, scene: Scene) -> None:
     """Move what is said at a place behind the step that leads somebody there: "show them the
     library and the lounge. In the library say ..., and in the lounge ..."."""
     going, *words = d.done[before:] or [End()]
@@ -74,7 +75,7 @@ def said_on_tour(d: Discourse, before: int, scene: dict[str, Any]) -> None:
     at = next((each for each in stops if each > here[-1]), before)
     del d.done[before:]
     d.done[at:at] = words
-    d.set_scene(scene)
+    d.scene = scene.copy()
 
 
 def is_call(step: Step, methods: Set[str]) -> bool:
@@ -92,7 +93,7 @@ def skip_empty(d: Discourse, node: Node) -> Steps:
     there."""
     somebody = Holds(Ask("sees", {"thing": Text(ANYONE)}))
     loop = d.done[-1] if d.done else None
-    if d.in_loop and not isinstance(loop, ForEach):  # in the round itself
+    if d.rounds.in_loop and not isinstance(loop, ForEach):  # in the round itself
         body = tuple(d.done)
         d.done.clear()
         return [If(somebody, body)]

@@ -33,30 +33,30 @@ def stranger_comes(d: Discourse, node: Node) -> Steps:
     """ "Mr Keller is coming to the reception": waited for there when they are to be met."""
     spot: Where | None = d.get(node, "from")
     place = None if spot is None else spot.place
-    d.announced = Announced(called(d, node), place)
-    d.host = d.get(node, "host") or d.host
-    d.person = Thing(Text(ANYONE), person=True, first=True, place=place)
-    d.thing_last = False
+    d.people.announced = Announced(called(d, node), place)
+    d.people.host = d.get(node, "host") or d.people.host
+    d.scene.person = Thing(Text(ANYONE), person=True, first=True, place=place)
+    d.scene.thing_last = False
     if place is not None:
-        d.place = place
+        d.scene.place = place
     return aside(d, node)
 
 
 def announced_one(d: Discourse, node: Node, place: Value | None = None) -> Steps | None:
     """How somebody is met who was announced, if a command to meet "them" is about that one."""
-    guest: Announced | None = d.announced
+    guest: Announced | None = d.people.announced
     part = node.parts.get("person_ref", node.parts.get("thing"))
     them = isinstance(part, Node) and part.means in ("person_pronoun", "thing_it")
-    if guest is None or not them or d.person is None or not d.person.first:
+    if guest is None or not them or d.scene.person is None or not d.scene.person.first:
         return None
-    d.announced = None
+    d.people.announced = None
     return asked_for(d, guest.name, place or guest.place)
 
 
 def as_announced(d: Discourse, going: Steps) -> Steps:
     """Whoever was announced is waited for, where the robot goes for that or where they come to."""
-    guest: Announced = d.announced
-    d.announced = None
+    guest: Announced = d.people.announced
+    d.people.announced = None
     return [*going, *asked_for(d, guest.name, None if going else guest.place)]
 
 
@@ -67,9 +67,9 @@ def asked_for(d: Discourse, name: str, place: Value | None) -> Steps:
     answer = d.variable("answer")
     question = Text(d.language.phrase("are_you", name=name))
     asking = Call("ask", {"question": question, "options": Items((yes, no))}, save_as=answer)
-    d.person = d.visitor = Thing(Text(ANYONE), person=True, here=True)
-    d.with_person, d.thing_last = d.person.value, False
-    wait = Call("wait_for", {"thing": d.person.value})
+    d.scene.person = d.people.visitor = Thing(Text(ANYONE), person=True, here=True)
+    d.scene.with_person, d.scene.thing_last = d.scene.person.value, False
+    wait = Call("wait_for", {"thing": d.scene.person.value})
     return [*going, RepeatUntil(Compare(Recall(answer), "==", yes), (wait, asking))]
 
 

@@ -94,7 +94,7 @@ def note(d: Discourse, call: Step, notes: Steps, before: Steps) -> None:
 
 def before_all(d: Discourse, steps: Steps) -> None:
     """Put steps before all that was done; in a loop, before all that is done in a round."""
-    first = d.done if d.in_loop else (*d.around, d.done)[1 if d.around else 0]
+    first = d.done if d.rounds.in_loop else (*d.around, d.done)[1 if d.around else 0]
     first[:0] = steps
 
 
@@ -108,7 +108,7 @@ def moved(steps: Any) -> bool:
 
 def asked_so_far(d: Discourse) -> list[Survey]:
     """The questions among the steps so far, here and around."""
-    surveys: list[Survey] = d.surveys
+    surveys: list[Survey] = d.answers.surveys
     done = (*d.around, d.done)
     calls = [each for steps in done for each in nodes(steps) if isinstance(each, Call)]
     found = [each for each in surveys if any(each.call is call for call in calls)]
@@ -140,7 +140,7 @@ def asked_before(d: Discourse) -> list[Survey]:
 def in_line(d: Discourse) -> list[Survey]:
     """The questions that were asked in any case to come here, and in no other branch."""
     calls = [each for steps in (*d.around, d.done) for each in _in_any_case(steps)]
-    return [each for each in d.surveys if any(each.call is call for call in calls)]
+    return [each for each in d.answers.surveys if any(each.call is call for call in calls)]
 
 
 def _in_any_case(steps: Iterable[Step]) -> Iterator[Step]:
@@ -158,9 +158,9 @@ def _in_any_case(steps: Iterable[Step]) -> Iterator[Step]:
 def several_asked(d: Discourse) -> bool:
     """Whether "the answer" is that of several: of who was asked the same, or of who was asked only
     because of what somebody else had answered."""
-    surveys: list[Survey] = d.surveys
+    surveys: list[Survey] = d.answers.surveys
     last = surveys[-1] if surveys else None
-    if last is None or d.answer is None or d.answer != last.call.save_as:
+    if last is None or d.answers.last is None or d.answers.last != last.call.save_as:
         return False
     others = [each for each in asked_so_far(d) if each.who not in (None, last.who)]
     if any(each.call.save_as == last.call.save_as for each in others):
@@ -231,11 +231,13 @@ def asked_without_end(d: Discourse, survey: Survey) -> bool:
 def each_asked(d: Discourse) -> Thing | None:
     """Whoever is asked in a loop, for what is done with the answer: "ask Alice and Bob what they
     want to drink and bring it to them"."""
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
     if survey is None or not isinstance(survey.who, Recall) or not in_loop(d, survey.call):
         return None
     people = any(
-        isinstance(each, ForEach) and each.variable == survey.who.name and d.place != survey.who
+        isinstance(each, ForEach)
+        and each.variable == survey.who.name
+        and d.scene.place != survey.who
         for each in nodes(tuple(d.done))
     )
     return Thing(survey.who, known=True, person=True) if people else None
@@ -243,7 +245,7 @@ def each_asked(d: Discourse) -> Thing | None:
 
 def uses_answer(d: Discourse, steps: Steps) -> bool:
     """Whether some steps need the last answer."""
-    return d.answer is not None and mentions(steps, Recall(d.answer))
+    return d.answers.last is not None and mentions(steps, Recall(d.answers.last))
 
 
 def is_in(step: Step, inner: Step) -> bool:

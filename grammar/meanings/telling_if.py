@@ -48,10 +48,10 @@ from grammar.plan import (
 def tell_condition(d: Discourse, node: Node) -> Steps:
     """ "if there are more than three people, tell Alice": that there are more than three people."""
     if "condition" not in node.parts:  # "..., if not, let me know"
-        return told_so(d, node, d.claim.saying if d.claim is not None else None)
+        return told_so(d, node, d.branch.claim.saying if d.branch.claim is not None else None)
     node = of_all_asked(d, node)
     before_it, condition = condition_of(d, node)
-    met = turned(d.met) if node.production.fixed.get("unless") else d.met
+    met = turned(d.branch.met) if node.production.fixed.get("unless") else d.branch.met
     kept = addressed_before(d, met) if not before_it else None
     if kept is not None and met is not None:
         return absent(
@@ -78,11 +78,11 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
         return [late]
     if met is None and not before_it:
         as_before(d, condition)
-    start = d.scene()
+    start = d.scene.copy()
     meet_there(d, met)
     then = told_so(d, node, claim)
-    after = d.scene()
-    d.set_scene(start)
+    after = d.scene.copy()
+    d.scene = start.copy()
     part = other_branch(d, node, condition)
     otherwise: Steps = []
     if part is not None:
@@ -92,7 +92,7 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
     leave_off(d, after)
     counted, condition = counted_first(condition, [*then, *otherwise])
     whole = If(condition, tuple(then), tuple(otherwise))
-    d.branched = Branched(whole, start, met, d.answer)
+    d.branch.before = Branched(whole, start, met, d.answers.last)
     return [*before_it, *counted, whole]
 
 
@@ -101,10 +101,14 @@ def of_all_asked(d: Discourse, node: Node) -> Node:
     does, and not of each."""
     condition = node.parts["condition"]
     so = itself(condition) if isinstance(condition, Node) else None
-    several = bool(d.surveys) and d.answer is not None and in_loop(d, d.surveys[-1].call)
+    several = (
+        bool(d.answers.surveys)
+        and d.answers.last is not None
+        and in_loop(d, d.answers.surveys[-1].call)
+    )
     if so is None or so.means != "so" or so.production.fixed or not several:
         return node
-    if d.language.phrase("yes") not in d.surveys[-1].options:
+    if d.language.phrase("yes") not in d.answers.surveys[-1].options:
         return node
     means = replace(so.production, means="answers_many", fixed={"how": "some"})
     return replace(node, parts={**node.parts, "condition": replace(so, production=means)})
@@ -114,7 +118,7 @@ def is_so(d: Discourse, node: Node) -> bool:
     """Whether the speaker wants to know what somebody has answered: "let me know if he is", which
     is also told if he is not."""
     so = what_it_means(node.parts["condition"]) == "so"
-    return so and d.answer is not None and "otherwise" not in node.parts
+    return so and d.answers.last is not None and "otherwise" not in node.parts
 
 
 def told_either_way(d: Discourse, node: Node, condition: Condition) -> Steps:

@@ -65,20 +65,20 @@ def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
     thing = noun_of(d, node)
     host = host_of_visit(d, thing)
     if host is not None:  # "take him to Clara's office. If she is not there, ..."
-        d.named.append(host.text)
+        d.people.named.append(host.text)
         thing = host
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
     if not node.production.fixed.get("it"):
         survey = None
-    if survey is not None and survey.call.save_as == d.answer:
+    if survey is not None and survey.call.save_as == d.answers.last:
         return survey.said(thing.text)
     if thing.every and not thing.person:  # "if all the beds are taken": one is seen or not
         words = d.words(node.start, node.end)
         gap = (node.start, node.end)
         raise NotUnderstood(d.language.phrase("cannot_check", what=words), gap=gap)
     said_there = d.tokens[node.end - 1].norm in d.language.speech.get("there", ())
-    if said_there and thing.place is None and d.at == Recall(START):
-        there = d.at_pick_up if d.place == d.at else d.place
+    if said_there and thing.place is None and d.scene.at == Recall(START):
+        there = d.scene.at_pick_up if d.scene.place == d.scene.at else d.scene.place
         thing = replace(thing, place=there)  # the robot has come back from there meanwhile
     if thing.person and thing.count is not None:  # "five people are there"
         many = _so_many(d, thing, thing.count, ">=")
@@ -99,10 +99,10 @@ def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
         result = _each_of_them(d, node, thing.group.items, search)
     else:
         result = _is_doing(d, node, thing) or is_there(d, thing, search)
-    if search and d.met is not None:
-        d.met = replace(d.met, sought=True)
+    if search and d.branch.met is not None:
+        d.branch.met = replace(d.branch.met, sought=True)
     if node.production.fixed.get("no"):
-        d.met = replace(d.met, holds=False) if d.met is not None else None
+        d.branch.met = replace(d.branch.met, holds=False) if d.branch.met is not None else None
         result = Not(result)
         if "state" in node.parts:  # "the cup is not clean": there is one, but none that is so
             plain = {name: part for name, part in node.parts.items() if name != "state"}
@@ -112,7 +112,7 @@ def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
 
 def other_case_of(d: Discourse, node: Node) -> Condition | None:
     """ "see if Bob is in. If not, tell the visitor so. If he is there, ...": he is Bob."""
-    before, part = d.branched, node.parts.get("person_ref")
+    before, part = d.branch.before, node.parts.get("person_ref")
     if before is None or before.met is None or not isinstance(part, Node):
         return None
     who, gender = before.met.thing, d.gender(part.start, part.end)
@@ -124,10 +124,14 @@ def other_case_of(d: Discourse, node: Node) -> Condition | None:
 def host_of_visit(d: Discourse, who: Thing) -> Thing | None:
     """Whoever's place somebody was led to, where it is asked whether anybody is there: "take the
     visitor to Bob's office. If he is not in, ..." is not about the visitor."""
-    host = owner_of(d) if d.led is not None and d.at is not None and d.place == d.at else None
-    if d.led is None or host is None or not who.person or who.known or who.place is not None:
+    host = (
+        owner_of(d)
+        if d.scene.led is not None and d.scene.at is not None and d.scene.place == d.scene.at
+        else None
+    )
+    if d.scene.led is None or host is None or not who.person or who.known or who.place is not None:
         return None
-    if who.value not in (d.led.value, Text(ANYONE)) or host == d.led.value:
+    if who.value not in (d.scene.led.value, Text(ANYONE)) or host == d.scene.led.value:
         return None
     return Thing(host, known=True, person=True)
 
@@ -142,33 +146,33 @@ def _is_doing(d: Discourse, node: Node, thing: Thing) -> Condition | None:
     if not thing.known:
         return is_there(d, replace(thing, value=so))
     seen = Holds(Ask("sees", {"thing": so}))
-    if thing.here or d.with_person == thing.value:
+    if thing.here or d.scene.with_person == thing.value:
         return seen
     there = is_there(d, thing, search=True)
-    d.met = None
+    d.branch.met = None
     return Both((there, seen))
 
 
 def met_before(d: Discourse, thing: Thing) -> bool:
     """Whether the condition before was about the same."""
-    before = d.branched
+    before = d.branch.before
     return before is not None and before.met is not None and before.met.thing.value == thing.value
 
 
 def just_branched(d: Discourse, no: bool) -> Condition | None:
     """ "If she isn't there, come back. If she is, ask her ...": the other case of that."""
-    before = d.branched
+    before = d.branch.before
     step = before.step if before is not None else None
     if before is None or before.met is None or not isinstance(step, If):
         return None
     if step.otherwise and not only_told_missing(step):
         return None
-    if before.answer != d.answer or not d.done or d.done[-1] is not step:
+    if before.answer != d.answers.last or not d.done or d.done[-1] is not step:
         return None
     if before.met.holds is not no:  # the same case again says something else
         return None
-    d.set_scene(before.scene)
-    d.met = replace(before.met, holds=not no)
+    d.scene = before.scene.copy()
+    d.branch.met = replace(before.met, holds=not no)
     return negated(step.condition)
 
 
@@ -180,19 +184,21 @@ def is_there(d: Discourse, thing: Thing, search: bool = False) -> Condition:
             return agreed
     known = just_looked_for(d, thing) or just_awaited(d, thing) or just_checked(d, thing)
     if known is None:
-        if search and thing.place is None and isinstance(d.at, Text):
-            thing = replace(thing, place=d.at)  # "go to the kitchen and if you find a cup, ..."
-        elsewhere = thing.place is not None and thing.place != d.at
+        if search and thing.place is None and isinstance(d.scene.at, Text):
+            thing = replace(
+                thing, place=d.scene.at
+            )  # "go to the kitchen and if you find a cup, ..."
+        elsewhere = thing.place is not None and thing.place != d.scene.at
         if search or elsewhere:
             known = whether_found(d, thing)
         else:
             known = Holds(Ask("sees", {"thing": sought(d, thing)}))
     if thing.person:
-        d.person, d.thing_last = thing, False
+        d.scene.person, d.scene.thing_last = thing, False
         looked = {each.arguments.get("place") for each in searches(known)}
         if thing.known and thing.place is None and len(looked) == 1:
             thing = replace(thing, place=looked.pop())  # "see if Bob is in his office. If he is"
-    d.met = Meeting(thing)
+    d.branch.met = Meeting(thing)
     return known
 
 
@@ -202,13 +208,13 @@ def just_agreed(d: Discourse, no: bool = False) -> Condition | None:
     if known is None:
         return None
     condition, person = known
-    d.met = Meeting(person, holds=not no)
+    d.branch.met = Meeting(person, holds=not no)
     return negated(condition) if no else condition
 
 
 def just_checked(d: Discourse, thing: Thing) -> Condition | None:
     """The check before, if it was for this: "see if there is a cup. If there is a cup, ..."."""
-    report: Report | None = d.report
+    report: Report | None = d.reports.last
     about = report.thing if report is not None else None
     if about is None or thing.place not in (None, about.place):
         return None
@@ -220,7 +226,7 @@ def just_checked(d: Discourse, thing: Thing) -> Condition | None:
 
 def seen_there(d: Discourse) -> Condition | None:
     """What was checked in a place that was gone to only for that, as a search in that place."""
-    report: Report | None = d.report
+    report: Report | None = d.reports.last
     about = report.thing if report is not None else None
     if about is None or about.place is None or checked(d) is None:
         return None
@@ -231,7 +237,7 @@ def seen_there(d: Discourse) -> Condition | None:
     if last.value != Ask("sees", {"thing": sought(d, about)}):
         return None
     del d.done[-2:]
-    d.report = None
+    d.reports.last = None
     return Holds(Ask("find", {"thing": sought(d, about), "place": about.place}))
 
 
@@ -240,18 +246,18 @@ def _each_of_them(d: Discourse, node: Node, people: tuple[Value, ...], search: b
     found: list[Condition] = []
     for value in people:
         person = Thing(value, known=True, person=True)
-        d.person = person
+        d.scene.person = person
         spot: Where | None = d.get(node, "from")
         if spot is not None:
             person = replace(person, place=spot.place, furniture=spot.furniture)
         found.append(is_there(d, person, search))
-    d.met = None
+    d.branch.met = None
     part = node.parts.get("person_ref") or node.parts["thing"]
     either = node.production.fixed.get("any") or set(d.language.speech.get("or", ())) & set(
         d.norms(part.start, part.end)
     )
-    if either and d.person is not None and d.person.person:  # whoever of them it is
-        d.person = Thing(Text(ANYONE), person=True, plural=True, here=True)
+    if either and d.scene.person is not None and d.scene.person.person:  # whoever of them it is
+        d.scene.person = Thing(Text(ANYONE), person=True, plural=True, here=True)
     return Either(tuple(found)) if either else Both(tuple(found))
 
 
@@ -260,7 +266,7 @@ def place_empty(d: Discourse, node: Node) -> Condition:
     """ "the lobby is empty": nobody is there."""
     anybody = Thing(Text(ANYONE), d.get(node, "place"), person=True)
     there = is_there(d, anybody)
-    d.met = Meeting(anybody, holds=bool(node.production.fixed.get("occupied")))
+    d.branch.met = Meeting(anybody, holds=bool(node.production.fixed.get("occupied")))
     return there if node.production.fixed.get("occupied") else Not(there)
 
 
@@ -275,7 +281,7 @@ def counted(d: Discourse, node: Node) -> Condition:
         thing = replace(thing, place=spot.place, furniture=spot.furniture)
     operator = d.get(node, "operator", "==")
     if operator in ("<", "<=") and not thing.person:  # "..., bring one": for where they are short
-        d.lacking = replace(thing, place=thing.place or d.at)
+        d.scene.lacking = replace(thing, place=thing.place or d.scene.at)
     return _so_many(d, thing, int(d.get(node, "count")), operator)
 
 
@@ -285,13 +291,13 @@ def _so_many(d: Discourse, thing: Thing, number: int, operator: str) -> Compare:
     known = _just_counted(d, thing)
     if known is not None:
         return Compare(known, operator, Number(number))
-    if thing.place is not None and thing.place != d.at:
+    if thing.place is not None and thing.place != d.scene.at:
         d.went(thing.place)
-        d.pending.append(Call("goto", {"place": thing.place}))
+        d.command.pending.append(Call("goto", {"place": thing.place}))
     if thing.person:
         thing = replace(thing, count=None)
-        d.person = replace(thing, plural=True, place=None, here=True)
-        d.last_counted = d.person
+        d.scene.person = replace(thing, plural=True, place=None, here=True)
+        d.reports.last_counted = d.scene.person
     return Compare(Ask("count", {"thing": sought(d, thing)}), operator, Number(number))
 
 
@@ -304,7 +310,11 @@ def _just_counted(d: Discourse, thing: Thing) -> Recall | None:
     ):
         return None
     kept = next((step for step in reversed(d.done) if isinstance(step, Remember)), None)
-    same = thing.place is None or d.last_counted is None or thing.place == d.last_counted.place
+    same = (
+        thing.place is None
+        or d.reports.last_counted is None
+        or thing.place == d.reports.last_counted.place
+    )
     if kept is None or not same:
         return None
     counted = kept.value == Ask("count", {"thing": sought(d, thing)})
@@ -313,7 +323,7 @@ def _just_counted(d: Discourse, thing: Thing) -> Recall | None:
 
 def counts_answers(d: Discourse, node: Node) -> bool:
     """Whether a condition that does not say what is counted is on the answers of those asked."""
-    return not node.parts.keys() & COUNTED and d.last_counted is None and asked_yet(d)
+    return not node.parts.keys() & COUNTED and d.reports.last_counted is None and asked_yet(d)
 
 
 def so_many_agreed(d: Discourse, number: int, operator: str) -> Compare:
@@ -328,11 +338,11 @@ def so_many_agreed(d: Discourse, number: int, operator: str) -> Compare:
 def counted_thing(d: Discourse, node: Node) -> Thing:
     """What a condition counts: what was counted before, where it does not say; "people", too, are
     those who were counted, if that has just been told elsewhere."""
-    before = d.last_counted
+    before = d.reports.last_counted
     if node.parts.keys() & COUNTED:
         thing = noun_of(d, node)
         same = before is not None and thing.text == before.text and thing.place is None
-        return before if before is not None and same and d.at == Recall(START) else thing
+        return before if before is not None and same and d.scene.at == Recall(START) else thing
     if before is None:
         raise NotUnderstood(d.language.phrase("count_what"))
     return before

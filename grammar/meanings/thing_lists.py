@@ -63,8 +63,8 @@ def all_listed(d: Discourse, part: Leaf | Node | None) -> Thing | None:
 
 def as_list(d: Discourse, things: list[Thing]) -> Thing:
     """The last of some things, which all of them can be spoken of with."""
-    d.listed_before = tuple(things)
-    return replace(things[-1], listed=d.listed_before)
+    d.deliveries.listed_before = tuple(things)
+    return replace(things[-1], listed=d.deliveries.listed_before)
 
 
 def is_placed(thing: Thing) -> bool:
@@ -78,18 +78,18 @@ def over_thing_list(d: Discourse, node: Node, things: list[Thing], one: One) -> 
     from_here = None if any(map(is_placed, things)) else fetched_from_here(d, things, one)
     if from_here is not None:
         return from_here
-    if d.only_fetches:
+    if d.deliveries.only_fetches:
         steps = fetched_for_later(d, things, one)
     elif any(is_placed(thing) for thing in things):
         steps = [step for thing in things for step in for_one(d, thing, one)]
     else:
         each = Recall(d.variable("thing"))
-        d.at = None
-        d.thing, d.thing_last = Thing(each), True  # "them", bound to this one
+        d.scene.at = None
+        d.scene.thing, d.scene.thing_last = Thing(each), True  # "them", bound to this one
         body = round_of_steps(d, lambda: one(Thing(each)))
-        d.at = d.with_person = None
+        d.scene.at = d.scene.with_person = None
         steps = [ForEach(each.name, Items(tuple(thing.value for thing in things)), tuple(body))]
-    d.thing, d.thing_last = as_list(d, things), True
+    d.scene.thing, d.scene.thing_last = as_list(d, things), True
     return steps
 
 
@@ -97,58 +97,61 @@ def fetched_from_here(d: Discourse, things: list[Thing], one: One) -> Steps | No
     """ "go to the cafeteria and get a sandwich and an apple": from where the robot was just sent,
     unless that is where they are to be put down."""
     here = just_sent_to(d)
-    if d.only_fetches or here is None:
+    if d.deliveries.only_fetches or here is None:
         return None
-    scene = d.scene()
+    scene = d.scene.copy()
     there = [replace(thing, place=here) for thing in things]
     steps = [step for thing in there for step in for_one(d, thing, one)]
-    if not any(isinstance(each, Call) and each.method == "grab" for each in steps) or d.at == here:
-        d.set_scene(scene)
+    if (
+        not any(isinstance(each, Call) and each.method == "grab" for each in steps)
+        or d.scene.at == here
+    ):
+        d.scene = scene.copy()
         return None
-    d.thing, d.thing_last = as_list(d, there), True
+    d.scene.thing, d.scene.thing_last = as_list(d, there), True
     return steps
 
 
 def just_sent_to(d: Discourse) -> Text | None:
     """Where the robot was sent in the step before."""
     last = d.done[-1] if d.done else None
-    here = d.at
+    here = d.scene.at
     return here if isinstance(here, Text) and last == Call("goto", {"place": here}) else None
 
 
 def fetched_for_later(d: Discourse, things: list[Thing], one: One) -> Steps:
     """ "get a pen and a notebook": to the speaker, unless it is said otherwise then; what is only
     taken has to go somewhere, for a hand holds one thing."""
-    at = d.at
+    at = d.scene.at
     here = just_sent_to(d)
     if here is not None and not any(map(is_placed, things)):
         things = [replace(thing, place=here) for thing in things]
     steps = {thing.value: for_one(d, thing, one) for thing in things}
     if any(map(is_grab, steps.values())):
-        d.at = at
-        d.holding = None
-        d.collected = things[-1]
+        d.scene.at = at
+        d.scene.holding = None
+        d.deliveries.collected = things[-1]
         steps = {each: [] for each in steps}
-    d.fetched_list = FetchedList(tuple(things), steps, at, d.at)
+    d.deliveries.fetched_list = FetchedList(tuple(things), steps, at, d.scene.at)
     return [step for each in steps.values() for step in each]
 
 
 def for_one(d: Discourse, thing: Thing, one: One) -> Steps:
-    d.thing, d.thing_last = thing, True  # "them", bound to this one
+    d.scene.thing, d.scene.thing_last = thing, True  # "them", bound to this one
     return round_of_steps(d, lambda: one(thing))
 
 
 def list_before(d: Discourse, node: Node) -> tuple[Thing, ...]:
     """The things that "both" or "them" stands for, if they were spoken of in a list."""
-    if d.thing is None or not d.thing_last or not d.is_plural(node):
+    if d.scene.thing is None or not d.scene.thing_last or not d.is_plural(node):
         return ()
-    return d.thing.listed
+    return d.scene.thing.listed
 
 
 def over_list_before(d: Discourse, node: Node, things: tuple[Thing, ...], one: One) -> Steps:
     """ "bring both to Bob": what was fetched for it goes straight there."""
-    fetched: FetchedList | None = d.fetched_list
-    if d.only_fetches and fetched is not None and fetched.things == things:
+    fetched: FetchedList | None = d.deliveries.fetched_list
+    if d.deliveries.only_fetches and fetched is not None and fetched.things == things:
         return []  # "Alice needs a pen and a notebook. Get them": for her, as was said
     spoken_of = [off_the_list(d, replace(thing, pronoun=True)) for thing in things]
     return over_thing_list(d, node, spoken_of, one)
@@ -157,7 +160,7 @@ def over_list_before(d: Discourse, node: Node, things: tuple[Thing, ...], one: O
 def off_the_list(d: Discourse, thing: Thing) -> Thing:
     """ "get the letter and the parcel, and give the letter to Alice": one of a list that was
     fetched goes elsewhere, straight from where it is."""
-    fetched: FetchedList | None = d.fetched_list
+    fetched: FetchedList | None = d.deliveries.fetched_list
     things = fetched.things if fetched is not None else ()
     one = next((each for each in things if each.value == thing.value), None)
     if fetched is None or one is None or (is_placed(thing) and thing.place != one.place):
@@ -170,13 +173,13 @@ def off_the_list(d: Discourse, thing: Thing) -> Thing:
     if at is not None:
         del d.done[at : at + len(steps)]
     rest = tuple(each for each in fetched.things if each is not one)
-    d.fetched_list = replace(fetched, things=rest, since=d.at) if rest else None
-    if d.delivered == thing.value:
-        d.delivered = None
+    d.deliveries.fetched_list = replace(fetched, things=rest, since=d.scene.at) if rest else None
+    if d.scene.delivered == thing.value:
+        d.scene.delivered = None
     if not rest:
-        d.collected = None
-    if not rest and d.at == fetched.since:  # none of them was brought anywhere yet
-        d.at = fetched.at
+        d.deliveries.collected = None
+    if not rest and d.scene.at == fetched.since:  # none of them was brought anywhere yet
+        d.scene.at = fetched.at
     return replace(one, pronoun=False, listed=())
 
 
@@ -188,9 +191,9 @@ def told_where_all_are(d: Discourse, spoken_of: Thing) -> None:
 
 def other_of_two(d: Discourse, noun: str) -> Thing | None:
     """ "there is a red box and a blue box; the red one is for Alice, the other one for Bob"."""
-    if d.thing is None or len(d.listed_before) != 2:
+    if d.scene.thing is None or len(d.deliveries.listed_before) != 2:
         return None
-    here = [each.value == d.thing.value for each in d.listed_before]
-    if sum(here) != 1 or (noun and any(each.noun != noun for each in d.listed_before)):
+    here = [each.value == d.scene.thing.value for each in d.deliveries.listed_before]
+    if sum(here) != 1 or (noun and any(each.noun != noun for each in d.deliveries.listed_before)):
         return None
-    return d.listed_before[here.index(False)]
+    return d.deliveries.listed_before[here.index(False)]

@@ -55,7 +55,11 @@ from grammar.wordforms import head_word, singular
 @meaning("find")
 def find(d: Discourse, node: Node) -> Steps:
     sought_for = node.parts.get("thing")
-    if d.round.such is not None and isinstance(sought_for, Node) and sought_for.means == "thing_it":
+    if (
+        d.rounds.round.such is not None
+        and isinstance(sought_for, Node)
+        and sought_for.means == "thing_it"
+    ):
         return []  # "I need an empty office. Go and find one": that is being done
     thing = noun_of(d, node)
     announced = announced_one(d, node, thing.place)
@@ -65,13 +69,13 @@ def find(d: Discourse, node: Node) -> Steps:
         return meet(d, thing)
     if isinstance(thing.group, Items):
         who = Recall(d.variable("person"))
-        d.at = d.with_person = None
+        d.scene.at = d.scene.with_person = None
         return [ForEach(who.name, thing.group, tuple(if_missing(d, who)))]
     if thing.person and thing.count is not None:
         return meet_several(d, thing)
     if thing.several and not (thing.person and thing.every):
         return find_several(d, node, thing)
-    if d.found_already:
+    if d.rounds.found_already:
         return []
     visited = places_gone_to(d) if thing.place is None else []
     if len(visited) > 1 and all(
@@ -79,18 +83,21 @@ def find(d: Discourse, node: Node) -> Steps:
     ):  # "go to the lobby and then to the lounge and look for it"
         del d.done[-len(visited) :]
         return look_for(d, replace(thing, place=Items(tuple(visited))))
-    missed = d.missing is not None and (d.missing.value, d.missing.place) == (thing.value, d.at)
+    missed = d.scene.missing is not None and (d.scene.missing.value, d.scene.missing.place) == (
+        thing.value,
+        d.scene.at,
+    )
     everywhere = node.production.fixed.get("everywhere", missed)
-    back = thing.person and d.at == Recall(START)  # they are not with the speaker
-    if thing.place is None and d.at is not None and not everywhere and not back:
-        thing = replace(thing, place=d.at)  # "go to the kitchen and find the cup"
+    back = thing.person and d.scene.at == Recall(START)  # they are not with the speaker
+    if thing.place is None and d.scene.at is not None and not everywhere and not back:
+        thing = replace(thing, place=d.scene.at)  # "go to the kitchen and find the cup"
     return look_for(d, thing)
 
 
 def find_several(d: Discourse, node: Node, thing: Thing) -> Steps:
     """ "find three cups in the kitchen": a search ends with the first one, so that what is there is
     looked at and told. "..., and bring them here" is straight there."""
-    if thing.place is None and not isinstance(d.at, Text):
+    if thing.place is None and not isinstance(d.scene.at, Text):
         part = node.parts.get("thing") or node.parts.get("person_ref") or node
         words = d.words(part.start, part.end)
         raise NotUnderstood(
@@ -98,30 +105,32 @@ def find_several(d: Discourse, node: Node, thing: Thing) -> Steps:
         )
     said = node.parts.get("thing")
     best = isinstance(said, Node) and "superlative" in said.parts
-    thing = replace(thing, place=thing.place or d.at)
+    thing = replace(thing, place=thing.place or d.scene.at)
     steps = found_out(d, best_there(d, thing) if best else which_there(d, thing), None, back=False)
-    d.listed_last = steps
+    d.deliveries.listed_last = steps
     if not thing.person:
-        d.thing, d.thing_last = thing, True
+        d.scene.thing, d.scene.thing_last = thing, True
     return steps
 
 
 @meaning("grab")
 def grab(d: Discourse, node: Node) -> Steps:
     thing = noun_of(d, node)
-    if isinstance(d.meant_for, Delivery) and not thing.pronoun:  # "if there is no tea, get coffee"
-        return deliver(d, thing, d.meant_for.person, d.meant_for.spot)
-    if is_needed(d, thing) and (thing.place is not None or d.at is not None):
+    if (
+        isinstance(d.deliveries.meant_for, Delivery) and not thing.pronoun
+    ):  # "if there is no tea, get coffee"
+        return deliver(d, thing, d.deliveries.meant_for.person, d.deliveries.meant_for.spot)
+    if is_needed(d, thing) and (thing.place is not None or d.scene.at is not None):
         return brought_to_whoever_needs_it(d, thing)
-    if thing.place is not None and thing.place != d.at:
+    if thing.place is not None and thing.place != d.scene.at:
         fetched = node.production.fixed.get("fetched")
         return deliver(d, thing, None, None) if fetched else pick_up(d, thing)
-    if isinstance(d.meant_for, Delivery):  # "if there is none, take a banana"
-        return deliver(d, thing, d.meant_for.person, d.meant_for.spot)
+    if isinstance(d.deliveries.meant_for, Delivery):  # "if there is none, take a banana"
+        return deliver(d, thing, d.deliveries.meant_for.person, d.deliveries.meant_for.spot)
     if take_from_holder(d, thing):
         return []
-    d.holding = thing.value
-    d.thing, d.thing_last = thing, True
+    d.scene.holding = thing.value
+    d.scene.thing, d.scene.thing_last = thing, True
     return [Call("grab", {"thing": sought(d, thing)})]
 
 
@@ -138,7 +147,7 @@ def fetch_from(d: Discourse, node: Node) -> Steps:
     if person.known:
         asking["person"] = person.value
     steps = [*meet(d, person), Call("ask", asking)]
-    d.person = person
+    d.scene.person = person
     thing = Thing(Text(what), noun=head_word(what, d.language), here=True)
     return [*steps, *deliver(d, thing, None, None)]
 
@@ -160,17 +169,17 @@ def put(d: Discourse, node: Node) -> Steps:
     if thing.person and thing.known:  # "otherwise put it there", where only Bob was spoken of
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("cannot_do", what=words), gap=(node.start, node.end))
-    there = d.place  # "bring one there from the store"
+    there = d.scene.place  # "bring one there from the store"
     source: Where | None = d.get(node, "from")
     if source is not None:
         thing = replace(thing, place=source.place, furniture=source.furniture)
     if source is not None and node.parts["from"].start > node.parts.get("where", node).start:
-        d.place = there
+        d.scene.place = there
     spot: Where = on_it or d.get(node, "where") or Where()
     stray = extraposed(d, where) if thing.place is None else None
     if stray is not None:
         spot, thing = stray[0], located_at(thing, stray[1])
-    if node.production.fixed.get("there") and (d.place is not None or not d.done):
+    if node.production.fixed.get("there") and (d.scene.place is not None or not d.done):
         spot = Where(place_there(d, node))
     last = d.done[-1] if d.done else None
     just_put = isinstance(last, Call) and last.method == "put"
@@ -179,18 +188,18 @@ def put(d: Discourse, node: Node) -> Steps:
     another = thing.place is not None and not thing.pronoun
     if last == Call("put", {"thing": thing.value}) and not another:
         d.done.pop()  # "carry it to the ward and put it on the table": put down once
-        d.holding = thing.value
-    if node.production.fixed.get("brought") and d.delivered == thing.value and given_last(d):
+        d.scene.holding = thing.value
+    if node.production.fixed.get("brought") and d.scene.delivered == thing.value and given_last(d):
         return []  # "get the cup and bring it back": here
     thing = off_the_list(d, thing)
     take_back_delivery(d, thing)
     if node.production.fixed.get("brought") and thing.pronoun and not kept_elsewhere(d, thing):
         return deliver(d, thing, None, None)  # "if you find it, bring it back": to who lost it
     if node.production.fixed.get("back") and thing.pronoun and spot == Where():
-        spot = Where(d.source or d.at_pick_up or thing.place)
-        thing = replace(thing, place=None, here=thing.value not in d.now_at)
-    elsewhere = thing.place is not None and d.at is not None and thing.place != d.at
-    if d.holding != thing.value and spot == Where() and not elsewhere:
+        spot = Where(d.deliveries.source or d.scene.at_pick_up or thing.place)
+        thing = replace(thing, place=None, here=thing.value not in d.scene.now_at)
+    elsewhere = thing.place is not None and d.scene.at is not None and thing.place != d.scene.at
+    if d.scene.holding != thing.value and spot == Where() and not elsewhere:
         return [Call("put", {"thing": thing.value})]
     return deliver(d, thing, None, spot)
 
@@ -210,21 +219,21 @@ def where_gone_to(d: Discourse, node: Node) -> Where | None:
         or where.means != "where_it"
         or not (isinstance(thing, Node) and thing.means == "thing")
         or not (isinstance(last, Call) and last.method == "goto")
-        or last.arguments.get("place") != d.at
-        or d.holding is not None
+        or last.arguments.get("place") != d.scene.at
+        or d.scene.holding is not None
     ):
         return None
     spot: Where = d.build(where)
     d.done.pop()
-    d.at = d.at_furniture = None
+    d.scene.at = d.scene.at_furniture = None
     return spot
 
 
 def kept_elsewhere(d: Discourse, thing: Thing) -> bool:
     """Whether a thing has a place to be brought back to: not what somebody was only to see."""
-    given = d.delivery.thing.value if isinstance(d.delivery, Delivery) else None
-    to_somebody = given == thing.value and d.delivery.receiver is not None
-    return was_moved(d, thing) and not to_somebody and d.shown != thing.value
+    given = d.deliveries.last.thing.value if isinstance(d.deliveries.last, Delivery) else None
+    to_somebody = given == thing.value and d.deliveries.last.receiver is not None
+    return was_moved(d, thing) and not to_somebody and d.deliveries.shown != thing.value
 
 
 def was_moved(d: Discourse, thing: Thing) -> bool:
@@ -233,16 +242,16 @@ def was_moved(d: Discourse, thing: Thing) -> bool:
         isinstance(step, Call) and step.method == "grab" and step.arguments["thing"] == thing.value
         for step in nodes(tuple(d.done))
     )
-    return taken or d.source is not None or d.at_pick_up is not None
+    return taken or d.deliveries.source is not None or d.scene.at_pick_up is not None
 
 
 @meaning("put_each")
 def put_each(d: Discourse, node: Node) -> Steps:
     """ "put the cup on the table and the plate on the shelf": one after the other."""
-    at, here = len(d.done), d.at
+    at, here = len(d.done), d.scene.at
     d.done.extend(put(d, node))
-    if d.at != here:
-        d.at = None  # nobody says that the next thing is where the first one was brought to
+    if d.scene.at != here:
+        d.scene.at = None  # nobody says that the next thing is where the first one was brought to
     if "more" in node.parts:
         d.done.extend(d.build(node.parts["more"]))
     steps = d.done[at:]
@@ -253,27 +262,29 @@ def put_each(d: Discourse, node: Node) -> Steps:
 def means_who_is_met(d: Discourse, node: Node) -> bool:
     """Whether "them", who are brought to somebody, are who stands before the robot: "ask people
     until one agrees, then bring them to Clara"."""
-    part, met = node.parts.get("thing"), d.person
+    part, met = node.parts.get("thing"), d.scene.person
     if not isinstance(part, Node) or part.means != "thing_it" or not d.is_plural(part):
         return False
     to = node.parts.get("person_ref")
-    if met is None or not met.here or d.with_person != met.value:
+    if met is None or not met.here or d.scene.with_person != met.value:
         return False
     if to is None or what_it_means(to) == "person_me":
         return False
     by_name = met.known and isinstance(met.value, Text)
-    things = d.thing is not None and singular(d.thing.text, d.language) != d.thing.text
-    return not (by_name or things or d.thing_last)
+    things = (
+        d.scene.thing is not None and singular(d.scene.thing.text, d.language) != d.scene.thing.text
+    )
+    return not (by_name or things or d.scene.thing_last)
 
 
 def with_them(d: Discourse, node: Node) -> Steps:
     them = node.parts["thing"]
-    d.bound[id(them)] = d.person
+    d.rounds.bound[id(them)] = d.scene.person
     try:
         parts = {"person_ref": them, "other": node.parts["person_ref"]}
         return guide_to_person(d, replace(node, parts=parts))
     finally:
-        del d.bound[id(them)]
+        del d.rounds.bound[id(them)]
 
 
 @meaning("bring")
@@ -308,8 +319,10 @@ def bring(d: Discourse, node: Node) -> Steps:
         target: Where | None = d.get(node, "where")
         to = d.start() if target is None or target.place is None else target.place
         steps = meet(d, thing)
-        d.fetched = lead(d, thing, to)  # "fetch him and take him to ..." is straight there
-        return [*steps, d.fetched]
+        d.deliveries.fetched = lead(
+            d, thing, to
+        )  # "fetch him and take him to ..." is straight there
+        return [*steps, d.deliveries.fetched]
     if node.production.fixed.get("handing") and person is not None and not thing.pronoun:
         person = handed_there(d, thing, person)
     if person is not None and thing.pronoun and d.done:
@@ -322,9 +335,9 @@ def bring(d: Discourse, node: Node) -> Steps:
     if person is None and spot is None and node.production.fixed.get("open"):
         return if_they_want_it(d, thing, None, brought_to_whoever_needs_it(d, thing))
     steps = if_they_want_it(d, thing, person, deliver(d, thing, person, spot))
-    d.destined = d.delivery if node.production.fixed.get("destined") else None
-    if node.production.fixed.get("why") and isinstance(d.delivery, Delivery):
-        d.delivery = replace(d.delivery, needed=True)
+    d.deliveries.destined = d.deliveries.last if node.production.fixed.get("destined") else None
+    if node.production.fixed.get("why") and isinstance(d.deliveries.last, Delivery):
+        d.deliveries.last = replace(d.deliveries.last, needed=True)
     return steps
 
 
@@ -341,7 +354,7 @@ def brought_to_whoever_needs_it(d: Discourse, thing: Thing) -> Steps:
     """Bring something without a word to whom."""
     person, spot = meant_for(d, thing)
     steps = deliver(d, thing, person, spot)
-    d.brought = handing_over(steps) if person is not None or spot is not None else ()
+    d.deliveries.brought = handing_over(steps) if person is not None or spot is not None else ()
     return steps
 
 
@@ -356,12 +369,22 @@ def handing_over(steps: Steps) -> tuple[Step, ...]:
 def handed_there(d: Discourse, thing: Thing, person: Thing) -> Thing:
     """ "go to the lounge and give the bowl to Alex": he is there; the bowl has to be looked for."""
     last = d.done[-1] if d.done else None
-    going = isinstance(last, Call) and last.method == "goto" and last.arguments.get("place") == d.at
-    if not going or not isinstance(d.at, Text) or is_me(person) or thing.place or person.place:
+    going = (
+        isinstance(last, Call)
+        and last.method == "goto"
+        and last.arguments.get("place") == d.scene.at
+    )
+    if (
+        not going
+        or not isinstance(d.scene.at, Text)
+        or is_me(person)
+        or thing.place
+        or person.place
+    ):
         return person
-    place = d.at
+    place = d.scene.at
     d.done.pop()
-    d.at = None
+    d.scene.at = None
     return replace(person, place=place, here=False)
 
 
@@ -421,8 +444,8 @@ def statement(d: Discourse, node: Node) -> Steps:
     thing = spoken_of[0] if isinstance(spoken_of, list) else spoken_of  # "it" is one of them
     spot: Where | None = d.get(node, "from")
     if thing is None:  # "he is in the kitchen"
-        said_of_it = d.thing if node.production.fixed.get("it") else None
-        thing = said_of_it or d.person or d.thing or Thing(Text(ANYONE), person=True)
+        said_of_it = d.scene.thing if node.production.fixed.get("it") else None
+        thing = said_of_it or d.scene.person or d.scene.thing or Thing(Text(ANYONE), person=True)
     posture = node.parts.get("activity")
     if posture is not None and not thing.known:
         thing = replace(thing, value=Text(f"{thing.text} {d.described_by(posture)}"))
@@ -434,25 +457,25 @@ def statement(d: Discourse, node: Node) -> Steps:
     if spot is not None:
         thing = replace(thing, place=spot.place, furniture=spot.furniture)
     thing = all_there_are(thing)
-    if thing.place is None and not thing.known and isinstance(d.at, Text):
-        thing = replace(thing, place=d.at)  # "go to the hall, there is a woman"
+    if thing.place is None and not thing.known and isinstance(d.scene.at, Text):
+        thing = replace(thing, place=d.scene.at)  # "go to the hall, there is a woman"
     if thing.place is not None:
-        d.place = thing.place
+        d.scene.place = thing.place
         told_where(d, thing)
         told_where_all_are(d, thing)
         known_to_be(d, thing.value, thing.place)
     if thing.person:
-        d.person, d.thing_last = thing, False
-        d.with_person = None
+        d.scene.person, d.scene.thing_last = thing, False
+        d.scene.with_person = None
         fetched_there(d, thing, thing.place)
     else:
-        d.thing, d.thing_last = thing, True
-    guest = d.person
+        d.scene.thing, d.scene.thing_last = thing, True
+    guest = d.scene.person
     d.get(node, "for_whom")  # "the folder is for Clara": she is spoken of now, too
     if thing.person:  # but "there is a visitor for Clara": it is about the visitor
-        d.person = guest
+        d.scene.person = guest
     said = sentence_form(d.words(node.start, node.end))
-    d.report, d.report_step = Report("only", Text(said), about_here=False), None
+    d.reports.last, d.reports.step = Report("only", Text(said), about_here=False), None
     return []
 
 
@@ -460,12 +483,12 @@ def statement(d: Discourse, node: Node) -> Steps:
 def handed(d: Discourse, node: Node) -> Steps:
     """ "here is Bob's letter": it is where the speaker is, whosever it is."""
     thing: Thing = d.get(node, "thing")
-    thing = replace(thing, place=None, furniture=None, here=d.at is None)
+    thing = replace(thing, place=None, furniture=None, here=d.scene.at is None)
     if "person_ref" not in node.parts:
-        d.thing, d.thing_last = thing, True
+        d.scene.thing, d.scene.thing_last = thing, True
         return []
     steps = deliver(d, thing, d.get(node, "person_ref"), None)
-    d.destined = d.delivery
+    d.deliveries.destined = d.deliveries.last
     return steps
 
 
@@ -483,7 +506,7 @@ def scan(d: Discourse, node: Node) -> Steps:
         steps = look_for(d, thing)
     elif thing is not None and thing.here:  # the code is what counts, whatever it is on
         part = node.parts["thing"]
-        d.resolved.update(range(part.start, part.end))
-    d.code = d.variable("code")
-    d.answer = d.report = None
-    return [*steps, Call("scan", {}, save_as=d.code)]
+        d.command.resolved.update(range(part.start, part.end))
+    d.answers.code = d.variable("code")
+    d.answers.last = d.reports.last = None
+    return [*steps, Call("scan", {}, save_as=d.answers.code)]

@@ -17,8 +17,8 @@ from grammar.tidy import mentions
 def in_their_turn(d: Discourse, node: Node, condition: Condition) -> Condition:
     """A condition on the last answer of each of several: what is said to be done for "them" is done
     with whose turn it is; what is told to somebody else hangs on the answers of all."""
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
-    if survey is None or not isinstance(survey.who, Recall) or d.in_loop:
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
+    if survey is None or not isinstance(survey.who, Recall) or d.rounds.in_loop:
         return condition
     if not in_loop(d, survey.call) or survey.who == survey.where:
         return condition
@@ -26,8 +26,8 @@ def in_their_turn(d: Discourse, node: Node, condition: Condition) -> Condition:
         return condition
     if told_to_others(d, node) and not asks_on(node):
         return of_all(d, condition)
-    d.person = Thing(survey.who, known=True, person=True, here=True)
-    d.with_person = survey.who
+    d.scene.person = Thing(survey.who, known=True, person=True, here=True)
+    d.scene.with_person = survey.who
     return condition
 
 
@@ -41,14 +41,14 @@ def of_whoever_says_so(d: Discourse, node: Node) -> Condition | None:
         return None
     if d.tokens[condition.start].norm not in d.language.words_called("any_of_them"):
         return None  # "if one of them says no, ask both ..."
-    survey: Survey | None = d.surveys[-1] if d.surveys else None
-    if survey is None or d.in_loop or not in_loop(d, survey.call):
+    survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
+    if survey is None or d.rounds.in_loop or not in_loop(d, survey.call):
         return None
     then = node.parts["then"]
     them = d.language.words_called("plural_pronouns") & set(d.norms(then.start, then.end))
     if not asks_on(node) and (not them or told_to_others(d, node)):
         return None
-    d.met = None
+    d.branch.met = None
     return wanted(d, survey, d.get(condition, "said")).given(survey)
 
 
@@ -70,7 +70,7 @@ def told_to_others(d: Discourse, node: Node) -> bool:
 
 def of_all(d: Discourse, condition: Condition) -> Condition:
     """That all said yes, or somebody said no."""
-    surveys = of_one_question(d.surveys)
+    surveys = of_one_question(d.answers.surveys)
     agree, refuse = d.language.phrase("yes"), d.language.phrase("no")
     match condition:
         case Compare(operator="==", right=Text(value=value)) if value == agree:

@@ -42,7 +42,7 @@ def send_person(d: Discourse, node: Node) -> Steps:
     person: Thing = d.get(node, "person_ref")
     if "to" in node.parts:
         host: Thing = d.get(node, "to")
-        d.person = person
+        d.scene.person = person
         return speak_to(d, person, [d.say("please_go", place=named(d, host))])
     spot: Where = d.get(node, "spot")
     if spot.place is None:
@@ -115,27 +115,31 @@ def with_each_asked(d: Discourse, clause: Node) -> Steps | None:
     if not isinstance(loop, Repeat) or not about_one or not isinstance(part, Node):
         return None
     of_them = part.means in ("person_pronoun", "person_group_them")
-    asked = d.surveys and any(each is d.surveys[-1].call for each in nodes(loop.steps))
-    if not of_them or d.person is None:
+    asked = d.answers.surveys and any(
+        each is d.answers.surveys[-1].call for each in nodes(loop.steps)
+    )
+    if not of_them or d.scene.person is None:
         return None
-    met = d.person.count is not None and len(loop.steps) > 1
+    met = d.scene.person.count is not None and len(loop.steps) > 1
     if not met and not (asked and command.means in LED_AWAY):
         return None
     d.done.pop()
     outer, d.done = d.done, list(loop.steps)
-    inside, d.in_loop = d.in_loop, True
-    d.bound[id(part)] = replace(d.person, count=None, plural=False, place=None, here=True)
+    inside, d.rounds.in_loop = d.rounds.in_loop, True
+    d.rounds.bound[id(part)] = replace(
+        d.scene.person, count=None, plural=False, place=None, here=True
+    )
     steps = d.build(clause)
     body = (*d.done, *steps)
-    d.done, d.in_loop = outer, inside
-    d.at = d.with_person = None
+    d.done, d.rounds.in_loop = outer, inside
+    d.scene.at = d.scene.with_person = None
     return [msgspec.structs.replace(loop, steps=body)]
 
 
 @meaning("to_the_next")
 def to_the_next(d: Discourse, node: Node) -> Steps:
     """ "go on to the next one": what a round does in any case."""
-    if not d.in_loop:
+    if not d.rounds.in_loop:
         words = d.words(node.start, node.end)
         raise NotUnderstood(
             d.language.phrase("not_understood", part=words), gap=(node.start, node.end)
@@ -146,14 +150,14 @@ def to_the_next(d: Discourse, node: Node) -> Steps:
 @meaning("guard")
 def guard(d: Discourse, node: Node) -> Steps:
     """ "keep watch": to stay, for what is to be done whenever somebody comes."""
-    d.on_duty = "guard"
+    d.people.on_duty = "guard"
     return moment(d, node)
 
 
 @meaning("find_name")
 def find_name(d: Discourse, node: Node) -> Steps:
     """ "find out their name": a visitor is asked; of others it is told who is seen."""
-    if d.visitor is not None:
+    if d.people.visitor is not None:
         return ask(d, node)
     found = names_here(d, node)
     return found if isinstance(found, list) else found_out(d, found, None, back=True)
@@ -167,7 +171,12 @@ def place_of_answer(d: Discourse, node: Node) -> Value:
         survey = survey_named(d, part.start, part.end)
     else:
         survey = next(
-            (each for each in reversed(d.surveys) if SOMEBODY in each.nouns or each.options), None
+            (
+                each
+                for each in reversed(d.answers.surveys)
+                if SOMEBODY in each.nouns or each.options
+            ),
+            None,
         )
     place = None if survey is None else place_of_named(d, survey, d.get(node, "kind"))
     if place is None:
@@ -176,8 +185,8 @@ def place_of_answer(d: Discourse, node: Node) -> Value:
             d.language.phrase("not_understood", part=words), gap=(node.start, node.end)
         )
     if part is not None:
-        d.resolved.update(range(part.start, part.end))
-    d.place = place
+        d.command.resolved.update(range(part.start, part.end))
+    d.scene.place = place
     return place
 
 
@@ -185,10 +194,10 @@ def place_of_answer(d: Discourse, node: Node) -> Value:
 def person_of_answer(d: Discourse, node: Node) -> Thing:
     """ "that person", "whoever they want to see": at the place of theirs, if an answer tells who it
     is; else whoever was spoken of."""
-    survey = next((each for each in reversed(d.surveys) if SOMEBODY in each.nouns), None)
+    survey = next((each for each in reversed(d.answers.surveys) if SOMEBODY in each.nouns), None)
     place = None if survey is None else place_of_named(d, survey)
     if survey is None or place is None:
         return person_pronoun(d, node)
     who = Recall(str(survey.call.save_as))
-    d.person, d.thing_last = Thing(who, place=place, known=True, person=True), False
-    return d.person
+    d.scene.person, d.scene.thing_last = Thing(who, place=place, known=True, person=True), False
+    return d.scene.person

@@ -53,13 +53,13 @@ LOOK_EVERY: Final = 10
 @meaning("on_sight")
 def on_sight(d: Discourse, node: Node) -> Steps:
     """ "as soon as you see Bob, ...": on a round of places, at the one where he is."""
-    if d.round.stop is not None:
+    if d.rounds.round.stop is not None:
         there: Steps = d.build(node.parts["then"])
         return there
     if not in_round(d):
         return when(d, node)
     *before, seen = if_(d, node)
-    if isinstance(seen, If) and d.met is not None and d.met.thing.known:
+    if isinstance(seen, If) and d.branch.met is not None and d.branch.met.thing.known:
         seen = msgspec.structs.replace(seen, then=(*seen.then, End()))
     return [*before, seen]
 
@@ -87,37 +87,37 @@ def when(d: Discourse, node: Node) -> Steps:
         return as_soon_as_answered(d, node)
     about_answer = what_it_means(node.parts["condition"]) in ABOUT_ANSWERS
     always = bool(node.production.fixed.get("always"))
-    in_turn = bool(d.surveys) and asked_without_end(d, d.surveys[-1])
-    if about_answer and d.answer is not None and (in_turn or not always):
+    in_turn = bool(d.answers.surveys) and asked_without_end(d, d.answers.surveys[-1])
+    if about_answer and d.answers.last is not None and (in_turn or not always):
         return if_(d, node)  # "when he says yes", of somebody who was asked: he has answered
     if not_there(d, node) and not node.production.fixed.get("always"):
         return if_(d, node)
-    person = d.person
-    if d.came is not None and not always and not names_somebody(node.parts["condition"]):
-        d.person = d.came
+    person = d.scene.person
+    if d.people.came is not None and not always and not names_somebody(node.parts["condition"]):
+        d.scene.person = d.people.came
         after: Steps = d.build(node.parts["then"])
         return after
     if not always and may_be_another(d, node.parts["condition"]):
         return if_(d, node)
     before, condition = condition_of(d, node)
-    meet_there(d, d.met)
+    meet_there(d, d.branch.met)
     waited = Call("wait_for", {"thing": person.value}) if person is not None else None
     if d.done[-1:] == [waited] and wait_until(condition) == [waited]:
         d.done.pop()  # "wait for the doctor, and when she comes, ..."
     last = d.done[-1] if d.done else None
     if not before and person is not None and just_came(last) and wait_until(condition) == [ANY]:
-        d.person = person  # "wait for a visitor. When somebody comes, ..."
+        d.scene.person = person  # "wait for a visitor. When somebody comes, ..."
         met: Steps = d.build(node.parts["then"])
         return met
     *going, waiting = wait_until(condition)
-    if d.announced is not None and not always and waiting == ANY:
+    if d.people.announced is not None and not always and waiting == ANY:
         coming = as_announced(d, [*before, *going])  # "Mr Keller is coming. When he arrives, ..."
         return [*coming, *d.build(node.parts["then"])]
     if not before and waited_for_them(d, node, condition):
         done: Steps = d.build(node.parts["then"])
         return done
-    if hands_it_over(node.parts["then"]) and d.thing is not None:
-        take_back_delivery(d, d.thing)  # "get the cup and hand it to Bob when he comes"
+    if hands_it_over(node.parts["then"]) and d.scene.thing is not None:
+        take_back_delivery(d, d.scene.thing)  # "get the cup and hand it to Bob when he comes"
     body: Steps = d.build(node.parts["then"])
     each = always or _is_duty(d, node, condition) or is_habit(d, node)
     if each or is_greeter(d, node, condition, body):
@@ -141,11 +141,11 @@ def _is_duty(d: Discourse, node: Node, condition: Condition) -> bool:
     """Whether it is to be done for whoever comes, for the robot stands guard or stays somewhere:
     "guard the store. If anybody comes, tell them ..."."""
     wait = wait_until(condition)
-    if not d.on_duty or not (isinstance(wait[-1], Call) and _waits(wait[-1])):
+    if not d.people.on_duty or not (isinstance(wait[-1], Call) and _waits(wait[-1])):
         return False
     part = node.parts["condition"]
     anybody = d.language.words_called("any_words") & set(d.norms(part.start, part.end))
-    return d.on_duty == "guard" or bool(anybody)
+    return d.people.on_duty == "guard" or bool(anybody)
 
 
 def is_greeter(d: Discourse, node: Node, condition: Condition, body: Steps) -> bool:
@@ -153,7 +153,7 @@ def is_greeter(d: Discourse, node: Node, condition: Condition, body: Steps) -> b
     reception. When somebody arrives, ask them to sign in"."""
     last = all(token.kind == "mark" for token in d.tokens[node.end :])
     spoken = all(isinstance(step, Call) and step.method in GREETING for step in body)
-    return d.on_duty == "stay" and last and spoken and wait_until(condition) == [ANY]
+    return d.people.on_duty == "stay" and last and spoken and wait_until(condition) == [ANY]
 
 
 def is_habit(d: Discourse, node: Node) -> bool:
@@ -201,7 +201,7 @@ def not_there(d: Discourse, node: Node) -> bool:
         each.production.means == "is_seen" and each.production.fixed.get("no")
         for each in inside(condition)
     )
-    return absent and d.message is not None and condition.start < node.parts["then"].start
+    return absent and d.answers.message is not None and condition.start < node.parts["then"].start
 
 
 def asked_when(d: Discourse, node: Node) -> Told | None:
@@ -253,8 +253,8 @@ def _waits(step: Step | Value | None) -> bool:
 def moment(d: Discourse, node: Node) -> Steps:
     """ "wait", "stay here": for how long is not said, so that it is until what is waited for next
     (`until_then`)."""
-    d.moments.append(d.call_of(node, "wait"))
-    return [d.moments[-1]]
+    d.command.moments.append(d.call_of(node, "wait"))
+    return [d.command.moments[-1]]
 
 
 def until_then(d: Discourse, done: Steps) -> Steps:
@@ -265,7 +265,7 @@ def until_then(d: Discourse, done: Steps) -> Steps:
     result: Steps = []
     for step in done:
         last = result[-1] if result else None
-        if any(last is each for each in d.moments) and _awaits(step):
+        if any(last is each for each in d.command.moments) and _awaits(step):
             result.pop()
             last = result[-1] if result else None
         if isinstance(step, Forever) and isinstance(last, While) and _only_waits(last.steps):
@@ -326,7 +326,7 @@ def looking_up(body: Steps) -> Steps:
 def waiting(d: Discourse, node: Node) -> Steps:
     """Wait until the condition of a clause holds; whoever is waited for is then here."""
     before, condition = condition_of(d, node)
-    meet_there(d, d.met)
+    meet_there(d, d.branch.met)
     return awaited(before, condition)
 
 
@@ -344,14 +344,14 @@ def tell_when(d: Discourse, node: Node) -> Steps:
     if part is None or part.start < node.parts["condition"].start:
         d.get(node, "person_ref")  # who is named first is spoken of as "she" then
     before_it, condition = condition_of(d, node)
-    claim = claim_of(d, node, condition, d.met)
-    meet_there(d, d.met)
+    claim = claim_of(d, node, condition, d.branch.met)
+    meet_there(d, d.branch.met)
     waiting = _at_the_pace_before(d, [*before_it], condition) or awaited(before_it, condition)
     if waiting and d.done[-1:] == waiting[-1:]:
         waiting = waiting[:-1]  # "wait for her, and when she comes, tell Bob"
-    away = d.at is not None or moved(waiting)
+    away = d.scene.at is not None or moved(waiting)
     person: Thing = d.get(node, "person_ref")
-    d.looked_in = d.at  # whoever is to be told is not there, or would know
+    d.scene.looked_in = d.scene.at  # whoever is to be told is not there, or would know
     told = speak_to(d, person, known_words(d) if claim is None else [claim])
     if is_me(person) and away:
         told = [Call("goto", {"place": d.start()}), *told]
@@ -384,10 +384,10 @@ def wait_before_going_back(d: Discourse, node: Node) -> None:
     if not d.done or d.done[-1] != BACK or node.parts["condition"].start < node.start + 2:
         return
     d.done.pop()
-    if d.place is None or d.place == BACK.arguments["place"]:
-        d.at = None  # the robot has not left yet
+    if d.scene.place is None or d.scene.place == BACK.arguments["place"]:
+        d.scene.at = None  # the robot has not left yet
     else:
-        d.went(d.place)
+        d.went(d.scene.place)
 
 
 def at_least(condition: Condition) -> Condition:

@@ -21,7 +21,7 @@ from grammar.plan import Ask, Call, Holds, If, Text
 @meaning("when_found")
 def when_found(d: Discourse, node: Node) -> Steps:
     """ "when you find one, ...": after a search it is done with whoever was found."""
-    if d.round.stop is not None:  # at each place where it is so
+    if d.rounds.round.stop is not None:  # at each place where it is so
         there: Steps = d.build(node.parts["then"])
         return there
     last = d.done[-1] if d.done else None
@@ -31,12 +31,12 @@ def when_found(d: Discourse, node: Node) -> Steps:
             done: Steps = d.build(node.parts["then"])
             return done
         return waited_for(d, node)
-    if search is not None and d.thing_last and d.thing is not None:
-        d.thing = replace(d.thing, here=True, place=None)
+    if search is not None and d.scene.thing_last and d.scene.thing is not None:
+        d.scene.thing = replace(d.scene.thing, here=True, place=None)
     node = with_else(d, node)
     if search is not None and "otherwise" in node.parts:
         return if_found_so(d, node, search)
-    start = d.scene()
+    start = d.scene.copy()
     then: Steps = d.build(node.parts["then"])
     takes = bool(then) and isinstance(then[0], Call) and then[0].method == "grab"
     if search is None or not isinstance(last, If):
@@ -44,14 +44,14 @@ def when_found(d: Discourse, node: Node) -> Steps:
     d.done.pop()
     missing = in_vain(search, then) if takes else tuple(search.missing)
     whole = If(search.found, tuple(then), missing)
-    if d.thing is not None and d.thing_last:
-        met = Meeting(replace(d.thing, here=False, pronoun=False), sought=True)
-        d.branched = Branched(whole, start, met, d.answer)
+    if d.scene.thing is not None and d.scene.thing_last:
+        met = Meeting(replace(d.scene.thing, here=False, pronoun=False), sought=True)
+        d.branch.before = Branched(whole, start, met, d.answers.last)
     return [whole]
 
 
 def waited_for(d: Discourse, node: Node) -> Steps:
     """ "when you find somebody, ...": they are looked for until somebody is found."""
     looking = wait_until(Holds(Ask("find", {"thing": Text(ANYONE)})))
-    d.person, d.thing_last = Thing(Text(ANYONE), person=True, here=True), False
+    d.scene.person, d.scene.thing_last = Thing(Text(ANYONE), person=True, here=True), False
     return [*looking, *d.build(node.parts["then"])]

@@ -35,10 +35,10 @@ def searched_last(d: Discourse, node: Node, whom: str) -> Thing | None:
     told = node.parts.get("told")
     if told is None and told_to is not None and told_to.end < node.end - 1:
         return None
-    known = (d.report, d.answer, d.code, d.claim, d.news)
+    known = (d.reports.last, d.answers.last, d.answers.code, d.branch.claim, d.reports.news)
     if not (isinstance(last, Call) and last.method == "find") or any(each for each in known):
         return None
-    return d.thing if d.thing_last else d.person
+    return d.scene.thing if d.scene.thing_last else d.scene.person
 
 
 def where_it_is(d: Discourse, sought: Thing, person: Thing | None) -> Steps:

@@ -63,8 +63,8 @@ def _looked_in(d: Discourse) -> list[Value | None]:
     condition = searched(d.done[-1] if d.done else None)
     if condition is not None:
         return [each.arguments.get("place") for each in searches(condition)]
-    lost = d.missing.place if d.missing is not None else None
-    return list(lost.items) if isinstance(lost, Items) else [lost or d.place]
+    lost = d.scene.missing.place if d.scene.missing is not None else None
+    return list(lost.items) if isinstance(lost, Items) else [lost or d.scene.place]
 
 
 @meaning("look_on")
@@ -77,13 +77,13 @@ def look_on(d: Discourse, node: Node) -> Steps:
         if looked is not None:
             return looked
     place = Recall(d.variable("place"))
-    d.at = d.with_person = None
+    d.scene.at = d.scene.with_person = None
     return [ForEach(place.name, places, (Call("goto", {"place": place}),))]
 
 
 def looked_on_in(d: Discourse, places: Value) -> Steps | None:
     """The steps that look in places for what was just not found; None if nothing was."""
-    named = named_places(d, places) if d.missing is not None else None
+    named = named_places(d, places) if d.scene.missing is not None else None
     return looked_further(d, named) if named else None
 
 
@@ -91,10 +91,13 @@ def looked_further(d: Discourse, places: list[Value]) -> Steps | None:
     """The steps that look in more places for what was not found, or may not be found, before; None
     if nothing was looked for."""
     there = Items(tuple(places)) if len(places) > 1 else places[0]
-    if d.missing is not None:
-        return look_for(d, replace(d.missing, place=there, furniture=None))
+    if d.scene.missing is not None:
+        return look_for(d, replace(d.scene.missing, place=there, furniture=None))
     condition = searched(d.done[-1] if d.done else None)
-    if condition is not None and (thing := d.thing if d.thing_last else d.person) is not None:
+    if (
+        condition is not None
+        and (thing := d.scene.thing if d.scene.thing_last else d.scene.person) is not None
+    ):
         before = [each.arguments.get("place") for each in searches(condition)]
         d.done.pop()
         known = tuple(each for each in before if each is not None)
@@ -115,10 +118,12 @@ def looked_further(d: Discourse, places: list[Value]) -> Steps | None:
 def bring_instead(d: Discourse, node: Node) -> Steps:
     """ "if there is none, a banana": brought as what there was none of should have been."""
     thing: Thing = d.get(node, "thing")
-    wanted: Delivery | None = d.meant_for if isinstance(d.meant_for, Delivery) else None
+    wanted: Delivery | None = (
+        d.deliveries.meant_for if isinstance(d.deliveries.meant_for, Delivery) else None
+    )
     if wanted is None:
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
-    if thing.place is None and d.at is None:
+    if thing.place is None and d.scene.at is None:
         thing = replace(thing, place=wanted.thing.place)
     return deliver(d, thing, wanted.person, wanted.spot)

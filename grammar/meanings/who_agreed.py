@@ -31,36 +31,36 @@ def asks_for_some(d: Discourse, question: Leaf | Node | None) -> bool:
 
 def who_agreed(d: Discourse, node: Node, part: Node) -> bool:
     """Whether a pronoun stands for those who said yes to what was asked of several."""
-    if part.means != "person_pronoun" or d.thing_last or each_asked(d) is None:
+    if part.means != "person_pronoun" or d.scene.thing_last or each_asked(d) is None:
         return False
     objects = d.language.speech.get("asked_pronouns", {}).get("objects", ())
     if d.tokens[part.start].norm not in objects or node.means == "report":
         return False  # "tell me their names"
-    survey: Survey = d.surveys[-1]
+    survey: Survey = d.answers.surveys[-1]
     agree = {d.language.phrase("yes"), d.language.phrase("no")}
-    if set(survey.options) != agree or d.with_person == survey.who:
+    if set(survey.options) != agree or d.scene.with_person == survey.who:
         return False
-    one = d.person is not None and d.person.known and d.person.group is None
-    if one and d.person is not None and d.person.value != survey.who:
+    one = d.scene.person is not None and d.scene.person.known and d.scene.person.group is None
+    if one and d.scene.person is not None and d.scene.person.value != survey.who:
         return False  # "find somebody who can help and bring them here"
-    if d.polled_for != "who" and node.means not in LEADS:
+    if d.answers.polled_for != "who" and node.means not in LEADS:
         return False
     named = d.one_called(part.start, part.end)
-    return d.is_plural(part) or (d.polled_for == "who" and named is None)
+    return d.is_plural(part) or (d.answers.polled_for == "who" and named is None)
 
 
 def for_who_agreed(d: Discourse, part: Node, make: Make) -> Make:
     """What makes the steps of a command for each of those who said yes."""
 
     def steps() -> Steps:
-        survey: Survey = d.surveys[-1]
+        survey: Survey = d.answers.surveys[-1]
         given = yes(d).given(survey)
         person = each_asked(d)
-        d.at = None
-        d.bound[id(part)] = person
+        d.scene.at = None
+        d.rounds.bound[id(part)] = person
         try:
             return [If(given, tuple(round_of_steps(d, make)))]
         finally:
-            del d.bound[id(part)]
+            del d.rounds.bound[id(part)]
 
     return steps

@@ -23,8 +23,8 @@ def all_meant(d: Discourse, node: Node) -> Thing | None:
     question = node.parts.get("question")
     each = isinstance(question, Node) and "each" in question.production.fixed
     voting = node.production.fixed.get("vote", False)
-    if voting and d.person is not None and d.person.group is not None:
-        return d.person
+    if voting and d.scene.person is not None and d.scene.person.group is not None:
+        return d.scene.person
     if not (each or voting or asks_anybody(d, question)):
         return None
     return Thing(Text(ANYONE), person=True, plural=True, here=True)
@@ -36,7 +36,7 @@ def asks_anybody(d: Discourse, question: Leaf | Node | None) -> bool:
     asked = question.parts.get("asked") if isinstance(question, Node) else None
     anybody = set(d.language.speech.get("somebody_else", ()))
     said = set() if asked is None else set(d.norms(asked.start, asked.end))
-    return bool(anybody & said) and d.with_person is None
+    return bool(anybody & said) and d.scene.with_person is None
 
 
 def just_visited(d: Discourse) -> Thing | None:
@@ -53,23 +53,29 @@ def just_visited(d: Discourse) -> Thing | None:
 def gone_to(d: Discourse) -> Thing | None:
     """Those to whom the robot was sent, whoever they are: "go to everybody in the library and ask
     whether ..."."""
-    person: Thing | None = d.person
+    person: Thing | None = d.scene.person
     last = d.done[-1] if d.done else None
     if person is None or not (person.plural and person.here) or person.known:
         return None
-    return person if isinstance(last, Call) and last.arguments.get("place") == d.at else None
+    return person if isinstance(last, Call) and last.arguments.get("place") == d.scene.at else None
 
 
 def spoken_of(d: Discourse) -> Thing | None:
     """Whoever was met just before, or is said to be where the robot is to go: "greet the man in the
     lobby and ask ...", "somebody is waving in the kitchen, go and ask ..."."""
-    person: Thing | None = d.person
-    if person is None or person.plural or person.count or person.group is not None or d.in_loop:
+    person: Thing | None = d.scene.person
+    if (
+        person is None
+        or person.plural
+        or person.count
+        or person.group is not None
+        or d.rounds.in_loop
+    ):
         return None
-    if d.with_person == person.value:
+    if d.scene.with_person == person.value:
         return person if met_just_before(d, person) is not None else None
     elsewhere = person.place is not None and not person.here
-    return person if elsewhere and not d.done and d.with_person is None else None
+    return person if elsewhere and not d.done and d.scene.with_person is None else None
 
 
 def several_of_a_kind(d: Discourse, node: Node, person: Thing | None) -> Thing | None:
@@ -87,8 +93,8 @@ def several_of_a_kind(d: Discourse, node: Node, person: Thing | None) -> Thing |
         return person
     named = known_by_name(d, person, person.text)
     if named:
-        d.group = Items(named)
-        return replace(person, known=True, plural=True, group=d.group)
+        d.scene.group = Items(named)
+        return replace(person, known=True, plural=True, group=d.scene.group)
     return replace(person, value=Text(ANYONE), plural=True)
 
 
@@ -106,15 +112,17 @@ def told_in_each(d: Discourse, node: Node, person: Thing | None) -> ForEach | No
     goes = last.steps[0] == Call("goto", {"place": Recall(last.variable)})
     told = last.steps[-1]
     spoken = isinstance(told, Call) and told.method == "say"
-    return last if goes and spoken and d.person is not None and d.person.plural else None
+    return (
+        last if goes and spoken and d.scene.person is not None and d.scene.person.plural else None
+    )
 
 
 def asked_in_each(d: Discourse, told: ForEach, ask: Callable[[Thing], Steps]) -> Steps:
     """What asks everybody in each of the places where they were told something."""
     d.done.pop()
-    d.at = d.place = Recall(told.variable)
+    d.scene.at = d.scene.place = Recall(told.variable)
     everybody = Thing(Text(ANYONE), person=True, plural=True, here=True)
     steps = round_of_steps(d, lambda: ask(everybody))
-    d.at = d.with_person = None
-    d.person, d.thing_last = everybody, False
+    d.scene.at = d.scene.with_person = None
+    d.scene.person, d.scene.thing_last = everybody, False
     return [ForEach(told.variable, told.items, (*told.steps, *steps))]
