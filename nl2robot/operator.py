@@ -166,12 +166,13 @@ class Operator:
 
     def answer(self, run: int, language: str = "en") -> list[Sentence]:
         """What came of a run, for whoever asked for it; nothing from a server that cannot say."""
+        about = {"run": run, "language": language}
         try:
-            return self._request(
-                "program.answer", {"run": run, "language": language}, list[Sentence]
-            )
+            return self._request("program.answer", about, list[Sentence])
         except InvalidCall:
             return []
+        except Stopped:  # as in `wait`
+            return self._request("program.answer", about, list[Sentence])
 
     def stop(self) -> None:
         """Stop the robot and the program."""

@@ -298,7 +298,7 @@ class Session:
         """What came of a run; nothing where the robot can no longer be asked."""
         try:
             return self.operator.answer(status.run, self.language)
-        except RobotError:
+        except (RobotError, Stopped):
             return []
 
     def _finish(self, approval: Approval) -> tuple[Status, bool]:

@@ -213,6 +213,7 @@ def test_an_answer_is_typed_where_there_are_no_options(ward: Ward, front: Tablet
         "number": 0,
         "question": "What is your name?",
         "options": None,
+        "person": None,
     }
     assert front.touch("Marie") and asked.result(AT_ONCE) == "Marie"
     listened = ward.asks("listen")
