@@ -7,13 +7,11 @@ import argparse
 import json
 from pathlib import Path
 
-import msgspec
-
 from nl2robot import routine_files
 from nl2robot.commands.options import add_language, add_world, names_of, user_name, words
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
-from nl2robot.routines import open_routines
+from nl2robot.routines import as_data, open_routines
 from nl2robot.teaching import Reply, Teacher, settle
 from nl2robot.terminal import Terminal
 
@@ -195,7 +193,8 @@ def _list(knowledge: Knowledge, as_json: bool) -> int:
     if as_json:
         for routine in known:
             works, does = teachers[routine.language].does(routine)
-            data = {**msgspec.to_builtins(routine), "works": works, "explanation": does}
+            always = {"sentence": routine.sentence, "learned": routine.learned}
+            data = {**always, **as_data(routine), "works": works, "explanation": does}
             print(json.dumps(data, ensure_ascii=False))
         return ExitStatus.OK
     terminal = Terminal()

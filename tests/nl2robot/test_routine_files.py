@@ -166,6 +166,12 @@ def test_who_agreed_is_noted_as_the_teacher(knowledge) -> None:
 def test_at_the_terminal_from_one_ward_to_the_next(tmp_path, capsys, monkeypatch) -> None:
     monkeypatch.setenv("NL2ROBOT_HOME", str(tmp_path / "one"))
     assert main(["routines", "learn", "evening round", "wave", "--yes"]) == 0
+    capsys.readouterr()
+    assert main(["routines", "list", "--json"]) == 0
+    listed = json.loads(capsys.readouterr().out)
+    assert (listed["name"], listed["language"], listed["sentence"]) == (
+        *("evening round", "en", "wave"),
+    )
     file = tmp_path / "ward.yaml"
     assert main(["routines", "export", "--out", str(file)]) == 0
     monkeypatch.setenv("NL2ROBOT_HOME", str(tmp_path / "two"))
