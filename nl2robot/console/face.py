@@ -244,6 +244,7 @@ def _services(
             lambda p, context: forgetting.noticed(),
             an_object({}, ""),
             "Tell that somebody touches the web page that is shown, which tells nothing itself.",
+            right="face",
         ),
         "face.language": Service(
             language,

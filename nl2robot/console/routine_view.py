@@ -11,12 +11,13 @@ from typing import Any, Final
 
 from markupsafe import Markup
 
-from grammar.explain import explain, explain_steps
+from grammar.explain import explain_steps
 from grammar.language import load_language
 from grammar.lexicon import Lexicon
 from grammar.naming import naming
 from grammar.plan import Plan
 from grammar.program import write_program
+from grammar.summary import summary
 from grammar.writing import PlanError
 from nl2robot.archive import Archive
 from nl2robot.console.highlight import highlighted
@@ -110,7 +111,7 @@ class Viewer:
             why = f"{line}: {told(errors[0].code, errors[0].message, reader)}"
             return Body(False, why, steps, program)
         called = naming(lexicons[-1], load_language(reader)).called
-        return Body(True, explain(plan, reader, called, deeds_only=True), steps, program)
+        return Body(True, summary(plan, reader, called), steps, program)
 
     @staticmethod
     def _steps(plan: Plan, lexicon: Lexicon, reader: str) -> tuple[tuple[int, str], ...]:

@@ -19,21 +19,24 @@ from tests.console.test_looks import READY
 FACE = {
     *("robot.stop", "robot.capabilities", "rpc.discover", "program.stop"),
     *("face.state", "face.site", "face.here", "face.touch", "face.page", "face.did"),
-    *("face.language", "call.ready", "call.answer", "call.end", "call.signal"),
+    *("face.language", "face.used", "call.ready", "call.answer", "call.end", "call.signal"),
 }
 """All that the tablet on the robot may call: visitors have their hands on it."""
 OBSERVER = {
     *("robot.stop", "robot.capabilities", "rpc.discover", "program.stop"),
     *("face.state", "face.site"),
-    *("desk.run", "scene.floor", "zones.list", "places.list", "places.export"),
-    *("helm.state", "helm.body", "helm.log", "runs.list", "runs.show"),
+    *("desk.run", "scene.floor", "zones.list", "zones.history", "places.list", "places.export"),
+    *("location.history", "helm.state", "helm.body", "helm.log", "runs.list", "runs.show"),
+    *("routines.list", "routines.show", "routines.export", "station.state"),
     *("program.phrases", "program.wait", "program.state", "program.list"),
+    *("program.answer", "program.unfinished"),
 }
 PAGES = {
     "/": {"observer", "operator", "administrator"},
     "/map": {"observer", "operator", "administrator"},
     "/drive": {"observer", "operator", "administrator"},
     "/runs": {"observer", "operator", "administrator"},
+    "/routines": {"observer", "operator", "administrator"},
     "/devices": {"operator", "administrator"},
     "/face": set(ROLES),
     "/static/wire.js": set(ROLES),
