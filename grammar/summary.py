@@ -120,35 +120,55 @@ class _Brief(Teller):
             step, later = steps[at], steps[at + 1 :]
             folded = self._fetched(step, later)
             if folded is not None:
-                yield _Deed(folded)
-                at += 2
+                text, number = folded
+                yield _Deed(text)
+                at += number
                 continue
             yield from self._item(step)
             at += 1
 
-    def _fetched(self, step: p.Step, later: Sequence[p.Step]) -> str | None:
-        """Looking for a thing somewhere and taking it, or for somebody and giving it to them."""
-        match (step, *later[:1]):
+    def _fetched(self, step: p.Step, later: Sequence[p.Step]) -> tuple[str, int] | None:
+        """Looking for a thing somewhere and taking it, or for somebody and giving it to them, or
+        both; with how many steps that are."""
+        found = [self._looked_and_did(step, later[:1]), None]
+        if found[0] is not None and len(later) > 2:
+            found[1] = self._looked_and_did(later[1], later[2:3])
+        match found:
+            case [("fetch" | "fetch anywhere" as how, values, did), ("bring", more, then)] if (
+                values["thing"] == more["thing"]
+            ):
+                pattern, values, done = f"{how} and bring", {**values, **more}, (*did, *then)
+            case [(pattern, values, done), _]:
+                pass
+            case _:
+                return None
+        self._tick(*done)
+        self.left, self.back, self._found = True, False, None
+        return self.filled(self.words.brief[pattern], values), len(done)
+
+    @staticmethod
+    def _looked_and_did(
+        step: p.Step, later: Sequence[p.Step]
+    ) -> tuple[str, dict[str, p.Value], tuple[p.Call, p.Call]] | None:
+        """What is said of a search and what is done with what it finds, with its values."""
+        match (step, *later):
             case (
                 p.Call(method="find", arguments={"thing": one, "place": place}) as first,
                 p.Call(method="grab", arguments={"thing": other}) as then,
             ) if one == other:
-                pattern, values = self.words.brief["fetch"], {"thing": one, "place": place}
+                return "fetch", {"thing": one, "place": place}, (first, then)
             case (
                 p.Call(method="find", arguments={"thing": one}) as first,
                 p.Call(method="grab", arguments={"thing": other}) as then,
             ) if one == other:
-                pattern, values = self.words.brief["fetch anywhere"], {"thing": one}
+                return "fetch anywhere", {"thing": one}, (first, then)
             case (
                 p.Call(method="find", arguments={"thing": one}) as first,
                 p.Call(method="give", arguments={"thing": thing, "person": other}) as then,
             ) if one == other and "place" not in first.arguments:
-                pattern, values = self.words.brief["bring"], {"thing": thing, "person": one}
+                return "bring", {"thing": thing, "person": one}, (first, then)
             case _:
                 return None
-        self._tick(first, then)
-        self.left, self.back, self._found = True, False, None
-        return self.filled(pattern, values)
 
     def _item(self, step: p.Step) -> Iterator[_Item]:
         if isinstance(step, p.Remember) and isinstance(step.value, p.Ask):

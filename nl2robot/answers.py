@@ -113,11 +113,22 @@ class _Account:
         found = {thing for thing, so in self.witness.sought() if so}
         spoke = any(call.method in SPEAKING for call in self.record.calls)
         met = {PERSON} & found if spoke else set()  # what was said tells of that
+        met |= found & self._used()
         for call in self.record.calls:
             if call.arguments.get("thing") not in met and not (spoke and call.method == "people"):
                 self._note(call, where.place, found, happened)
             where.follow(call)
         return happened
+
+    def _used(self) -> set[Any]:
+        """Whom and what something was done with: that they were found goes without saying."""
+        did = [each for each in self.record.calls if each.error is None]
+        return {
+            each.arguments.get(name)
+            for each in did
+            for name in ("thing", "person")
+            if each.method not in FINDING
+        }
 
     def _note(self, call: Done, place: str | None, found: set[str], happened: _Happened) -> None:
         text = str(call.arguments.get("text") or "")
