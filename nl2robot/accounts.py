@@ -25,6 +25,7 @@ import msgspec
 from nl2robot import passwords
 from nl2robot.errors import UserError
 from robot_api.access import Guest, new_token
+from robot_api.errors import cause
 from robot_api.roles import ROLES, Role
 
 LONGEST_NAME: Final = 60
@@ -506,6 +507,6 @@ def _readable(file: Path | None) -> Iterator[None]:
         yield
     except (OSError, sqlite3.Error) as error:
         raise UserError(
-            f"{what} cannot be used ({error}). See that it may be written, and that the disk is not"
-            " full."
+            f"{what} cannot be used ({cause(error)}). See that it may be written, and that the disk"
+            " is not full."
         ) from error

@@ -44,7 +44,7 @@ CREATE TABLE IF NOT EXISTS runs (
     picture TEXT,                    -- path of the picture of the run
     start TEXT,                      -- JSON: x, y (metres), theta (degrees) of a simulated robot
     process INTEGER,                 -- that runs it
-    continues INTEGER,               -- the run that was broken off, with which this one goes on
+    continues INTEGER,               -- the run with which this one goes on
     proposed TEXT,                   -- the program that was proposed, if somebody changed it
     changed_by TEXT                  -- who did
 );

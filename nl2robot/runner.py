@@ -599,7 +599,8 @@ class Runner:
                 robot.cancel()
             if activity.over.wait(BREAK_OFF_EVERY):
                 return
-        if not activity.broken_off:
+        # Who broke off sees to it, unless what was to be broken off ended by itself in that moment.
+        if self.present.state.state == "pausing":
             with contextlib.suppress(RobotError, Stopped):
                 self._come_to_rest(activity, robot)
 

@@ -4,11 +4,13 @@ thrown back to the beginning of a page."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from typing import Any, Final
 
 import pytest
 from playwright.sync_api import Page, expect
 
+from robot_api.errors import RobotError
 from tests.console.conftest import Look, Served
 from tests.console.test_desk import approve, read_all, say
 from tests.fetched import from_npm
@@ -97,15 +99,43 @@ def face(look: Callable[[str], Page]) -> Iterator[Page]:
     yield page
 
 
+def presence(look: Callable[[str], Page]) -> Iterator[Page]:
+    page = look("/drive?view=presence")
+    expect(page.locator("#drive .floor-told")).to_be_visible()
+    yield page
+
+
+def routines(look: Callable[[str], Page]) -> Iterator[Page]:
+    page = look("/routines")
+    expect(page.locator(".routines[data-ready=yes]")).to_be_visible()
+    yield page
+    page.get_by_role("listitem", name="tea round").locator("summary").first.click()
+    yield page
+
+
+def doors(look: Callable[[str], Page]) -> Iterator[Page]:
+    for path in ("/devices", "/nothing/here", "/sign-in", "/trust"):
+        page = look(path)
+        expect(page.locator("h1, h2").first).to_be_visible()
+        yield page
+
+
 @pytest.mark.parametrize("language", ["en", "de", "fr"])
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
-@pytest.mark.parametrize("pages", [desk, review_and_run, floor, drive, runs, face])
+@pytest.mark.parametrize(
+    "pages", [desk, review_and_run, floor, drive, presence, runs, routines, doors, face]
+)
 def test_axe_finds_nothing(
     look: Look, served: Served, axe: str, pages: Any, dark: bool, language: str
 ) -> None:
     if pages is runs:
         with served.robot() as robot:
             _ran(robot)
+    if pages is routines:
+        with served.robot() as robot:
+            new = {"name": "tea round", "language": "en", "by": "Ana"}
+            with suppress(RobotError):  # taught by the same story in another language
+                robot.request("routines.keep", {**new, "sentence": "go to every ward and wave"})
     for page in pages(lambda path: look(path, dark=dark, language=language)):
         page.evaluate(axe)
         assert page.evaluate(FINDINGS) == []

@@ -101,6 +101,7 @@ def test_who_signs_in_comes_to_the_page_they_wanted(enter: Open, accounts: Accou
     assert page.url.endswith("/map")
     failures = accounts.failures()
     assert [(each.name, each.address) for each in failures] == [("Ben", "127.0.0.1")]
+    expect(page.locator("#connection")).to_have_attribute("data-state", "connected")
     page.get_by_role("button", name="Settings").click()
     expect(page.locator("#settings")).to_contain_text("Signed in as Ben")
     page.get_by_role("button", name="Sign out").click()

@@ -9,6 +9,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.console.conftest import Look, Served
+from tests.console.test_desk import approve
 
 Picture = Callable[[Page, str], None]
 
@@ -96,7 +97,7 @@ def test_a_click_on_the_floor_is_reviewed_and_run_without_leaving_the_map(
     expect(program).to_contain_text("# by the door of the pharmacy")
     expect(page.get_by_text("It would take")).to_be_visible()
     drawn = "document.querySelector('#map').floorMap"
-    page.get_by_role("button", name="Approve and run").click()
+    approve(page)
     expect(page.locator(".run-panel")).to_have_attribute("data-state", "running")
     picture(page, f"map-send-{page.viewport_size['width']}")  # type: ignore[index]
     expect(page.locator(".run-panel")).to_have_attribute("data-state", "done")

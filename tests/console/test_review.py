@@ -142,6 +142,7 @@ def test_who_does_not_see_the_screen_hears_what_is_shown(look: Look) -> None:
     told = page.locator("#shown-now")
     expect(told).to_have_attribute("role", "status")
     heard = []
+    expect(read_on(page)).to_be_visible()
     for _ in range(60):
         if not read_on(page).is_visible():
             break

@@ -63,7 +63,7 @@ def test_a_routine_is_run_by_touch_and_only_after_approval(
     shelf: Page, served: Served, picture: Picture
 ) -> None:
     evening = card(shelf, "evening round")
-    expect(evening).to_contain_text("For each of the wards I know, I will go to this place")
+    expect(evening).to_contain_text("In every ward I will say “Good night”.")
     expect(evening.locator(".routine-facts")).to_contain_text("Taught by Ana on")
     expect(evening.locator(".routine-facts")).to_contain_text("never run yet")
     evening.get_by_text("Step by step").click()
@@ -183,7 +183,7 @@ def test_a_file_is_looked_at_before_anything_of_it_is_kept(
     shelf.get_by_label("File").set_input_files(file)
     offers = shelf.locator(".routine-offers > li")
     expect(offers).to_have_count(2)
-    expect(offers.first).to_contain_text("I will go to the lobby and then say “Tea!”")
+    expect(offers.first).to_contain_text("I will go to the lobby and say “Tea!”")
     expect(offers.last).to_contain_text("Another routine here has this name.")
     expect(offers.last.get_by_role("checkbox", name="evening round")).not_to_be_checked()
     assert list(known(served)) == ["evening round"]

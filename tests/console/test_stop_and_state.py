@@ -7,6 +7,7 @@ from playwright.sync_api import Page, expect
 
 from robot_api.client import Robot
 from tests.console.conftest import Look, Picture, Served
+from tests.console.test_desk import approve, read_all
 
 PAGES = ("/", "/map", "/drive", "/runs")
 ROUND = 'robot.goto("ward a")\nrobot.goto("ward b")\n'
@@ -18,6 +19,14 @@ def served(tmp_path_factory):
 
     with serving(tmp_path_factory.mktemp("home"), "--world", "ward", "--speed", "1") as served:
         yield served
+
+
+@pytest.fixture(autouse=True)
+def _at_rest(served: Served) -> None:
+    """Each story begins with a robot that stands by its charger."""
+    with served.robot() as robot:
+        robot.stop()
+        robot.localize("charger")
 
 
 def runs(robot: Robot, program: str) -> int:
@@ -167,13 +176,14 @@ def test_nothing_is_approved_while_another_program_runs(
     page.get_by_role("textbox", name="Tell the robot what to do").fill("say good morning")
     page.keyboard.press("Enter")
     expect(page.locator(".busy-note")).to_contain_text("approve it when that is over")
+    read_all(page)
     page.locator("#approve").click()
     expect(page.locator("#notice")).to_contain_text("Another program is running.")
     with served.robot() as robot:
         robot.stop()
         robot.request("program.wait", {"run": running})
     expect(page.locator(".busy-note")).to_be_hidden()
-    page.locator("#approve").click()
+    approve(page)
     expect(page.locator("#run-panel .chip[role=status]")).to_have_text("Done")
 
 
@@ -192,7 +202,7 @@ def test_after_a_stop_one_looks_at_what_is_left_and_goes_on(
         expect(told).to_contain_text("Done already, and not done again:")
         expect(told).to_contain_text("It goes on at line 2:")
         picture(page, "go-on")
-        page.locator("#approve").click()
+        approve(page)
         expect(page.locator("#run-panel .chip[role=status]")).to_have_text("Done")
         rows = page.locator("#run-panel .calls li code")
         expect(rows).to_have_text(['goto(place="ward a")', 'say(text="Three.")'])

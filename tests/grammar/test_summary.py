@@ -26,7 +26,7 @@ LANGUAGES = ("en", "de", "fr")
 FOLDED = {
     "en": {
         "find": "look for|get .+ from|and take it|take .+ to|find",
-        "grab": "get .+ from|and take it",
+        "grab": "get .+ from|and take it|take .+ from",
         "give": "take .+ to",
         "goto": "in every|go to every|come back",
         "say": "tell you|say so",
@@ -43,7 +43,7 @@ FOLDED = {
     },
     "fr": {
         "find": "chercher|prendre|apporter|trouve",
-        "grab": "prendre|emporter",
+        "grab": "prendre|emporter|l'apporter",
         "give": "apporter",
         "goto": "chaque|revenir|aller",
         "say": "vous dire|signaler",
@@ -127,7 +127,7 @@ robot.give("stapler", person="Alice")
             " coffee?”",
         ),
         (LOOK, "I will go to the lobby, come back and tell you whether I saw a person."),
-        (FETCH, "I will get the stapler from the supply room and take the stapler to Alice."),
+        (FETCH, "I will take the stapler from the supply room to Alice."),
         (
             'if robot.find("Bob"):\n    robot.say("Lunch is ready.")\n'
             'else:\n    robot.say("I could not find Bob.")\n',

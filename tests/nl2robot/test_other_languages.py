@@ -13,6 +13,7 @@ from grammar.language import known_by_word, languages
 from nl2robot.console.dialogue import Dialogue
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.other_language import accepted, language_of, question
+from nl2robot.present import Present
 from nl2robot.review import Review, review
 from nl2robot.talks import Talks
 from nl2robot.translation import translate
@@ -168,14 +169,18 @@ def test_in_the_console_too() -> None:
 class _Runner:
     def __init__(self, knowledge: Knowledge) -> None:
         self.knowledge = knowledge
+        self.present = Present(lambda state: None)
 
     def state(self) -> None:
+        return None
+
+    def unfinished(self) -> None:
         return None
 
     def last(self) -> None:
         return None
 
-    def check(self, program: str, language: str) -> Review:
+    def check(self, program: str, language: str, continues: int | None) -> Review:
         return review(program, self.knowledge, None, language=language)
 
 

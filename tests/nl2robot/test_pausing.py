@@ -55,6 +55,21 @@ def test_a_drive_is_halted_at_once_and_goes_on_to_its_goal(
     assert states == ["running", "pausing", "paused", "running"]
 
 
+def test_a_drive_that_ends_by_itself_as_it_is_broken_off_leaves_a_paused_robot(
+    slow_operator, monkeypatch
+) -> None:
+    """What breaks it off comes too late, whenever that is."""
+    monkeypatch.setattr("robot_api.client.Robot.cancel", lambda self: None)
+    watch, request = Watching(slow_operator), slow_operator.robot.request
+    run = start(slow_operator, 'robot.goto("ward a")\nrobot.goto("ward b")\n')
+    watch.until_fast()
+    request("program.pause")
+    watch.until_state("paused")
+    assert request("program.state")["state"] == "paused"
+    assert request("program.resume")["state"] == "running"
+    assert slow_operator.wait(run).state == "done"
+
+
 @pytest.mark.parametrize(
     ("program", "metres", "degrees"),
     [

@@ -52,7 +52,7 @@ export class ReviewSeen {
     }
     if (!key || view.state.doc.toString() !== this.program(foot)) return this.show(foot, null);
     if (document.visibilityState === 'visible') {
-      for (const part of this.panel.querySelectorAll(PARTS)) {
+      for (const part of this.shown()) {
         this.parts.set(part, (this.parts.get(part) ?? 0) | edges(part, part.getBoundingClientRect()));
       }
       this.lookAtLines(view);
@@ -79,9 +79,14 @@ export class ReviewSeen {
     }
   }
 
+  /** The parts of the review in which something stands. */
+  shown() {
+    return [...this.panel.querySelectorAll(PARTS)].filter((part) => part.textContent.trim());
+  }
+
   /** What has not been seen: parts of the review, numbers of lines. */
   left() {
-    const parts = [...this.panel.querySelectorAll(PARTS)].filter((part) => this.parts.get(part) !== BOTH);
+    const parts = this.shown().filter((part) => this.parts.get(part) !== BOTH);
     const lines = this.lines.flatMap((seen, index) => (seen === BOTH ? [] : [index + 1]));
     return {parts, lines};
   }
