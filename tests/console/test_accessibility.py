@@ -116,7 +116,7 @@ def routines(look: Callable[[str], Page]) -> Iterator[Page]:
 def doors(look: Callable[[str], Page]) -> Iterator[Page]:
     for path in ("/devices", "/nothing/here", "/sign-in", "/trust"):
         page = look(path)
-        expect(page.locator("h1, h2").first).to_be_visible()
+        expect(page.get_by_role("heading").first).to_be_visible()
         yield page
 
 
