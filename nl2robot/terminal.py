@@ -6,6 +6,7 @@ import contextlib
 import os
 import select
 import shlex
+import shutil
 import signal
 import subprocess
 import sys
@@ -43,6 +44,8 @@ if TYPE_CHECKING:
 
 Decision = Literal["approve", "edit", "reject"]
 _ELSE: Final[tuple[Decision, ...]] = ("edit", "reject")
+_EDITORS: Final = ("nano", "sensible-editor", "vim", "vi")
+"""Tried one after the other where none is named: the first needs no explanation."""
 
 __all__ = ["Decision", "Terminal", "answers", "duration", "words_in"]
 
@@ -254,9 +257,10 @@ class Terminal:
         return bool(ready)
 
     def edit(self, program: str) -> str:
-        """Let the operator change the program in $VISUAL or $EDITOR; returns the new text, or the
-        old one (and says why) if that fails."""
-        editor = os.environ.get("VISUAL") or os.environ.get("EDITOR") or "nano"
+        """Let the operator change the program in $VISUAL, $EDITOR or an editor that is there;
+        returns the new text, or the old one (and says why) if that fails."""
+        there = filter(shutil.which, _EDITORS)
+        editor = os.environ.get("VISUAL") or os.environ.get("EDITOR") or next(there, _EDITORS[0])
         with tempfile.TemporaryDirectory(prefix="nl2robot-") as folder:
             file = Path(folder) / "program.py"
             try:

@@ -17,7 +17,7 @@ from robot_api.roles import PAIRED, ROLES
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
+    actions = parser.add_subparsers(dest="action", metavar="ACTION")
     actions.add_parser("list", help="accounts, devices and links, and who failed to sign in")
     add = actions.add_parser("add", help="make an account; asks for its password")
     add.add_argument("name")
@@ -40,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     with closing(Accounts(data_folder() / "accounts.sqlite")) as accounts:
         match options.action:
-            case "list":
+            case "list" | None:
                 _list(accounts)
             case "add":
                 accounts.check_new(options.name)

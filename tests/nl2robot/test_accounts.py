@@ -204,7 +204,7 @@ def test_accounts_are_made_listed_and_ended_at_the_terminal(nl2robot, monkeypatc
     typed("short\n")
     status, _, err = nl2robot("accounts", "add", "Ben")
     assert status == ExitStatus.BAD_INPUT and "10 to 200 characters" in err
-    status, out, _ = nl2robot("accounts", "list")
+    status, out, _ = nl2robot("accounts")  # which lists them
     assert "Ann" in out and "administrator" in out and "Ben" not in out
     status, _, err = nl2robot("accounts", "pair", "face")
     assert status == ExitStatus.BAD_INPUT and "Start `nl2robot serve --host 0.0.0.0` first" in err

@@ -107,10 +107,21 @@ class Wire {
         this._fail(id, 'The connection to the robot was lost.');
       }
       if (was) this._changed();
+      else if (!this._closed) this._lookWhetherShutOut();
       if (this._closed) return;
       setTimeout(() => this._connect(), this._wait);
       this._wait = Math.min(LONGEST_WAIT, this._wait * 2);
     });
+  }
+
+  /** Who was let in and is no longer is told so by the server's own page. */
+  async _lookWhetherShutOut() {
+    try {
+      const answer = await fetch(location.pathname, {cache: 'no-store', redirect: 'manual'});
+      if (answer.status === 401 || answer.status === 403) location.reload();
+    } catch {
+      // The server is down: the connection is tried again.
+    }
   }
 
   _receive(message) {

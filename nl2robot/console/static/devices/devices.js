@@ -5,6 +5,7 @@ import {notice} from '/static/console.js';
 import {wire} from '/static/wire.js';
 
 const {words, language} = pageData;
+const LOOKS_EVERY = 3000;
 const HERE = /^(localhost|127\.|\[::1\])/;
 
 /** A moment: the time, and the day as well if it is not today's. */
@@ -107,7 +108,15 @@ async function show() {
     cards.push(list(words.failures, failures.map((each) =>
       element('li', {}, element('span', {}, filled(words.failure, each)), element('span', {class: 'muted'}, moment(each.time))))));
   }
+  const known = JSON.stringify([devices, failures, accounts]);
+  if (known === shown) return;
+  shown = known;
   root.replaceChildren(...cards);
 }
 
+let shown = '';
 show();
+// Somebody comes in elsewhere; who is about to be withdrawn stays under one's finger.
+setInterval(() => {
+  if (!document.hidden && !document.querySelector('#devices li .danger')) show().catch(() => {});
+}, LOOKS_EVERY);
