@@ -519,8 +519,12 @@ def _sentences(items: Iterable[_Item], words: Speech) -> Iterator[str]:
         if simple:
             yield sentence("next" if said else "first", steps=_joined(simple, words))
             simple, said = [], True
-        steps = _joined(item.items, words)
-        yield sentence("adverb" if item.adverb else "clause", clause=item.text, steps=steps)
+        clause, pattern = item.text, "adverb" if item.adverb else "clause"
+        match item:
+            case _Clause(adverb=True, items=(_Clause(adverb=False) as inner,)):
+                # "In every ward, if I see a person, I will ..."
+                clause, pattern, item = f"{clause}{brief['comma']}{inner.text}", "clause", inner
+        yield sentence(pattern, clause=clause, steps=_joined(item.items, words))
         said = True
     if simple:
         yield sentence("next" if said else "first", steps=_joined(simple, words))

@@ -174,12 +174,14 @@ class _Looking:
         area = _area_of(self.world, tried.situation.place)
         if area is None:
             return
-        left = sorted(
+        left = (
             (line, place)
             for line, place in itertools.chain(self.goals(), self.arrivals(tried))
             if _is_outside(self.world, area, place)
         )
-        for line, place in left[:1]:
+        first = min(left, key=lambda found: found[0], default=None)
+        if first is not None:
+            line, place = first
             yield line, "leaves", "leaves", {"area": area, "place": place}
 
     def arrivals(self, tried: Tried) -> Iterator[tuple[int, str]]:

@@ -377,7 +377,7 @@ class Dialogue:
             return
         self._tell(Line("robot", " ".join(rest_told(rest, runner.knowledge, language))))
         with self._turn:
-            self._review(Draft(rest.program, continues=rest.run), language)
+            self._review(Draft(rest.program, continues=rest.run, said=rest.utterance), language)
 
     def perform_routine(self, name: str, said_in: str, language: str) -> None:
         """Lay a routine before the operator, as if they had said its name in its language."""

@@ -50,6 +50,9 @@ def nameless(page: Page) -> list[Any]:
         (320, 640, True, "de"),
         (844, 390, False, "fr"),
         (768, 1024, False, "de"),
+        (910, 700, True, "de"),
+        (1024, 768, False, "fr"),
+        (1280, 800, False, "de"),
         (1440, 900, True, "fr"),
     ],
 )
