@@ -63,6 +63,9 @@ def guard_finds(d: Discourse, done: Steps) -> Steps:
             if isinstance(later, Call) and later.method == "grab" and asked_last(body):
                 body += handed_over(later, done[number + 1 + len(body) :])
                 break  # who is not found gives nothing
+            if led_away(later, step):  # whoever was not found is not led away either
+                body.append(later)
+                continue
             if isinstance(later, Call) and (
                 later.method in ("goto", "find", "dock") or later.method in needs_it
             ):
@@ -85,6 +88,13 @@ def taken_to_them(steps: Steps) -> bool:
         calls[0].arguments["thing"] == calls[2].arguments.get("person")
         and calls[1].arguments["thing"] == calls[2].arguments["thing"]
     )
+
+
+def led_away(step: Step, search: Call) -> bool:
+    """Whether it leads, or follows, who is looked for."""
+    if not isinstance(step, Call) or step.method not in LED:
+        return False
+    return step.arguments.get("person") == search.arguments["thing"]
 
 
 def asked_last(steps: Steps) -> bool:

@@ -19,7 +19,6 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
-from nl2robot import models
 from nl2robot.console.app import STATIC
 from nl2robot.console.visitor import LANGUAGES, texts
 from nl2robot.operator import Operator
@@ -28,6 +27,7 @@ from nl2robot.speech.voices import joined, voice
 from tests.console.conftest import CHROMIUM, FLAGS, SOON, serving
 from tests.console.test_thinking import CONSOLE, tell
 from tests.console.writing_console import SPOKEN
+from tests.fetched import fetched
 
 PAGE = """<!doctype html><html><head><link rel="stylesheet" href="/static/console.css"></head>
 <body><script type="module">SCRIPT</script></body></html>"""
@@ -542,8 +542,7 @@ def spoken(text: str) -> Samples:
 @pytest.fixture(scope="module")
 def listening(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
     """A console with the English speech model."""
-    if models.find("en") is None:
-        pytest.skip("There is no English speech model: nl2robot models get en.")
+    fetched("en")
     home = tmp_path_factory.mktemp("home")
     with serving(home, "--speed", "1", models=True, program=[str(CONSOLE)]) as served:
         yield served

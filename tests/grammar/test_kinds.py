@@ -524,3 +524,16 @@ def test_a_noun_is_no_verb(noun: str, verb: str) -> None:
 @pytest.mark.parametrize("who", ["-lui", " à Bob"])
 def test_nobody_is_asked_to_do_what_has_no_verb(who: str) -> None:
     assert "abord" not in (said("fr", f"demande{who} d'abord s'il est prêt").program or "")
+
+
+@pytest.mark.parametrize(
+    ("language", "words"),
+    [
+        ("en", "ask the visitor in the waiting room for their name and take them to radiology"),
+        ("de", "frag den Besucher im Wartezimmer, wie er heißt, und bring ihn in die Radiologie"),
+        ("fr", "demande son nom au visiteur dans la salle d'attente et emmène-le en radiologie"),
+    ],
+)
+def test_whoever_is_not_found_is_not_led_away_either(language: str, words: str) -> None:
+    found = program(language, words)
+    assert "else:" in found and found.index("robot.guide(") < found.index("else:"), found
