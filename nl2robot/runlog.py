@@ -235,14 +235,9 @@ class RunLog:
             *(seconds, result, error, run, number),
         )
 
-    def state(self, run: int, state: str, because: str | None) -> None:
-        """Note how the robot and the program stand from now on, if that is news."""
-        with self._lock, self._trouble():
-            self._db.execute(
-                "INSERT INTO states SELECT ?1, ?2, ?3, ?4 WHERE ?3 IS NOT"
-                " (SELECT state FROM states WHERE run = ?1 ORDER BY rowid DESC LIMIT 1)",
-                (run, time.time(), state, because),
-            )
+    def state(self, run: int, since: float, state: str, because: str | None) -> None:
+        """Note how the robot and the program stood from then on."""
+        self._write("INSERT INTO states VALUES (?, ?, ?, ?)", run, since, state, because)
 
     def printed(self, run: int, text: str) -> None:
         self._write("INSERT INTO output VALUES (?, ?, ?)", run, time.time(), text)

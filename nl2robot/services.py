@@ -15,8 +15,8 @@ from grammar.samples import samples
 from nl2robot.answers import answer
 from nl2robot.going_on import told
 from nl2robot.planners import names
-from nl2robot.runner import GOING, Runner
-from nl2robot.state import Reviewing
+from nl2robot.runner import Runner
+from nl2robot.state import GOING, Reviewing
 from nl2robot.talks import Talks
 from nl2robot.thinking import EVENT, Thought, published
 from nl2robot.translation import Translation, translate
@@ -81,9 +81,8 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
     def reviewed(p: Mapping[str, Any], context: Context) -> None:
         runner.present.happened(Reviewing(reviewer(context.connection), p["lies"]))
 
-    def approved(p: Mapping[str, Any], context: Context) -> Any:
-        by = context.who or p["by"]  # who has signed in need not be believed
-        return runner.approve(p["program"], p["sha256"], by, **_rest(p, "program sha256 by"))
+    def approved(p: Mapping[str, Any]) -> Any:
+        return runner.approve(p["program"], p["sha256"], p["by"], **_rest(p, "program sha256 by"))
 
     def waited(p: Mapping[str, Any], stop: StopFlag) -> Any:
         """Until the run is over, the time is up or the call is cancelled. A stop of the robot sets
@@ -153,7 +152,7 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             {"lies": {"type": "boolean"}},
             "lies",
         ),
-        "program.approve": service_of_call(
+        "program.approve": service(
             approved,
             "Approve exactly the program with this SHA-256 for one run. With `continues`, the"
             " number of a run that was broken off, what was done there is not done again. Where it"

@@ -20,8 +20,9 @@ from nl2robot.going_on import texts as going_on_texts
 from nl2robot.harmless import approver, needs_no_question
 from nl2robot.operator import Operator
 from nl2robot.other_language import accepted, language_of, question
+from nl2robot.performance import Approval, Status
 from nl2robot.review import Review
-from nl2robot.runner import GOING, Approval, Status
+from nl2robot.state import GOING, HELD
 from nl2robot.terminal import Decision, Terminal
 from nl2robot.translation import Translation
 from nl2robot.waiting import GivenUp
@@ -46,8 +47,6 @@ MOST_QUESTIONS = 5
 """Questions back that are asked before the command is left alone."""
 LOOK_EVERY = 0.1
 """Seconds between two looks whether a run is over."""
-HELD = ("pausing", "paused")
-"""The states in which "go on" means the program that runs."""
 LAST_WORDS = 2.0
 """Seconds to wait for the events of a run that is over."""
 

@@ -43,6 +43,11 @@ Phase = Literal[
     "lost",
 ]
 
+GOING: Final = ("running", "pausing", "paused")
+"""The states of a program that is not over."""
+HELD: Final = ("pausing", "paused")
+"""Those of one that was told to pause."""
+
 FOLLOWS: Final[dict[str, frozenset[str]]] = {
     **dict.fromkeys(
         ("idle", "reviewing", "charging", "stopped"),
@@ -300,7 +305,7 @@ def _changes(state: State, happening: Happening) -> dict[str, Any]:
 
 
 def _changes_of_program(state: State, happening: Happening) -> dict[str, Any]:
-    going = state.state in ("running", "pausing", "paused")
+    going = state.state in GOING
     match happening:
         case Began(run) if may_begin(state):
             return {"run": run, "line": None, "pause": None, "stands": False, "because": None}

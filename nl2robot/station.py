@@ -22,9 +22,9 @@ from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.routines import open_routines
 from nl2robot.runlog import LogError, RunLog
-from nl2robot.runner import GOING, Runner
+from nl2robot.runner import Runner
 from nl2robot.services import EVENTS, reviewer, services
-from nl2robot.state import Charging, Reviewing, State, on_wire
+from nl2robot.state import GOING, Charging, Reviewing, State, on_wire
 from nl2robot.talks import Talks
 from nl2robot.voice_services import Microphones
 from robot_api import limits
@@ -334,9 +334,7 @@ def _open(
         server.publish(kind, data, to)
 
     def tell(state: State) -> None:
-        if state.run is not None:
-            with suppress(LogError):  # the next call will find the disk full, too
-                log.state(state.run, state.state, state.because)
+        runner.note_state(state)
         publish(present.KIND, on_wire(state))
         backstage.tell(present.KIND, on_wire(state))
 

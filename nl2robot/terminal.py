@@ -31,6 +31,7 @@ from nl2robot.on_the_way import OnTheWay
 from nl2robot.plain import visible
 from nl2robot.rehearsal import DryRun
 from nl2robot.review import Review
+from nl2robot.state import HELD
 from nl2robot.translation import Translation
 from nl2robot.trouble import told as told_of
 from nl2robot.waiting import Waiting
@@ -331,7 +332,7 @@ class Terminal:
 
     def show_state(self, state: str, before: str | None) -> None:
         """The run in view was halted, goes on, or is being stopped."""
-        key = "resumed" if state == "running" and before in ("pausing", "paused") else state
+        key = "resumed" if state == "running" and before in HELD else state
         if told := self.words.get(f"state_{key}"):
             self._live.leave()
             self.console.print(f"[yellow]{_plain(told)}[/]")

@@ -50,6 +50,9 @@ from robot_api.schema import read_arguments
 from robot_api.status import HEADERS, Status, status_page
 from robot_api.two_way_port import TwoWayServer
 
+CALLER: Final = ("who", "by", "changed_by")
+"""Parameters of services in which callers say who they are. Who has signed in need not be believed:
+the name of their account stands there."""
 DEFAULT_PORT: Final = 9090
 PING_SECONDS: Final = 1.25
 """How often a client is asked for a sign of life, and how long it has to answer."""
@@ -361,10 +364,13 @@ class Server:
             return lambda stop: self.driver.capabilities()
         if call.method == "rpc.discover":
             return lambda stop: openrpc(self.driver.capabilities(), self.services, self.events)
-        handler = self.services[call.method].handler
-        return lambda stop: handler(
-            call.arguments,
-            Context(client.name, stop, self.publish, client.guest.role, client.guest.name),
+        service, guest = self.services[call.method], client.guest
+        arguments = call.arguments
+        if guest.name is not None:
+            known = service.params.get("properties", {})
+            arguments = {**arguments, **{name: guest.name for name in CALLER if name in known}}
+        return lambda stop: service.handler(
+            arguments, Context(client.name, stop, self.publish, guest.role, guest.name)
         )
 
     def needs(self, method: str) -> roles.Right:

@@ -12,8 +12,7 @@ import json
 import re
 import secrets
 from collections.abc import Callable
-from functools import cache, partial
-from pathlib import Path
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
@@ -21,6 +20,7 @@ import msgspec
 from nl2robot.console.dialogues import Dialogues
 from nl2robot.console.outlook import outlook
 from nl2robot.console.part import Backstage, Part
+from nl2robot.console.rendering import rendered
 from nl2robot.console.run_view import run_view
 from nl2robot.console.thought_view import ThoughtView
 from nl2robot.console.visitor import texts
@@ -29,7 +29,6 @@ from nl2robot.translation import Translation
 from nl2robot.wire import service
 
 if TYPE_CHECKING:
-    from jinja2 import Environment
     from nicegui.events import GenericEventArguments
 
     from nl2robot.console.frame import Visit
@@ -195,7 +194,7 @@ class Desk:
                     if self.visit.role == "operator":
                         ui.html('<div id="standing-in"></div>', sanitize=False)
                 hands_free = texts("microphone", self.visit.language)["hands_free"]
-                composer = _page("composer.html", visit=self.visit, hands_free=hands_free)
+                composer = rendered("composer.html", visit=self.visit, hands_free=hands_free)
                 ui.html(composer, sanitize=False)
             with ui.element("div").classes("desk-program"):
                 self._build_program()
@@ -240,8 +239,8 @@ class Desk:
             "words": self.words,
             "visit": self.visit,
         }
-        self.head.set_content(_page("review_head.html", **about))
-        self.foot.set_content(_page("review_foot.html", **about))
+        self.head.set_content(rendered("review_head.html", **about))
+        self.foot.set_content(rendered("review_foot.html", **about))
         self.editor_box.set_visibility(draft is not None)
         decorations = seen.decorations if seen else []
         if draft is None or draft.program != self._shown:
@@ -256,7 +255,7 @@ class Desk:
     def _draw_talk(self) -> None:
         dialogue = self.dialogue
         self.conversation.set_content(
-            _page("conversation.html", dialogue=dialogue, words=self.words, visit=self.visit)
+            rendered("conversation.html", dialogue=dialogue, words=self.words, visit=self.visit)
         )
         self.thought.draw()
         if dialogue.dropped is not self._dropped:
@@ -269,7 +268,7 @@ class Desk:
         lines = self.dialogue.lines
         last = lines[-1] if len(lines) > self._read else None
         said = last if last is not None and last.by == "robot" else None
-        self.told.set_content(_page("told.html", said=said))
+        self.told.set_content(rendered("told.html", said=said))
 
     def _show_path(self, path: list[list[float]] | None) -> None:
         if path == self._path:
@@ -368,21 +367,3 @@ def _loop() -> asyncio.AbstractEventLoop:
 def _name(kept: str) -> str:
     """Of a browser's dialogue: the one that it keeps, or a new one."""
     return kept if re.fullmatch(r"[0-9a-f]{16}", kept) else secrets.token_hex(8)
-
-
-@cache
-def _templates() -> Environment:
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-    folder = Path(__file__).parent / "templates"
-    return Environment(
-        loader=FileSystemLoader(folder),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-
-
-def _page(template: str, **about: Any) -> str:
-    return _templates().get_template(template).render(**about)

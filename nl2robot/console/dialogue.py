@@ -30,6 +30,7 @@ from nl2robot.harmless import approver, needs_no_question
 from nl2robot.other_language import accepted, language_of, question
 from nl2robot.review import Review, digest
 from nl2robot.session import STOP
+from nl2robot.state import HELD
 from nl2robot.teaching import told as told_in_words
 from nl2robot.translation import Translation, translate
 from nl2robot.trouble import told
@@ -358,7 +359,7 @@ class Dialogue:
         """Go on with what is paused, or propose what is left of the last run; whether there is
         any of it."""
         runner = self._backstage.runner
-        if runner.present.state.state in ("pausing", "paused"):
+        if runner.present.state.state in HELD:
             with suppress(NotPossible):  # it was over in that very moment
                 runner.resume()
             return True
@@ -377,7 +378,7 @@ class Dialogue:
             return
         self._tell(Line("robot", " ".join(rest_told(rest, runner.knowledge, language))))
         with self._turn:
-            self._review(Draft(rest.program, continues=rest.run, said=rest.utterance), language)
+            self._review(Draft(rest.program, continues=rest.run), language)
 
     def perform_routine(self, name: str, said_in: str, language: str) -> None:
         """Lay a routine before the operator, as if they had said its name in its language."""

@@ -18,8 +18,7 @@ import msgspec
 from nl2robot.archive import state_of
 from nl2robot.console.dialogue import Dialogue, Draft, Line
 from nl2robot.console.part import STOP, Backstage
-from nl2robot.runner import GOING
-from nl2robot.state import Reviewing
+from nl2robot.state import GOING, Reviewing
 from nl2robot.translation import Translation
 
 IN_MEMORY: Final = 50

@@ -18,6 +18,7 @@ import threading
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
+from nl2robot.state import GOING
 from robot_api.driver import Driver, Event, StopFlag
 from robot_api.errors import RobotError, Stopped
 
@@ -82,7 +83,7 @@ class Forgetting:
             self.noticed()
         if data["what"] != "state":
             return
-        if data["state"] in ("running", "paused"):
+        if data["state"] in GOING:
             self._begins(data["run"])
         else:
             self._ends()

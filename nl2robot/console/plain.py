@@ -4,20 +4,16 @@ connection, no script but STOP's, and nothing of NiceGUI's."""
 from __future__ import annotations
 
 import logging
-from functools import cache
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 from urllib.parse import quote
 
 from starlette.requests import HTTPConnection
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from nl2robot.console.rendering import rendered
 from nl2robot.console.visitor import LANGUAGES, texts, visitor_of
 from robot_api.guard import YEAR
-
-if TYPE_CHECKING:
-    from jinja2 import Environment
 
 HEADERS: Final = {
     "Content-Security-Policy": (
@@ -41,21 +37,18 @@ def page(
     chosen = request.query_params.get("lang", "")
     words = texts("door", visitor.language)
     again = request.scope.get("method") == "GET" and status < 400
-    html = (
-        _templates()
-        .get_template(template)
-        .render(
-            **{
-                "language": visitor.language,
-                "languages": LANGUAGES if again else None,
-                "more": _more(request),
-                "words": words,
-                "frame": texts("frame", visitor.language),
-                "title": title,
-                "trouble": "",
-                **about,
-            }
-        )
+    html = rendered(
+        template,
+        **{
+            "language": visitor.language,
+            "languages": LANGUAGES if again else None,
+            "more": _more(request),
+            "words": words,
+            "frame": texts("frame", visitor.language),
+            "title": title,
+            "trouble": "",
+            **about,
+        },
     )
     response = HTMLResponse(html, status, HEADERS)
     if chosen in LANGUAGES:
@@ -128,17 +121,3 @@ def _more(request: HTTPConnection) -> str:
     """The rest of the query, for the links that change the language."""
     rest = [(key, value) for key, value in request.query_params.multi_items() if key == "next"]
     return "".join(f"&{key}={quote(value)}" for key, value in rest)
-
-
-@cache
-def _templates() -> Environment:
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-    folder = Path(__file__).parent / "templates"
-    return Environment(
-        loader=FileSystemLoader(folder),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )

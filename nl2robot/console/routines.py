@@ -24,8 +24,9 @@ from starlette.routing import Route
 
 from nl2robot import routine_files
 from nl2robot.archive import Archive
-from nl2robot.console import routine_view, runs_view
+from nl2robot.console import routine_view
 from nl2robot.console.part import Backstage, Part
+from nl2robot.console.rendering import rendered
 from nl2robot.console.routine_view import Body, Card, Viewer
 from nl2robot.console.visitor import LANGUAGES, LONGEST_NAME, texts, visitor_of
 from nl2robot.errors import UserError
@@ -113,11 +114,11 @@ class Shelf:
 
     def page(self, language: str, operates: bool) -> str:
         """All of it."""
-        return runs_view.rendered("routines.html", **self._about(language, operates))
+        return rendered("routines.html", **self._about(language, operates))
 
     def list_html(self, language: str, operates: bool) -> str:
         """The cards alone."""
-        return runs_view.rendered("routine_cards.html", **self._about(language, operates))
+        return rendered("routine_cards.html", **self._about(language, operates))
 
     def _about(self, language: str, operates: bool) -> dict[str, Any]:
         words = texts("routines", language)

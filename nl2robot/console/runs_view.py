@@ -4,13 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from datetime import datetime
-from functools import cache
 from typing import Any, Final
-from urllib.parse import quote
-
-from jinja2 import Environment, PackageLoader, StrictUndefined
-from markupsafe import Markup
 
 from grammar.explain import LineTold, explain_program
 from grammar.language import load_language
@@ -18,10 +12,10 @@ from grammar.naming import naming
 from nl2robot.archive import STATES, Page, state_of
 from nl2robot.changes import changes
 from nl2robot.console.highlight import highlighted
+from nl2robot.console.rendering import rendered
 from nl2robot.console.runs_asked import Asked
 from nl2robot.knowledge import Knowledge
 from nl2robot.pausing import PAUSED
-from nl2robot.plain import visible
 from nl2robot.runlog import LoggedCall, Run, RunLog
 
 CALLS_SHOWN: Final = 500
@@ -139,58 +133,3 @@ def _told(program: str, knowledge: Knowledge, language: str) -> list[LineTold]:
         return explain_program(program, language, called)
     except (SyntaxError, ValueError, RecursionError):
         return []
-
-
-# --- how things are written -------------------------------------------------------------------
-
-
-def duration(seconds: float) -> str:
-    """ "42 s", "1:42 min", "2:05 h"."""
-    whole = max(0, round(seconds))
-    if whole < 60:
-        return f"{whole} s"
-    if whole < 3600:
-        return f"{whole // 60}:{whole % 60:02} min"
-    return f"{whole // 3600}:{whole // 60 % 60:02} h"
-
-
-def clock(seconds: float) -> str:
-    """ "1:05", minutes and seconds of a run."""
-    whole = max(0, int(seconds))
-    return f"{whole // 60}:{whole % 60:02}"
-
-
-def _when(seconds: float, words: Words) -> str:
-    return datetime.fromtimestamp(seconds).strftime(words["when"])
-
-
-def _iso(seconds: float) -> str:
-    return datetime.fromtimestamp(seconds).astimezone().isoformat(timespec="seconds")
-
-
-def _visible(text: str) -> str | Markup:
-    return text if isinstance(text, Markup) else visible(text)
-
-
-@cache
-def _environment() -> Environment:
-    environment = Environment(
-        loader=PackageLoader("nl2robot.console"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters |= {
-        "visible": _visible,
-        "when": _when,
-        "iso": _iso,
-        "duration": duration,
-        "clock": clock,
-        "encoded": lambda text: quote(text, safe=""),
-    }
-    return environment
-
-
-def rendered(template: str, **about: Any) -> str:
-    return _environment().get_template(template).render(**about)

@@ -136,7 +136,7 @@ class Calls:
                 right="face",
             ),
             "call.start": Service(
-                lambda p, context: self._start(context.connection, context.who or p["who"]),
+                lambda p, context: self._start(context.connection, p["who"]),
                 an_object({"who": {"type": "string", "minLength": 1, "maxLength": 200}}, "who"),
                 "Call the robot: its faces ring.",
             ),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import stat
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from playwright.sync_api import Page, expect
 from nl2robot.accounts import Accounts
 from nl2robot.console.codes import read_codes
 from robot_api.client import Robot
+from robot_api.errors import AccessDenied
 from tests.console.conftest import Look, Served, serving
 from tests.console.test_desk import approve, say
 
@@ -231,3 +233,28 @@ def test_nobody_else_on_this_computer_reads_who_may_come_in(house: Served) -> No
         kept += write_ahead.read_bytes()
         assert stat.S_IMODE(write_ahead.stat().st_mode) == 0o600
     assert PASSWORD.encode() not in kept
+
+
+def test_whoever_has_signed_in_is_noted_by_their_own_name(
+    house: Served, accounts: Accounts
+) -> None:
+    accounts.add("Fay", "operator", PASSWORD)
+    secret = accounts.sign_in("Fay", PASSWORD, "127.0.0.1", "a program")
+    claims = {"name": "wet", "polygon": [[1, 1], [2, 1], [2, 2]], "who": "The director"}
+    with let_in(house, secret) as robot:
+        robot.request("zones.set", claims)
+        robot.request("zones.remove", {"name": "wet", "who": "The director"})
+        assert {each["who"] for each in robot.request("zones.history", {})[:2]} == {"Fay"}
+        robot.request("helm.take", {"who": "The director"})
+        assert robot.request("helm.state", {})["who"] == "Fay"
+        robot.request("helm.give", {})
+
+
+def let_in(house: Served, secret: str) -> Robot:
+    """A client, as soon as the server has noticed what another process has changed."""
+    ends = time.monotonic() + 30
+    while True:
+        try:
+            return Robot(house.address, token=secret)
+        except AccessDenied:
+            assert time.monotonic() < ends

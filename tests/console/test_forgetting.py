@@ -148,6 +148,7 @@ def test_a_pause_forgets_nothing(face: Face, shown: list[Any]) -> None:
     face.program("running")
     face.result("ask")
     face.shows(text=NAME)
+    face.program("pausing")
     face.program("paused")
     face.program("running")
     face.clock.passes(10 * IDLE)

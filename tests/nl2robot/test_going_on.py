@@ -76,6 +76,19 @@ def test_one_can_go_on_again_and_again(slow_operator, log) -> None:
     assert [method for method, _ in made(log, third)] == ["say", "battery", "goto", "say"]
 
 
+def test_the_log_keeps_what_was_said_for_what_goes_on(slow_operator, log) -> None:
+    translation = slow_operator.translate("go to ward a, go to ward b and say hello")
+    watch = Watching(slow_operator)
+    approval = slow_operator.approve(slow_operator.check(translation.program), translation)
+    run = slow_operator.run(approval)
+    watch.until(what("call", number=2))
+    slow_operator.stop()
+    slow_operator.wait(run)
+    again, _ = going_on(slow_operator)
+    assert slow_operator.wait(again).state == "done"
+    assert log.run(again).utterance == translation.utterance
+
+
 def test_going_on_needs_an_approval_of_its_own(slow_operator) -> None:
     run = stopped_at(slow_operator, ROUND, 1)
     other = slow_operator.check('robot.say("Something else.")\n')

@@ -172,7 +172,7 @@ def test_a_robot_at_another_server_is_paused_as_well(log, tmp_path, sit_down) ->
 def test_a_robot_that_does_not_come_to_rest_is_stopped(
     slow_operator, slow_station, monkeypatch
 ) -> None:
-    monkeypatch.setattr("nl2robot.runner.comes_to_rest", lambda *_: False)
+    monkeypatch.setattr("nl2robot.performance.comes_to_rest", lambda *_: False)
     watch, request = Watching(slow_operator), slow_operator.robot.request
     run = start(slow_operator, DRIVE)
     watch.until_fast()

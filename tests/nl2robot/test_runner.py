@@ -1,7 +1,9 @@
 """Nothing runs that was not approved; what runs is in view, and stops at once."""
 
 import queue
+import sqlite3
 import time
+from contextlib import closing
 
 import pytest
 
@@ -280,3 +282,19 @@ def test_a_round_goes_on_when_a_place_is_closed_and_says_so(operator, station, l
     assert log.output(run)[0].startswith("ward b was closed to me. (")
     assert "wet floor" in log.output(run)[0]
     assert [call.method for call in log.calls(run)] == ["goto", "goto", "say"]
+
+
+def test_who_stops_the_robot_waits_for_no_disk(slow_operator, slow_station, log) -> None:
+    """Somebody else writes to the log just then, for as long as the log would wait for them."""
+    watch = Watch(slow_operator)
+    run = start(slow_operator, 'robot.goto("ward a")\nrobot.goto("ward b")\n')
+    watch.until(what("call", number=1))
+    with closing(sqlite3.connect(log.path, isolation_level=None)) as other:
+        other.execute("BEGIN IMMEDIATE")
+        began = time.monotonic()
+        slow_operator.stop()
+        assert time.monotonic() - began < 1
+        assert slow_station.simulation.robot.speed == 0
+        other.execute("ROLLBACK")
+    assert slow_operator.wait(run).state == "stopped"
+    assert log.states(run)[-1]["state"] == "stopping"

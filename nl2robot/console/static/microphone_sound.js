@@ -61,15 +61,8 @@ export class Sound {
    * Resolves when the sound comes, `rate` says how many samples a second. Rejects with a NoSound, or whatever else went wrong.
    */
   async hear(listener) {
-    clearTimeout(this._cooling);
     this._listener = listener;
-    const opening = (this._opened ??= this._start());
-    try {
-      await opening;
-    } catch (error) {
-      if (this._opened === opening) this.letGo();
-      throw error;
-    }
+    await this._ready();
     if (this._listener === listener) for (const block of this._before.splice(0)) listener(block);
   }
 
@@ -83,6 +76,11 @@ export class Sound {
       if (!this._listener && this.open) this.rest();
       return;
     }
+    await this._ready();
+  }
+
+  /** Until the microphone is open. */
+  async _ready() {
     clearTimeout(this._cooling);
     const opening = (this._opened ??= this._start());
     try {

@@ -100,7 +100,7 @@ export class RunPanel {
 
   /** A run that is over makes room for what is to be decided now; its page has all of it. */
   fold() {
-    const over = this.run != null && !['running', 'paused'].includes(this.state);
+    const over = this.run != null && !GOING.includes(this.state);
     this.root.classList.toggle('folded', over && document.getElementById('decide') != null);
   }
 

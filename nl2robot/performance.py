@@ -1,0 +1,536 @@
+"""One run of an approved program on the robot: from its first call until its end is logged.
+
+    performance = Performance(run, approval, means)
+    performance.begin()                     # in a thread of its own
+    performance.pause(); performance.resume(); performance.stop("Somebody stopped it.")
+    performance.over.wait()
+
+What is not logged is not done: each call is written down before it is made. A pause breaks off what
+turns the wheels, and makes the rest of it when the program goes on.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import logging
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Final, Literal
+
+import msgspec
+
+from grammar.language import languages, load_language
+from grammar.naming import naming
+from nl2robot import state as happenings
+from nl2robot.going_on import Recall
+from nl2robot.knowledge import Knowledge
+from nl2robot.pausing import (
+    DRIVING,
+    MEASURED,
+    PAUSED,
+    Odometer,
+    comes_to_rest,
+    pose_of,
+    rest_of,
+)
+from nl2robot.present import Present
+from nl2robot.runlog import LogError, RunLog
+from nl2robot.state import HELD
+from robot_api.client import Robot
+from robot_api.errors import LostConnection, NotPossible, RobotError, StopNotConfirmed, Stopped
+from sandbox.execution import Execution, Outcome
+
+_log = logging.getLogger(__name__)
+
+State = Literal["running", "pausing", "paused", "done", "failed", "stopped", "limit"]
+
+SECONDS_TO_REST: Final = 2.0
+"""How long a paused robot may take to stand, beside what it says of a stop. Then it is stopped."""
+BREAK_OFF_EVERY: Final = 0.02
+"""Seconds between two attempts to break off a robot call of a program that was stopped."""
+
+_HALTED = "The movement was halted; what is left of it is made when the program goes on."
+_DOES_NOT_REST = "The robot did not come to rest when it was paused, so it was stopped."
+
+
+class Approval(msgspec.Struct, frozen=True, kw_only=True):
+    """Somebody's word that exactly this program may run once."""
+
+    id: str
+    program: str
+    sha256: str
+    by: str
+    at: float
+    """Seconds since the epoch."""
+    utterance: str | None = None
+    heard: str | None = None
+    language: str | None = None
+    plan: str | None = None
+    continues: int | None = None
+    """The run that was broken off, with which it goes on; what was done there is not done again."""
+    proposed: str | None = None
+    """The program that was proposed, if somebody changed it by hand."""
+    changed_by: str | None = None
+
+
+class Status(msgspec.Struct, frozen=True, kw_only=True):
+    """How a run stands; what `program.state` and `program.wait` answer."""
+
+    run: int
+    state: State
+    line: int | None
+    message: str | None
+    """Why it is not done, if it is over and is not."""
+    error: str | None
+    """What it failed with, as `sandbox.execution.Outcome.error`."""
+    program: str
+    sha256: str
+    calls: int
+    robot_lost_since: float | None = None
+    """Seconds since the epoch; None while the robot can be reached."""
+
+
+@dataclass(frozen=True)
+class Means:
+    """What a run needs: `connect` opens a client to the robot, `publish(kind, data)` tells those
+    who watch."""
+
+    knowledge: Knowledge
+    connect: Callable[[], Robot]
+    log: RunLog
+    publish: Callable[[str, Mapping[str, Any]], None]
+    present: Present
+    """How the robot and its program stand."""
+    seed: int | None
+
+
+class _BrokenOff(Exception):
+    """A pause has broken off the call at hand."""
+
+
+class Performance:
+    """A run that goes on, or that did. Any thread may use it."""
+
+    def __init__(
+        self,
+        run: int,
+        approval: Approval,
+        means: Means,
+        recall: Recall | None = None,
+        pose: Mapping[str, Any] | None = None,
+    ) -> None:
+        """`recall` is what was done before, if it goes on with another run; `pose` is where the
+        robot was last, if that is known."""
+        self.run = run
+        self.approval = approval
+        self.line: int | None = None
+        self.over = threading.Event()
+        """Set when the end is logged."""
+        self._means = means
+        self._present = means.present
+        self._recall = recall
+        self._pose = pose
+        self._execution: Execution | None = None
+        self._robot: Robot | None = None
+        self._calls = 0
+        self._outcome: Outcome | None = None
+        """How the program ended; the run is over only when that is logged."""
+        self._message: str | None = None
+        self._ended: State | None = None
+        """How, once it is over and logged."""
+        self._stop_because: str | None = None
+        """Set when it is to be stopped, maybe before it has begun."""
+        self._lost_because: str | None = None
+        """Set when the robot is lost meanwhile."""
+        self._gate = threading.Lock()
+        """Around what follows, and around whether it is to pause."""
+        self._drives = False
+        """Whether a call is in flight that turns the wheels."""
+        self._broken_off = False
+        """Whether a pause has broken that off."""
+        self._odometer: Odometer | None = None
+        """Of the movement that is measured."""
+        self._states: deque[tuple[float, str, str | None]] = deque()
+        """Those that are not written down yet."""
+        self._noted: str | None = None
+        """The last of them all."""
+        self._writing_states = threading.Lock()
+
+    # --- from outside
+
+    @property
+    def goes_on(self) -> bool:
+        """Whether the program has not come to its end."""
+        return self._outcome is None
+
+    def status(self) -> Status:
+        """How it stands now."""
+        return Status(
+            run=self.run,
+            state=self._ended or self._state(),
+            line=self.line,
+            message=self._message,
+            error=self._outcome.error if self._outcome else None,
+            program=self.approval.program,
+            sha256=self.approval.sha256,
+            calls=self._calls,
+        )
+
+    def begin(self) -> None:
+        """Perform the program, in a thread of its own."""
+        if self._present.happened(happenings.Began(self.run)).run != self.run:
+            # It was stopped in this very moment.
+            self._stop_because = self._present.state.because or "The robot was stopped."
+        name = f"program {self.run}"
+        threading.Thread(target=self._perform, name=name, daemon=True).start()
+
+    def pause(self) -> None:
+        """Halt the robot at once, and the program with it: a movement at hand is broken off, a
+        sentence may end. It is `paused` when the robot has come to rest, until then `pausing`.
+        Raises `NotPossible` if it does not go on, as do `step` and `resume`."""
+        self._control(Execution.pause, happenings.PauseAsked())
+        threading.Thread(target=self._halt, name="halt", daemon=True).start()
+
+    def step(self) -> None:
+        """Do one more robot call, or the rest of the one that was broken off, then pause again."""
+        self._control(Execution.step, happenings.Resumed())
+
+    def resume(self) -> None:
+        """Go on: what was broken off goes on to its goal."""
+        self._control(Execution.resume, happenings.Resumed())
+
+    def stop(self, because: str) -> None:
+        """End it; returns at once."""
+        if self._outcome is not None or self._stop_because is not None:
+            return
+        self._stop_because = because
+        self._present.happened(happenings.EndAsked(because))
+        if self._execution is not None:
+            self._execution.stop(because)
+        if self._robot is not None:
+            self._robot.cancel()
+        threading.Thread(target=self._break_off, name="break off", daemon=True).start()
+
+    def lose(self, because: str) -> None:
+        """The robot is lost: the program ends with that, whatever it catches."""
+        if self._outcome is None:
+            self._lost_because = because
+            if self._execution is not None:
+                self._execution.stop(because)
+
+    def note_pose(self, pose: Mapping[str, Any]) -> None:
+        """Where the robot is (the data of the event `pose`)."""
+        self._pose = pose
+        odometer = self._odometer
+        if odometer is not None:
+            odometer.at(pose)
+
+    def note_state(self, state: happenings.State) -> None:
+        """How the robot and the program stand from now on. It is written down with what is logged
+        next: nobody who stops the robot waits for a disk."""
+        if state.state != self._noted:
+            self._noted = state.state
+            self._states.append((time.time(), state.state, state.because))
+
+    def report(self, phrase: str, **about: Any) -> None:
+        """Tell something that the program itself does not, in the language of whoever approved it.
+        Lists are of places."""
+        knowledge = self._means.knowledge
+        code = self.approval.language or "en"
+        pack = load_language(code if code in languages() else "en")
+        called = naming(knowledge.lexicon(pack.code), pack).called
+        gaps = {
+            name: ", ".join(map(called, value)) if isinstance(value, list | tuple) else value
+            for name, value in about.items()
+        }
+        with contextlib.suppress(Stopped):  # the next call finds that the log is full
+            self._print(f"{pack.phrase(phrase, **gaps)}\n")
+
+    # --- the program
+
+    def _perform(self) -> None:
+        try:
+            with self._means.connect() as robot:
+                self._robot = robot
+                self._outcome = self._as_lost(self._execute(robot))
+                # A connection that is lost needs no stop: its server has stopped the robot, too.
+                if self._outcome.status != "done" and robot.connected:
+                    robot.stop()
+        except RobotError as error:  # the robot cannot be reached
+            if self._outcome is not None and isinstance(error, StopNotConfirmed):
+                self._outcome = _unconfirmed(self._outcome, error)
+            if self._outcome is None:
+                self._outcome = Outcome("failed", str(error), error=type(error).__name__)
+        except Exception:  # noqa: BLE001 - told as a fault of this software
+            _log.exception("run %s ended through a fault", self.run)
+        finally:
+            self._end()
+
+    def _execute(self, robot: Robot) -> Outcome:
+        recall = self._recall
+        closed: list[tuple[str, str]] = []
+        """The places of its rounds that could not be reached, each with the robot's sentence."""
+
+        def on_line(line: int) -> None:
+            self.line = line
+            self._present.happened(happenings.AtLine(line))
+            self._tell("line")
+
+        def call(method: str, arguments: dict[str, Any], line: int) -> Any:
+            if recall is not None and recall.goes_on:
+                return recall.answer(method, arguments)
+            return self._call(robot, method, arguments, line)
+
+        def on_print(text: str) -> None:
+            if recall is None or not recall.goes_on:  # else it was printed before
+                self._print(text)
+
+        execution = Execution(
+            self.approval.program,
+            call,
+            seed=self._means.seed,
+            on_line=on_line,
+            on_print=on_print,
+            on_hold=self._holds,
+            on_closed=lambda place, why: closed.append((place, why)),
+        )
+        self._execution = execution
+        self._tell("state")
+        if self._stop_because is not None:  # stopped before it began
+            execution.stop(self._stop_because)
+        outcome = execution.run()
+        for place, why in closed:
+            self.report("was_closed", place=[place], reason=why)
+        if recall is not None and recall.deviation is not None:
+            return dataclasses.replace(
+                outcome, status="failed", message=recall.deviation, error="Deviates"
+            )
+        return outcome
+
+    def _as_lost(self, outcome: Outcome) -> Outcome:
+        """How a run ended whose robot was lost meanwhile: not by somebody's stop."""
+        if self._lost_because is None or self._stop_because is not None:
+            return outcome
+        if outcome.status != "stopped":
+            return outcome
+        return dataclasses.replace(
+            outcome, status="failed", message=self._lost_because, error=LostConnection.__name__
+        )
+
+    def _end(self) -> None:
+        outcome = self._outcome or Outcome(
+            status="failed", message="The run ended through a fault of this software."
+        )
+        message = None if outcome.status == "done" else outcome.message
+        if outcome.line is not None:
+            self.line = outcome.line
+        try:
+            self._log_states()
+            self._means.log.end(self.run, outcome.status, message)
+        except LogError as error:
+            message = str(error)
+        try:
+            # Those who watch hear of the end before those who wait are told.
+            self._tell("state", state=outcome.status, message=message)
+        finally:
+            # In this order: who finds it over may begin the next run.
+            self._message, self._ended = message, outcome.status
+            self._present.happened(happenings.Ended(self.run, outcome.status, message))
+            self.over.set()
+
+    # --- its calls
+
+    def _call(self, robot: Robot, method: str, arguments: dict[str, Any], line: int) -> Any:
+        """Make a robot call, in pieces if it is paused meanwhile."""
+        left: dict[str, Any] | None = arguments
+        while left is not None:
+            self._begin_driving(robot, method)
+            try:
+                return self._logged_call(robot, method, left, line)
+            except _BrokenOff:
+                assert self._execution is not None
+                with self._gate:
+                    self._drives = False  # from now on nothing else is to be broken off
+                self._come_to_rest(robot)
+                odometer, self._odometer = self._odometer, None
+                if odometer is not None:
+                    here = self._where(robot)
+                    if here is not None:
+                        odometer.at(here)
+                    left = rest_of(method, left, odometer)
+                self._execution.hold()
+            finally:
+                with self._gate:
+                    self._drives, self._odometer = False, None
+        return None
+
+    def _logged_call(self, robot: Robot, method: str, arguments: dict[str, Any], line: int) -> Any:
+        self._calls += 1
+        number, log = self._calls, self._means.log
+        written = msgspec.json.encode(arguments).decode()
+        self._logged(log.call_begins, number, line, method, written)
+        about = {"number": number, "method": method, "arguments": arguments}
+        self._tell("call", **about)
+        began = time.perf_counter()
+        try:
+            if self._stop_because is not None:
+                raise Stopped(self._stop_because)
+            result = getattr(robot, method)(**arguments)
+        except (RobotError, Stopped) as error:
+            seconds = time.perf_counter() - began
+            broken_off = isinstance(error, Stopped) and self._was_broken_off()
+            told = f"{PAUSED}: {_HALTED}" if broken_off else f"{type(error).__name__}: {error}"
+            self._logged(log.call_ends, number, seconds, error=told)
+            self._tell("result", **about, error=told, seconds=seconds)
+            if broken_off:
+                raise _BrokenOff from None
+            raise
+        seconds = time.perf_counter() - began
+        told = msgspec.json.encode(result).decode()
+        self._logged(log.call_ends, number, seconds, result=told)
+        self._tell("result", **about, result=msgspec.to_builtins(result), seconds=seconds)
+        if method == "stop":
+            raise Stopped  # whoever stops the robot, its program is over
+        return result
+
+    def _print(self, text: str) -> None:
+        self._logged(self._means.log.printed, text)
+        self._tell("print", text=text)
+
+    def _logged(self, write: Callable[..., None], *values: Any, **more: Any) -> None:
+        try:
+            self._log_states()
+            write(self.run, *values, **more)
+        except LogError as error:
+            # What is not logged is not done.
+            raise Stopped(str(error)) from error
+
+    def _log_states(self) -> None:
+        """Raises `LogError`."""
+        with self._writing_states:
+            while self._states:
+                self._means.log.state(self.run, *self._states.popleft())
+
+    def _break_off(self) -> None:
+        """Break off the calls of a stopped program until it is over: one may just be on its way to
+        the robot, and reach it after the stop."""
+        while not self.over.wait(BREAK_OFF_EVERY):
+            if self._robot is not None and self._outcome is None:
+                self._robot.cancel()
+
+    # --- a pause
+
+    def _begin_driving(self, robot: Robot, method: str) -> None:
+        """Before a call that turns the wheels: not while they are to stand."""
+        assert self._execution is not None
+        while True:
+            with self._gate:
+                if not self._pauses():
+                    self._broken_off = False
+                    self._drives = method in DRIVING
+                    break
+            self._execution.hold()
+        if method == "localize":
+            self._pose = None  # it is elsewhere on the map than it was
+        if method in MEASURED:
+            self._odometer = Odometer(self._pose or self._where(robot))
+
+    def _halt(self) -> None:
+        """Break off what turns the wheels. Whoever made that call then sees to the rest; if there
+        is none, we do."""
+        robot = self._robot
+        assert robot is not None
+        while True:
+            with self._gate:
+                if not self._pauses() or self._present.state.state == "paused":
+                    return
+                if not self._drives:
+                    break
+                self._broken_off = True
+                robot.cancel()
+            if self.over.wait(BREAK_OFF_EVERY):
+                return
+        # Who broke off sees to it, unless what was to be broken off ended by itself in that moment.
+        if self._present.state.state == "pausing":
+            with contextlib.suppress(RobotError, Stopped):
+                self._come_to_rest(robot)
+
+    def _come_to_rest(self, robot: Robot) -> None:
+        """Be sure that the robot stands, and say so; else stop it. Raises `Stopped`."""
+        has = self._means.knowledge.capabilities
+        if has is not None and self._knows_where:
+            within = has.stop_within + SECONDS_TO_REST
+            if not comes_to_rest(robot, within, lambda: self._stop_because is None):
+                if self._stop_because is None:
+                    self.stop(_DOES_NOT_REST)
+                raise Stopped(self._stop_because or _DOES_NOT_REST)
+        if self._present.state.state == "pausing":
+            self._present.happened(happenings.Halted())
+            self._tell("state")
+
+    def _holds(self) -> None:
+        """The program waits again after a step, between two calls."""
+        if self._present.state.state == "running":
+            self._present.happened(happenings.PauseAsked())
+            self._present.happened(happenings.Halted())
+            self._tell("state")
+
+    def _pauses(self) -> bool:
+        now = self._present.state
+        return now.run == self.run and now.state in HELD
+
+    def _was_broken_off(self) -> bool:
+        return self._broken_off and self._stop_because is None and self._lost_because is None
+
+    def _where(self, robot: Robot) -> Mapping[str, Any] | None:
+        """None if the robot does not know."""
+        if not self._knows_where:
+            return None
+        with contextlib.suppress(RobotError):
+            return pose_of(robot.location())
+        return None
+
+    @property
+    def _knows_where(self) -> bool:
+        has = self._means.knowledge.capabilities
+        return has is not None and "location" in has.methods
+
+    # --- helpers
+
+    def _control(self, act: Callable[[Execution], None], happening: happenings.Happening) -> None:
+        if self._outcome is not None or self._execution is None:
+            raise NotPossible("No program is running.")
+        with self._gate:
+            act(self._execution)
+            self._present.happened(happening)
+        self._tell("state")
+
+    def _state(self) -> State:
+        """Until it is over it goes on, whatever the robot is at."""
+        match self._present.state.state:
+            case "running" | "pausing" | "paused" as now:
+                return now
+        return "running"
+
+    def _tell(self, what: str, **more: Any) -> None:
+        data = {
+            "what": what,
+            "run": self.run,
+            "state": self._ended or self._state(),
+            "line": self.line,
+            "message": self._message,
+        }
+        self._means.publish("program", {**data, **more})
+
+
+def _unconfirmed(outcome: Outcome, error: StopNotConfirmed) -> Outcome:
+    """How a run ended whose robot has not said that it stands: not "stopped"."""
+    if outcome.status == "stopped":
+        return dataclasses.replace(
+            outcome, status="failed", message=str(error), error=type(error).__name__
+        )
+    return dataclasses.replace(outcome, message=f"{outcome.message} {error}")
