@@ -116,7 +116,7 @@ class Execution:
         self._on_call = on_call
         self._on_hold = on_hold
         self._on_closed = on_closed
-        self._rounds: frozenset[int] = frozenset()
+        self._visits: frozenset[int] = frozenset()
         self._closed: tuple[str, str, int] | None = None
         self._visited = False
         self._interpreter = Interpreter(self._limits, on_print or _ignore, seed)
@@ -180,7 +180,7 @@ class Execution:
             return unfit
         try:
             with self._interpreter as interpreter:
-                program, self._rounds = going_on(self._program)
+                program, self._visits = going_on(self._program)
                 event = interpreter.start(program)
                 while not isinstance(event, Ended):
                     event = self._handle(interpreter, event)
@@ -254,7 +254,7 @@ class Execution:
             name, message = type(error).__name__, str(error)
             self._record(asked, arguments, begun, error=name, message=message)
             self._check_stopped()
-            if asked.line in self._rounds and asked.method == METHOD and type(error) in CLOSED:
+            if asked.line in self._visits and asked.method == METHOD and type(error) in CLOSED:
                 self._closed = self._closed or (name, message, asked.line)
                 if self._on_closed is not None:
                     self._on_closed(str(arguments.get("place")), message)
@@ -266,7 +266,7 @@ class Execution:
             raise
         self._record(asked, arguments, begun, result=result)
         self._check_stopped()
-        self._visited = self._visited or (asked.line in self._rounds and asked.method == METHOD)
+        self._visited = self._visited or (asked.line in self._visits and asked.method == METHOD)
         return interpreter.answer(result)
 
     def _wait_while_paused(self) -> None:

@@ -19,6 +19,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from robot_api.errors import Blocked, NotPossible
+from sandbox.source import unix_newlines
 
 CLOSED: Final = (Blocked, NotPossible)
 """What a `goto` fails with where a place cannot be reached."""
@@ -26,8 +27,9 @@ METHOD: Final = "goto"
 
 
 def going_on(program: str) -> tuple[str, frozenset[int]]:
-    """The program as it is run, line by line the same, and the lines of its rounds: there a call of
+    """The program as it is run, line by line the same, and the lines of its visits: there a call of
     `goto` that is answered with False ends the visit. The program must be free of syntax errors."""
+    program = unix_newlines(program)
     lines = program.split("\n")
     found: set[int] = set()
     for visit in _visits(ast.parse(program), in_try=False):

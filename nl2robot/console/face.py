@@ -24,9 +24,11 @@ from nl2robot.console.forgetting import Forgetting
 from nl2robot.console.part import Backstage, Part
 from nl2robot.console.tablet import FaceTablet
 from nl2robot.console.visitor import LANGUAGES, texts, visitor_of
+from nl2robot.runlog import LogError
 from nl2robot.wire import an_object
 from robot_api.driver import Event
 from robot_api.drivers import ComposedDriver
+from robot_api.errors import NotPossible
 from robot_api.methods import MAX_TEXT
 from robot_api.server import Context, Service
 
@@ -265,14 +267,17 @@ def _services(
 def _stood_in(
     backstage: Backstage, tablet: FaceTablet, p: Mapping[str, Any], context: Context
 ) -> bool:
-    """Logged before it counts: a program may be over at once."""
-    run = backstage.runner.state()
+    """The answer of somebody at the desk; the log says whose. Raises `NotPossible`."""
+    run = backstage.runner.state()  # before: with the answer a program may be over
     first = tablet.touched(context.connection, p["number"], p["answer"])
     if first and run is not None:
         words = texts("desk", p.get("language", "en"))
         who = p["who"].strip() or words["somebody"]
         said = words["answered_for"].format(who=who, answer=p["answer"])
-        backstage.runner.log.printed(run.run, said)
+        try:
+            backstage.runner.log.printed(run.run, said)
+        except LogError as error:
+            raise NotPossible(str(error)) from error
     return first
 
 

@@ -342,8 +342,9 @@ class _Normaliser:
         return self._signed(match, told) + (self._end_of_sentence(match))
 
     def _counted(self, one: str, many: str, value: float) -> str:
-        few = value == 1 if self.data["point"] != "virgule" else abs(value) < 2
-        return one if few else many
+        below = self.data.get("singular_below")
+        singular = value == 1 if below is None else abs(value) < below
+        return one if singular else many
 
     def _money_first(self, match: re.Match[str]) -> str:
         unit = next(each for each in self.data["money"] if each in match[0])
@@ -365,11 +366,8 @@ class _Normaliser:
     def _range(self, match: re.Match[str]) -> str:
         return f"{self.numbers.said(match['number'])} {self.data['to']} "
 
-    def _times(self, match: re.Match[str]) -> str | None:
-        if match.string[match.end() :].lstrip()[:1].isdecimal():  # "3 x 4"
-            return f"{self.numbers.said(match['number'])} {self.data['times']}"
-        gender = "m" if "digits_behind_point" not in self.data else ""
-        return f"{self.numbers.said(match['number'], gender)} {self.data['times']}"
+    def _times(self, match: re.Match[str]) -> str:
+        return f"{self.numbers.said(match['number'])} {self.data['times']}"
 
     def _fraction(self, match: re.Match[str]) -> str:
         one, two = self.numbers.said(match["one"]), self.numbers.said(match["two"])

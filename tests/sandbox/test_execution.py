@@ -461,3 +461,12 @@ def alive(pid: str) -> bool:
 def slack() -> float:
     """How much longer things may take where many tests share few cores."""
     return 10.0
+
+
+@pytest.mark.parametrize("newline", ["\r", "\r\n", "\n"])
+@pytest.mark.parametrize("limits", [Limits(), Limits(rounds=100)])
+def test_lines_may_end_as_on_any_system(newline: str, limits: Limits) -> None:
+    program = 'x = 1\nfor place in robot.places("office"):\n    robot.goto(place)\n    x += 1\n'
+    ward = Ward()
+    assert ward.run(program.replace("\n", newline), limits=limits).status == "done"
+    assert ward.calls == [("places", 2), ("goto", 3), ("goto", 3)]
