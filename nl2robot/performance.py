@@ -355,7 +355,8 @@ class Performance:
                 assert self._execution is not None
                 with self._gate:
                     self._drives = False  # from now on nothing else is to be broken off
-                self._come_to_rest(robot)
+                # Nothing else moves it: it comes to rest even if it is to go on by now.
+                self._come_to_rest(robot, lambda: self._stop_because is None)
                 odometer, self._odometer = self._odometer, None
                 if odometer is not None:
                     here = self._where(robot)
@@ -455,19 +456,27 @@ class Performance:
             if self.over.wait(BREAK_OFF_EVERY):
                 return
         # Who broke off sees to it, unless what was to be broken off ended by itself in that moment.
-        if self._present.state.state == "pausing":
-            with contextlib.suppress(RobotError, Stopped):
-                self._come_to_rest(robot)
+        with contextlib.suppress(RobotError, Stopped):
+            self._come_to_rest(robot, self._is_to_stand)
 
-    def _come_to_rest(self, robot: Robot) -> None:
-        """Be sure that the robot stands, and say so; else stop it. Raises `Stopped`."""
+    def _is_to_stand(self) -> bool:
+        """Whether a pause waits for a robot that nobody drives. If not, it may drive again: whoever
+        broke off has seen it stand, and the program went on."""
+        waits = self._stop_because is None and self._present.state.state == "pausing"
+        return waits and not self._drives
+
+    def _come_to_rest(self, robot: Robot, awaited: Callable[[], bool]) -> None:
+        """Be sure that the robot stands, and say so; else stop it, unless that is not `awaited` any
+        longer. Raises `Stopped`."""
         has = self._means.knowledge.capabilities
         if has is not None and self._knows_where:
             within = has.stop_within + SECONDS_TO_REST
-            if not comes_to_rest(robot, within, lambda: self._stop_because is None):
-                if self._stop_because is None:
-                    self.stop(_DOES_NOT_REST)
-                raise Stopped(self._stop_because or _DOES_NOT_REST)
+            if not comes_to_rest(robot, within, awaited) and awaited():
+                self.stop(_DOES_NOT_REST)
+        if self._stop_because is not None:
+            raise Stopped(self._stop_because)
+        if not awaited():
+            return
         if self._present.state.state == "pausing":
             self._present.happened(happenings.Halted())
             self._tell("state")

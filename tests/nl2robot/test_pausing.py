@@ -6,6 +6,7 @@ import threading
 
 import pytest
 
+from nl2robot import performance
 from nl2robot.pausing import Odometer, rest_of
 from nl2robot.runlog import RunLog
 from nl2robot.station import robot_station, simulated_station
@@ -147,6 +148,35 @@ def test_a_step_makes_the_rest_of_what_was_broken_off(slow_operator, slow_statio
     assert slow_station.simulation.robot.place == "ward a"
     request("program.resume")
     assert slow_operator.wait(run).state == "done"
+
+
+def test_whoever_looks_late_whether_the_robot_stands_stops_nothing(
+    slow_operator, slow_station, monkeypatch
+) -> None:
+    """Two look: whoever broke the movement off, and whoever made it. The one has seen the robot
+    stand and drives on when the other comes to look."""
+    looks, drives = threading.Event(), threading.Event()
+    rests = performance.comes_to_rest
+
+    def comes_to_rest(robot, within, goes_on) -> bool:
+        if threading.current_thread().name == "halt":
+            looks.set()
+            assert drives.wait(60)
+            return rests(robot, 0.05, goes_on)
+        assert looks.wait(60)
+        return rests(robot, within, goes_on)
+
+    monkeypatch.setattr("nl2robot.performance.comes_to_rest", comes_to_rest)
+    watch, request = Watching(slow_operator), slow_operator.robot.request
+    run = start(slow_operator, DRIVE)
+    watch.until_fast()
+    request("program.pause")
+    watch.until_state("paused")
+    request("program.resume")
+    watch.until_fast()
+    drives.set()
+    assert slow_operator.wait(run).state == "done"
+    assert slow_station.simulation.robot.place == "ward b"
 
 
 def test_a_robot_at_another_server_is_paused_as_well(log, tmp_path, sit_down) -> None:
