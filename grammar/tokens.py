@@ -106,6 +106,13 @@ def plain(text: str) -> str:
     return unicodedata.normalize("NFC", text).lower().replace("’", "'").replace("`", "'")
 
 
+def without_quotations(text: str) -> str:
+    """The words of whoever speaks, without those that they only quote."""
+    return "".join(
+        " " if match.lastgroup == "quote" else match.group() for match in _PATTERN.finditer(text)
+    )
+
+
 def without_accents(word: str) -> str:
     """ "élève" -> "eleve", "cœur" -> "coeur"."""
     apart = unicodedata.normalize("NFD", word.replace("œ", "oe").replace("æ", "ae"))

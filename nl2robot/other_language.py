@@ -4,7 +4,7 @@
     question("de", "en")                      # "You wrote in German. Shall I go on in German? ..."
 
 A word counts for a language if it stands in its rules and lists, and not in those of the language
-that is spoken; names of places and people stand in neither. The other languages are loaded the
+that is spoken; names of places and people stand in neither, and what is quoted counts for none. The other languages are loaded the
 first time that somebody is not understood.
 """
 
@@ -15,6 +15,7 @@ import re
 
 from grammar.language import languages, load_language
 from grammar.requests import agreed
+from grammar.tokens import without_quotations
 from nl2robot.words import words_in
 
 _WORD = re.compile(r"[^\W\d_]+")
@@ -26,7 +27,7 @@ spoken; of one or two words, all."""
 def language_of(text: str, language: str) -> str | None:
     """The code of the language that a text seems to be in, if it is not the one that is spoken;
     None if that is not sure."""
-    words = _WORD.findall(text.casefold())
+    words = _WORD.findall(without_quotations(text).casefold())
     found: list[tuple[int, str]] = []
     for code in languages():
         if code == language:
@@ -50,9 +51,20 @@ def offer(code: str, language: str) -> str:
     return str(words["offer_language"]).format(name=words["language_names"][code])
 
 
+def hint(code: str, language: str) -> str:
+    """What whoever cannot be asked may do."""
+    words = words_in(language)
+    return str(words["other_language"]).format(name=words["language_names"][code], code=code)
+
+
 def accepted(answer: str, code: str, language: str) -> bool:
     """Whether that was a yes, in either language."""
     return any(agreed(answer, each) for each in (code, language))
+
+
+def declined(answer: str, code: str, language: str) -> bool:
+    """Whether that was a no, in either language."""
+    return any(agreed(answer, each) is False for each in (code, language))
 
 
 @functools.cache

@@ -13,13 +13,15 @@ import threading
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
+import msgspec
+
 from nl2robot.answers import Sentence
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.going_on import asks_to_go_on
 from nl2robot.going_on import texts as going_on_texts
 from nl2robot.harmless import approver, needs_no_question
 from nl2robot.operator import Operator
-from nl2robot.other_language import accepted, language_of, question
+from nl2robot.other_language import accepted, hint, language_of, question
 from nl2robot.performance import Approval, Status
 from nl2robot.review import Review
 from nl2robot.state import GOING, HELD
@@ -136,17 +138,21 @@ class Session:
 
     def _in_their_language(self, utterance: str, translation: Translation) -> Translation:
         """What was not understood may be in another language: then it is asked, once for each,
-        whether to go on in that."""
-        if translation.status != "rejected" or self.approve_all:
+        whether to go on in that. Where nobody can be asked, they are told."""
+        if translation.status != "rejected":
             return translation
         code = language_of(utterance, self.language)
-        if code is None or code in self._declined or not self.terminal.somebody_is_there:
+        if code is None:
             return translation
-        if not accepted(
-            self.terminal.ask(f"{question(code, self.language)} "), code, self.language
-        ):
-            self._declined.add(code)
-            return translation
+        if self.approve_all or not self.terminal.somebody_is_there:
+            message = f"{translation.message or ''} {hint(code, self.language)}".strip()
+            return msgspec.structs.replace(translation, message=message)
+        if code not in self._declined:
+            answer = self.terminal.ask(f"{question(code, self.language)} ")
+            if not accepted(answer, code, self.language):
+                self._declined.add(code)
+        if code in self._declined:
+            return self._translate(utterance)  # said again: as it stands
         with contextlib.suppress(RobotError):  # one without a voice for it is written to in it
             self.operator.robot.set_language(code)
         self.language = code

@@ -116,6 +116,9 @@ class Talk:
     """The last one with a program."""
     last_at: float = 0.0
     """When that was: seconds since the epoch."""
+    refused: str = ""
+    """The words that were not understood last. Said again, they are meant as they stand, whatever
+    language they seem to be in."""
     who: str = ""
     """Who speaks; noted with the routines that they teach."""
 
@@ -173,7 +176,8 @@ def translate(
     before = talk.context.text if talk.context else ""
     turn = _turn(utterance, knowledge, language, talk.context)
     chosen = _chosen(utterance, turn, talk)
-    turn, answer = (turn, chosen) if chosen else _planned(turn, knowledge, planner, watch)
+    insists, talk.refused = talk.refused == utterance, ""
+    turn, answer = (turn, chosen) if chosen else _planned(turn, knowledge, planner, watch, insists)
     if watch.cancelled:  # nobody waits for it, so nothing that is said later can refer to it
         raise Interrupted
     match answer:
@@ -187,6 +191,7 @@ def translate(
             if slip is not None and isinstance(answer, Refusal):
                 return _answer(utterance, slip, None, started)
             talk.context = answer.context
+            talk.refused = utterance if isinstance(answer, Refusal) else ""
             message = _with_trouble(answer.message, knowledge)
             status: Status = "clarify" if isinstance(answer, Question) else "rejected"
             return _without_program(utterance, status, message, answer.suggestions, started)
@@ -215,9 +220,13 @@ def _turn(utterance: str, knowledge: Knowledge, language: str, context: Context 
 Decided = Service | Question | Refusal | Open | Chosen
 
 
-def _planned(turn: Turn, knowledge: Knowledge, name: str, watch: Watch) -> tuple[Turn, Decided]:
+def _planned(
+    turn: Turn, knowledge: Knowledge, name: str, watch: Watch, insists: bool
+) -> tuple[Turn, Decided]:
     """What the planner of this name makes of a turn. The rules come first where nobody has chosen:
-    what they know they know at once; what they do not, a language model may."""
+    what they know they know at once; what they do not, a language model may, unless it seems to be
+    in another language than is spoken here: a model would guess, where one has to ask. Whoever says
+    the same again `insists`."""
     first = "grammar" if name == AUTO else name
     decided = _decided(turn, planner(first).plan(turn, watch), knowledge)
     if isinstance(decided, Refusal):
@@ -227,6 +236,8 @@ def _planned(turn: Turn, knowledge: Knowledge, name: str, watch: Watch) -> tuple
     if name != AUTO or not turn.tokens or not available("model"):
         return turn, decided
     if not _is_open(turn, decided):
+        return turn, decided
+    if isinstance(decided, Refusal) and not insists and _seems_foreign(turn):
         return turn, decided
     by_model = _decided(turn, planner("model").plan(turn, watch), knowledge)
     if isinstance(by_model, Refusal) and not by_model.final:
@@ -245,6 +256,12 @@ def _is_open(turn: Turn, decided: Decided) -> bool:
             return False
         return not is_sure(turn, decided.considered) or _loses(turn, decided.plan)
     return isinstance(decided, Refusal) and not decided.final
+
+
+def _seems_foreign(turn: Turn) -> bool:
+    from nl2robot.other_language import language_of
+
+    return language_of(turn.text, turn.language.code) is not None
 
 
 def _loses(turn: Turn, plan: Plan) -> bool:

@@ -46,14 +46,11 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _show_other_language(line: str, language: str) -> None:
-    from nl2robot.other_language import language_of
-    from nl2robot.words import words_in
+    from nl2robot.other_language import hint, language_of
 
     code = language_of(line, language)
     if code is not None:
-        words = words_in(language)
-        name = words["language_names"][code]
-        print(words["other_language"].format(name=name, code=code), file=sys.stderr)
+        print(hint(code, language), file=sys.stderr)
 
 
 def _translated(

@@ -27,7 +27,7 @@ from nl2robot.going_on import asks_to_go_on
 from nl2robot.going_on import texts as going_on_texts
 from nl2robot.going_on import told as rest_told
 from nl2robot.harmless import approver, needs_no_question
-from nl2robot.other_language import accepted, language_of, question
+from nl2robot.other_language import accepted, declined, language_of, question
 from nl2robot.review import Review, digest
 from nl2robot.session import STOP
 from nl2robot.state import HELD
@@ -101,6 +101,8 @@ class Dialogue:
         """Runs that were started here and are not over."""
         self._offered: tuple[str, str] | None = None
         """A language that was offered, and what was said in it."""
+        self._declined: set[str] = set()
+        """The languages that nobody wanted to go on in."""
         self._language: tuple[str, str] | None = None
         """A page's language, and the one that is spoken on it instead."""
         self._backstage = backstage
@@ -173,10 +175,13 @@ class Dialogue:
 
     def _spoken_in(self, words: str, page: str) -> tuple[str, str]:
         """What is to be understood, and in which language: the page's, or the one that was offered
-        on it and accepted; then what was said before comes first."""
+        on it and accepted. What was said before such an offer is answered comes first."""
         self._tell(Line("you", words))
         offered, self._offered = self._offered, None
-        if offered is not None and accepted(words, offered[0], page):
+        if offered is not None and declined(words, offered[0], page):
+            code, words = offered
+            self._declined.add(code)
+        elif offered is not None and accepted(words, offered[0], page):
             code, words = offered
             self._language = (page, code)
             if self._backstage.runner.present.state.run is None:
@@ -184,12 +189,14 @@ class Dialogue:
                     self._backstage.driver.call("set_language", {"code": code}, StopFlag())
         if self._language is not None and self._language[0] == page:
             return words, self._language[1]
+        if self._declined and language_of(words, page) in self._declined:
+            self._backstage.talks.of(self.name).refused = words  # meant as it stands
         return words, page
 
     def _offering(self, words: str, translation: Translation, language: str) -> Translation:
         """What was not understood may be in another language: then that one is offered."""
         code = language_of(words, language) if translation.status == "rejected" else None
-        if code is None:
+        if code is None or code in self._declined:
             return translation
         self._offered = (code, words)
         yes = words_in(code)["accept"]

@@ -16,7 +16,7 @@ from nl2robot.other_language import accepted, language_of, question
 from nl2robot.present import Present
 from nl2robot.review import Review, review
 from nl2robot.talks import Talks
-from nl2robot.translation import translate
+from nl2robot.translation import Talk, translate
 from nl2robot.words import words_in
 from sim.world import load_world
 
@@ -164,6 +164,44 @@ def test_in_the_console_too() -> None:
     assert "Empfang" in dialogue.lines[-1].text
     dialogue.say("va à la pharmacie", "fr", "Nurse Kim")  # the page's language was changed
     assert dialogue.lines[-1].text == "Je vais aller à la pharmacie."
+
+
+def test_who_declines_in_the_console_is_not_asked_again() -> None:
+    dialogue = Dialogue(_backstage(Knowledge(load_world(DEFAULT_WORLD))), "test")
+    dialogue.say("fahr zur Apotheke", "en", "Nurse Kim")
+    dialogue.say("no", "en", "Nurse Kim")
+    assert dialogue.lines[-1].tone != "question"
+    assert "fahr" in dialogue.lines[-1].text
+    dialogue.say("fahr ins Labor", "en", "Nurse Kim")
+    assert dialogue.lines[-1].tone != "question"
+
+
+# --- no model guesses at them -------------------------------------------------------------------
+
+FOREIGN = "Bitte schau in jedem Zimmer nach, ob dort ein Rollstuhl steht, und sag es mir"
+
+
+def test_a_model_is_not_asked_about_what_is_in_another_language(scripted) -> None:
+    """It would make something of it; a wrong program is worse than a question."""
+    writer = scripted({FOREIGN: ['for room in places("ward"):\n    goto(room)\n']})
+    talk = Talk()
+    translation = translate(FOREIGN, KNOWLEDGE, "en", talk=talk)
+    assert translation.status == "rejected" and not writer.asked
+    again = translate(FOREIGN, KNOWLEDGE, "en", talk=talk)  # who insists is meant as it stands
+    assert writer.asked and again.status != "rejected"
+
+
+def test_what_is_quoted_in_another_language_is_for_the_model_all_the_same(scripted) -> None:
+    said = 'the folks in ward a might enjoy a "Ich wünsche Ihnen einen schönen guten Morgen"'
+    writer = scripted({said: ['goto("ward a")\nsay("Ich wünsche Ihnen ...")\n']})
+    translate(said, KNOWLEDGE, "en")
+    assert writer.asked
+
+
+def test_where_nobody_can_be_asked_they_are_told(start) -> None:
+    run = start("run", "fahr zur Apotheke", "--yes")
+    assert run.end() == 3
+    assert "This seems to be German. Say so with --lang de." in " ".join(run.output.split())
 
 
 class _Runner:
