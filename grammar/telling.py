@@ -4,17 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from typing import assert_never
+from itertools import chain
+from typing import Final, assert_never
 
 from grammar import plan as p
 from grammar.identifiers import speaks_of
 from grammar.kinds import is_list, is_record
 from grammar.pauses import may_end
 from grammar.reading import CodeStep, Function
+from grammar.roles import SORTS, role
 from grammar.speech import fill, fitting, gaps
 from grammar.told import Told
 from grammar.told_values import ValueTeller, as_call, signed, sort_of
-from grammar.traversal import walk
+from grammar.traversal import nodes, walk
+from robot_api.methods import METHODS
+
+_PEOPLE_TOO: Final = frozenset({"find", "sees", "count"})
+"""What takes a thing or a person."""
 
 
 @dataclass
@@ -102,7 +108,9 @@ class Teller(ValueTeller):
                 yield self.words.values["item number"]
             case p.ForEach():
                 sort = readable.rstrip("0123456789").strip()
-                item = self.words.values.get(f"item {sort}", self.words.values["item"])
+                kinds = (sort, *(("word",) if len(sort) > 2 else ()), *_taken_for(step))
+                known = (self.words.values.get(f"item {kind}") for kind in kinds)
+                item = next((each for each in known if each), self.words.values["item"])
                 yield fill(item, {"name": sort})
             case _:
                 kept = self.kept(name, step)
@@ -307,6 +315,20 @@ class Teller(ValueTeller):
                 return word
             return fill(self.words.times.number, {"number": self.value(times)})
         return fill(self.words.times.value, {"value": self.value(times)})
+
+
+def _taken_for(loop: p.ForEach) -> Iterator[str]:
+    """What the item of a loop is, by what lists it, then by what robot methods take it for: a
+    place, a person, a thing."""
+    if isinstance(loop.items, p.Ask):
+        yield SORTS.get(loop.items.method, "")
+    item = p.Recall(loop.variable)
+    for node in nodes(loop.steps):
+        if isinstance(node, p.Call | p.Ask) and node.method not in _PEOPLE_TOO:
+            method = METHODS[node.method]
+            for parameter in chain.from_iterable(method.forms):
+                if node.arguments.get(parameter.name) == item:
+                    yield SORTS.get(role(method, parameter), "")
 
 
 def _loop_names(loops: Iterable[p.ForEach]) -> set[str]:

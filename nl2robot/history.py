@@ -14,7 +14,7 @@ from typing import Any, Final, Protocol
 from grammar.explain import explain_program
 from grammar.language import Language
 from grammar.lexicon import Lexicon
-from grammar.naming import Naming, joined_up, naming, place_called
+from grammar.naming import Naming, joined_up, naming, place_called, the
 from grammar.requests import Request
 from nl2robot.runlog import LoggedCall, Run
 from sim.world import World
@@ -258,17 +258,16 @@ class Witness:
         sought = self.sought()
         if not sought:
             return self.pack.phrase("nothing_sought")
-        return self.join(
-            *(
-                self.pack.phrase("was_found" if found else "not_found", thing=self.thing(thing))
-                for thing, found in sought
-            )
+        told = (
+            self.pack.phrase("was_found" if found else "not_found", thing=self.thing(thing))
+            for thing, found in sought
         )
+        return joined_up(self.join(*told), self.pack)
 
     def thing(self, name: str) -> str:
         words = self.naming.called(name)
         known = any(each.name.lower() == name.lower() for each in self.lexicon.people)
-        return words if known else self.pack.phrase("the", noun=words)
+        return words if known else the(words, self.pack)
 
     @staticmethod
     def join(*sentences: str) -> str:

@@ -4,8 +4,8 @@
     question("de", "en")                      # "You wrote in German. Shall I go on in German? ..."
 
 A word counts for a language if it stands in its rules and lists, and not in those of the language
-that is spoken; names of places and people stand in neither, and what is quoted counts for none. The other languages are loaded the
-first time that somebody is not understood.
+that is spoken; names of places and people stand in neither, and what is quoted counts for none. The
+other languages are loaded the first time that somebody is not understood.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from grammar import plan as p
 from grammar.explain import explain, explain_program, explain_steps
 from grammar.program import write_program
-from grammar.reading import read_program
+from grammar.reading import parse_program, read_program
 from grammar.speech import gaps, languages, speech
 from grammar.traversal import walk
 from robot_api.methods import METHODS
@@ -467,3 +467,37 @@ def test_what_a_robot_notes_for_itself_need_not_be_told() -> None:
         explain(plan, deeds_only=True) == "I will go to the lobby and then go to where I started."
     )
     assert explain(p.Plan(plan.steps[:1]), deeds_only=True) == "I will remember where I am."
+
+
+@pytest.mark.parametrize("variable", ["room", "station", "r", "zimmer", "lieu"])
+@pytest.mark.parametrize(
+    ("language", "goes"),
+    [("de", "zum jeweiligen Ort fahren"), ("fr", "aller à ce lieu"), ("en", "go to this ")],
+)
+def test_what_a_loop_goes_round_is_told_by_what_it_is_not_by_its_name(
+    variable: str, language: str, goes: str
+) -> None:
+    """The names in a program are for those who read it; a language model calls them as it likes."""
+    program = f'for {variable} in robot.places("ward"):\n    robot.goto({variable})\n'
+    told = explain_steps(parse_program(program, language), language)[1][1]
+    assert told == (
+        f"{goes}{variable if len(variable) > 2 else 'place'}" if language == "en" else goes
+    )
+
+
+def test_people_and_things_are_told_so_as_well() -> None:
+    met = "for x in robot.people():\n    robot.find(x)\n"
+    held = 'for x in ["cup", "book"]:\n    robot.grab(x)\n'
+    told = [
+        explain_steps(parse_program(program, code), code)[1][1]
+        for code in ("en", "de", "fr")
+        for program in (met, held)
+    ]
+    assert told == [
+        "look for this person from place to place",
+        "take this thing",
+        "die jeweilige Person von Ort zu Ort suchen",
+        "den jeweiligen Gegenstand nehmen",
+        "chercher cette personne de lieu en lieu",
+        "prendre cet objet",
+    ]

@@ -1,5 +1,7 @@
 """Whoever asked is told what came of it: in sentences, from what happened, in their language."""
 
+from queue import Queue
+
 import pytest
 
 from nl2robot.session import Session
@@ -137,6 +139,21 @@ def test_in_other_languages(operator, language, there) -> None:
     assert nurse.reads('robot.goto("ward a")\nrobot.say("Hm.")\n') == [there]
 
 
+@pytest.mark.parametrize(
+    ("language", "thing", "told"),
+    [
+        ("en", "wheelchair", "I could not find the wheelchair."),
+        ("de", "Rollstuhl", "Ich habe den Rollstuhl leider nicht gefunden."),
+        ("de", "cup", "Gefunden: die Tasse."),
+        ("fr", "fauteuil roulant", "Je n'ai pas trouvé le fauteuil roulant."),
+        ("fr", "ordinateur", "Je n'ai pas trouvé l'ordinateur."),
+    ],
+)
+def test_what_is_sought_has_its_article(nurse, language: str, thing: str, told: str) -> None:
+    nurse.language = language
+    assert nurse.reads(f'robot.find("{thing}", "ward b")\n')[0] == told
+
+
 def test_much_is_told_in_part(nurse) -> None:
     told = nurse.reads('for number in range(40):\n    robot.say(f"{number}")\n')
     assert told[:2] == ["0", "1"] and len(told) == 31
@@ -166,17 +183,19 @@ def test_who_failed_tells_what_was_done_before(nl2robot, tmp_path) -> None:
 
 
 def test_the_voice_says_what_the_robot_has_not_said(operator) -> None:
-    heard: list[str] = []
-    operator.watch(lambda kind, data: heard.append(data["text"]), "speech")
+    heard: Queue[str] = Queue()
+    operator.watch(lambda kind, data: heard.put(data["text"]), "speech")
     terminal = Terminal()
     terminal.aloud = True
     session = Session(operator, terminal, approve_all=True)
     session.perform("what time is it?")
-    assert heard == ["It is 08:00."], "and not a second time"
+    assert heard.get(timeout=30) == "It is 08:00."  # and not a second time
     session.perform_program('robot.goto("ward b")\nrobot.count("person")\n')
-    assert heard[1:] == ["Number of people in ward b: 1."]
+    assert heard.get(timeout=30) == "Number of people in ward b: 1."
     session.perform("thank you")
-    assert heard[2:] == ["You are welcome."]
+    assert heard.get(timeout=30) == "You are welcome."
     terminal.aloud = False
     session.perform("hello")
-    assert len(heard) == 3
+    terminal.aloud = True
+    session.perform("good morning")
+    assert heard.get(timeout=30).startswith("Good morning")
