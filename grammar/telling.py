@@ -109,8 +109,8 @@ class Teller(ValueTeller):
             case p.ForEach():
                 sort = readable.rstrip("0123456789").strip()
                 kinds = (sort, *(("word",) if len(sort) > 2 else ()), *_taken_for(step))
-                known = (self.words.values.get(f"item {kind}") for kind in kinds)
-                item = next((each for each in known if each), self.words.values["item"])
+                forms = (self.words.values.get(f"item {kind}") for kind in kinds)
+                item = next(filter(None, forms), self.words.values["item"])
                 yield fill(item, {"name": sort})
             case _:
                 kept = self.kept(name, step)
