@@ -2,6 +2,7 @@
 
 import logging
 import os
+import signal
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,10 @@ from nl2robot.language_model.scripted import ScriptedWriter
 settings.register_profile("nl2robot", deadline=None, derandomize=bool(os.environ.get("CI")))
 settings.load_profile("nl2robot")
 
+
+# A shell that starts the tests in its background has them, and all that they start, ignore Ctrl-C.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # What the rules do is tested without a language model that may be installed; who tests that asks
 # for it.

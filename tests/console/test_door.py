@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import stat
+import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -213,13 +214,13 @@ def test_an_unknown_address_has_a_page_with_stop_on_it(
     look: Look, served: Served, language: str, title: str, stop: str
 ) -> None:
     with served.robot() as robot:
-        stopped: list[str] = []
-        robot.subscribe("stopped", lambda kind, data: stopped.append(kind))
+        stopped = threading.Event()
+        robot.subscribe("stopped", lambda kind, data: stopped.set())
         page = look("/ward/7", language=language, width=390, height=844)
         expect(page.get_by_role("heading", level=1)).to_have_text(title)
         page.get_by_role("button", name=stop, exact=True).click()
         expect(page.get_by_role("alert")).to_be_visible()
-        assert stopped == ["stopped"]
+        assert stopped.wait(20)
     page.get_by_role("link").first.click()
     expect(page.locator("#connection")).to_have_attribute("data-state", "connected")
 

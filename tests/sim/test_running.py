@@ -61,29 +61,32 @@ def test_halt_comes_through_while_time_races(small_ward) -> None:
 
 
 def test_halt_interrupts_all_and_no_except_exception_swallows_it(small_ward) -> None:
-    simulation = Simulation(small_ward)
     outcomes = []
+    with Simulation(small_ward, speed=1) as simulation:  # nothing ends before all have begun
 
-    def caller(behaviour) -> None:
-        try:
-            simulation.run(behaviour, threading.Event())
-        except Exception:  # noqa: BLE001 - what a program may do
-            outcomes.append("swallowed")
-        except Interrupted:
-            outcomes.append("interrupted")
+        def caller(behaviour) -> None:
+            try:
+                simulation.run(behaviour, threading.Event())
+            except Exception:  # noqa: BLE001 - what a program may do
+                outcomes.append("swallowed")
+            except Interrupted:
+                outcomes.append("interrupted")
 
-    behaviours = [simulation.drive_to(11, 1.5), simulation.wait(1e6), simulation.speak("x" * 2000)]
-    started = [False] * 3
-    threads = [threading.Thread(target=caller, args=(b,)) for b in behaviours]
-    for thread in threads:
-        thread.start()
-    while len(simulation._runner._tasks) < len(started):
-        pass
-    simulation.halt()
-    for thread in threads:
-        thread.join(5)
-    assert outcomes == ["interrupted"] * 3
-    assert simulation.robot.speed == 0
+        behaviours = [
+            simulation.drive_to(11, 1.5),
+            simulation.wait(1e6),
+            simulation.speak("x" * 2000),
+        ]
+        threads = [threading.Thread(target=caller, args=(each,)) for each in behaviours]
+        for thread in threads:
+            thread.start()
+        while len(simulation._runner._tasks) < len(threads):
+            pass
+        simulation.halt()
+        for thread in threads:
+            thread.join(5)
+        assert outcomes == ["interrupted"] * 3
+        assert simulation.robot.speed == 0
 
 
 def test_several_callers_share_the_same_time(small_ward) -> None:

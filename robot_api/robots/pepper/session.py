@@ -19,6 +19,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from traceback import clear_frames
 from typing import Any, Final
 
 from robot_api.capabilities.base import POLL
@@ -130,7 +131,10 @@ class Wire:
                     with suppress(RobotError):
                         self.begin_stop(*each)
                 raise
-            return line.answered(running, f"{service}.{method}", POLL)
+            else:
+                return line.answered(running, f"{service}.{method}", POLL)
+            finally:
+                del running
 
     def each_time(self, prepare: Callable[[Line], None]) -> None:
         """Do it now, and whenever the robot is reached anew, which may have been restarted
@@ -185,6 +189,10 @@ class Wire:
             self._calls += 1
         try:
             yield
+        except BaseException as error:
+            # What it holds of `qi` comes back with the call, not with whoever handles the error.
+            clear_frames(error.__traceback__)
+            raise
         finally:
             with self._came_back:
                 self._calls -= 1
