@@ -9,7 +9,7 @@ from urllib.parse import quote
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.console.conftest import Look, Picture, Served
+from tests.console.conftest import SOON, Look, Picture, Served
 
 
 def say(page: Page, words: str) -> None:
@@ -20,8 +20,9 @@ def say(page: Page, words: str) -> None:
 def read_all(page: Page) -> None:
     """Look at all that is laid before one, as far as the screen shows it at once."""
     expect(page.locator("#decide[data-review]")).to_be_attached()
-    for _ in range(60):
-        if not page.locator("#read-on").is_visible():
+    decided = page.locator("#decide [data-decides]:enabled:visible")
+    for _ in range(SOON // 60):
+        if decided.count():
             return
         page.evaluate("document.querySelector('#read-on:not([hidden])')?.click()")
         page.wait_for_timeout(60)
