@@ -5,7 +5,7 @@ BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
 ROS2   := .venv-ros2
 
-.PHONY: run test format lint types tests browser systemd ros2 wheels bench docs clean
+.PHONY: run test format lint types tests soak browser systemd ros2 wheels bench docs clean
 
 run: $(STAMP)
 	@$(BIN)/nl2robot demo
@@ -28,8 +28,14 @@ lint: $(STAMP)
 types: $(STAMP)
 	$(BIN)/mypy
 
+# Most stories wait for something, so there are more of them at a time than cores; those of a file,
+# which share a console or a robot, stay together.
 tests: $(STAMP) browser systemd ros2
-	$(BIN)/pytest -n auto
+	$(BIN)/pytest -n $$($(BIN)/python -c 'import os; print((os.cpu_count() or 1) + 2)') --dist loadfile
+
+# What takes too long for every change: whole samples of what people say.
+soak: $(STAMP)
+	$(BIN)/pytest -n auto --soak tests/errands
 
 # The console is tested in a real browser: Debian's Chromium.
 browser:

@@ -31,6 +31,16 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 os.environ["NL2ROBOT_LANGUAGE_MODEL"] = "none"
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--soak", action="store_true", help="whole samples, not a part of each")
+
+
+@pytest.fixture(scope="session")
+def soak(pytestconfig: pytest.Config) -> bool:
+    """Whether there is all the time in the world (`make soak`)."""
+    return bool(pytestconfig.getoption("--soak"))
+
+
 @pytest.fixture
 def scripted(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., ScriptedWriter]]:
     """Make a language model be there that knows its programs by heart: `scripted({words: [...]})`
