@@ -22,7 +22,7 @@ from grammar.inference import truth
 from grammar.language import load_language
 from grammar.pauses import may_end
 from grammar.reading import CodeStep, Function
-from grammar.speech import Speech, fill, speech
+from grammar.speech import Speech, fill, forms, speech
 from grammar.telling import Teller
 from grammar.told_values import as_call
 from grammar.traversal import nodes
@@ -296,12 +296,14 @@ class _Brief(Teller):
         if report is not None:
             yield from report
             return
-        match step.condition:
-            case p.Holds(value=p.Ask(method="find") as find):
-                yield from self._searched(find, step)
-                return
-            case p.Not(condition=p.Holds(value=p.Ask(method="find") as find)):
-                yield from self._searched(find, p.If(step.condition, step.otherwise, step.then))
+        if (searches := _searches(step.condition)) is not None:
+            yield from self._searched(searches, step)
+            return
+        if isinstance(step.condition, p.Not):
+            searches = _searches(step.condition.condition)
+            if searches is not None:
+                turned = p.If(step.condition, step.otherwise, step.then)
+                yield from self._searched(searches, turned)
                 return
         self._tick(*nodes(step.condition))
         before = (self.left, self.back)
@@ -328,11 +330,16 @@ class _Brief(Teller):
     def condition_clause(self, condition: p.Condition, holds: bool = True) -> str:
         return fill(self.words.clauses["if"], {"condition": self.condition(condition, holds)})
 
-    def _searched(self, find: p.Ask, step: p.If) -> Iterator[_Item]:
-        """Looking for something, and what is done when it is found; "..., come back and tell you"
-        where that is what is done either way."""
-        self._told.add(id(find))
-        yield from self._call(p.Call("find", find.arguments))
+    def _searched(self, searches: Sequence[p.Ask], step: p.If) -> Iterator[_Item]:
+        """Looking for something at one or several places, and what is done when it is found; "...,
+        come back and tell you" where that is what is done either way."""
+        self._told.update(map(id, searches))
+        find = searches[0]
+        if len(searches) == 1:
+            yield from self._call(p.Call("find", find.arguments))
+        else:
+            yield self._search_among(searches)
+            find = p.Ask("find", {"thing": find.arguments["thing"]})
         then, otherwise = self._reported(step.then), self._reported(step.otherwise)
         if then and otherwise and then[0] and otherwise[0]:
             self._tick(*nodes(step.then), *nodes(step.otherwise))
@@ -350,6 +357,16 @@ class _Brief(Teller):
             failed = tuple(self.items(step.otherwise))
         if failed:
             yield _Clause(self.condition_clause(missed, holds=False), failed)
+
+    def _search_among(self, searches: Sequence[p.Ask]) -> _Deed:
+        """ "look for a book at Alice's office, at Bob's office and at Clara's office"."""
+        brief, thing = self.words.brief, searches[0].arguments["thing"]
+        places = ({"place": each.arguments["place"]} for each in searches)
+        there = self.listed([self.filled(brief["there"], each) for each in places], "and")
+        self.left, self.back, self._found = True, False, thing
+        pattern = brief["search among"]
+        told = self.argument("thing", thing, forms(pattern)["thing"])
+        return _Deed(fill(pattern, {"thing": told, "places": there}))
 
     def _report(self, step: p.If) -> list[_Item] | None:
         """Both branches of it only tell whoever asked: "tell you whether ..."."""
@@ -572,3 +589,20 @@ def _listed(texts: list[str], last: _Item, brief: dict[str, str]) -> str:
 
 
 __all__ = ["summary"]
+
+
+def _searches(condition: p.Condition) -> tuple[p.Ask, ...] | None:
+    """The searches that a condition consists of: one, or several for the same thing at one place
+    after the other."""
+    match condition:
+        case p.Holds(value=p.Ask(method="find") as find):
+            return (find,)
+        case p.Either(conditions=each):
+            found = [_searches(one) for one in each]
+        case _:
+            return None
+    searches = [one[0] for one in found if one is not None and len(one) == 1]
+    things = [one.arguments["thing"] for one in searches]
+    somewhere = all(isinstance(one.arguments.get("place"), p.Text) for one in searches)
+    same = len(searches) == len(found) and all(thing == things[0] for thing in things)
+    return tuple(searches) if somewhere and same else None

@@ -157,7 +157,8 @@ def round_check(d: Discourse, node: Node) -> Steps:
     else:
         d.scene.thing, d.scene.thing_last = thing, True
     tell = str(node.production.fixed.get("tell", "which"))
-    one = definite(d, node.parts["place_trait"], thing)
+    until = bool(node.production.fixed.get("until"))
+    one = until or definite(d, node.parts["place_trait"], thing)
     d.rounds.round.lookout = Lookout(place, places, trait, thing, d.depth, one, tell)
     return [round_of(d, places, [], place)]
 

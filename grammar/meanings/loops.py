@@ -21,6 +21,7 @@ from grammar.meanings.guards import guard_finds
 from grammar.meanings.news import BACK
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
+from grammar.meanings.round_ends import goes_round, is_sight, round_until, seeks
 from grammar.meanings.several_places import until_found
 from grammar.meanings.surveys import moved
 from grammar.meanings.waiting import (
@@ -93,6 +94,10 @@ def done_until(d: Discourse, body: Steps, looking: Steps, condition: Condition) 
     condition, body = at_least(condition), one_round(body)
     if body == wait_until(condition):  # "wait for me until I am back"
         return [*looking, *body]
+    if len(body) == 1 and seeks(body[0], condition):  # "look in every office until you find it"
+        return [*looking, *body]
+    if body and goes_round(body[-1]) and is_sight(condition):
+        return [*body[:-1], *round_until(body[-1], looking, condition)]
     if _only_seeks(body, condition):  # "keep looking for Noah until you find him"
         return [*looking, *wait_until(condition)]
     led = led_there(body, condition)
@@ -498,14 +503,18 @@ def check_each_place(d: Discourse, node: Node) -> Steps:
     body = d.build(node.parts["steps"])
     d.rounds.in_loop = outer
     d.scene.at = d.scene.with_person = None
+    seen_there = Holds(Ask("sees", {"thing": sought_for.value}))
+    match body:
+        case [*before, If(condition=same, then=then, otherwise=())] if same == seen_there:
+            body = [*before, *then]  # "..., and stop as soon as you see it"
     only_one = sought_for.known or Call("grab", {"thing": sought_for.value}) in body
     until = bool(node.production.fixed.get("until"))
     found = Recall(d.variable("found"))
     if until:
         body = [Remember(found.name, Truth(True)), *body]
-    if only_one or until:
+    if (only_one or until) and body[-1:] != [End()]:
         body = [*body, End()]  # there is no other one to be looked for
-    seen = If(Holds(Ask("sees", {"thing": sought_for.value})), tuple(body))
+    seen = If(seen_there, tuple(body))
     going = Call("goto", {"place": Recall(variable)})
     loop = ForEach(variable, kind_places(d, d.get(node, "kinds")), (going, seen))
     if not until:

@@ -12,6 +12,7 @@ from grammar.meanings.guards import guard_finds
 from grammar.meanings.loops import looped, one_round
 from grammar.meanings.places import kind_places, owner_of
 from grammar.meanings.registry import meaning
+from grammar.meanings.round_ends import STOP, ended_there
 from grammar.meanings.waiting import awaited
 from grammar.plan import (
     Ask,
@@ -44,8 +45,9 @@ def all_before(d: Discourse, *, keep: bool = False) -> tuple[Step, ...]:
 
 @meaning("ended")
 def ended(d: Discourse, node: Node) -> Steps:
-    """ "stop at noon", "stop after the third visitor": the end of what goes on, or as often as all
-    that was said before is done; of anything else, a stop when it is so far."""
+    """ "stop at noon", "stop after the third visitor": the end of what goes on, or of a round of
+    places, or as often as all that was said before is done; of anything else, a stop when it is so
+    far."""
     often: Node = d.get(node, "loop")
     last = d.done[-1] if d.done else None
     if isinstance(last, Forever):
@@ -54,7 +56,8 @@ def ended(d: Discourse, node: Node) -> Steps:
     if "times" in often.parts:
         return looped(d, often, lambda: list(all_before(d)))
     looking, condition = condition_of(d, often)
-    return [*awaited(looking, condition), Call("stop")]
+    there = ended_there(d, looking, condition)
+    return there if there is not None else [*awaited(looking, condition), STOP]
 
 
 @meaning("do_that_times")

@@ -23,6 +23,7 @@ from grammar.meanings.persons import is_me, kind_in_plural
 from grammar.meanings.polls import told_as_asked
 from grammar.meanings.registry import meaning
 from grammar.meanings.reports import known_words
+from grammar.meanings.round_ends import STOP, ended_there
 from grammar.meanings.strangers import as_announced
 from grammar.meanings.surveys import asked_without_end, moved
 from grammar.pauses import takes_time
@@ -119,6 +120,10 @@ def when(d: Discourse, node: Node) -> Steps:
     if hands_it_over(node.parts["then"]) and d.scene.thing is not None:
         take_back_delivery(d, d.scene.thing)  # "get the cup and hand it to Bob when he comes"
     body: Steps = d.build(node.parts["then"])
+    if body == [STOP] and not always:
+        there = ended_there(d, before, condition)
+        if there is not None:
+            return there
     each = always or _is_duty(d, node, condition) or is_habit(d, node)
     if each or is_greeter(d, node, condition, body):
         return each_time(before, condition, body)

@@ -12,9 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grammar.language import Language, load_language
+from nl2robot.deliberation.paper_robot import Scene
 from nl2robot.knowledge import Knowledge
 from nl2robot.translation import Talk, Translation, translate
 from sim.world import load_world
+from tests.errands.families import carried_out
 
 HOSPITAL = Knowledge(load_world("city-hospital", names_only=True))
 RULES = "grammar"
@@ -537,3 +539,61 @@ def test_nobody_is_asked_to_do_what_has_no_verb(who: str) -> None:
 def test_whoever_is_not_found_is_not_led_away_either(language: str, words: str) -> None:
     found = program(language, words)
     assert "else:" in found and found.index("robot.guide(") < found.index("else:"), found
+
+
+ROUNDS = {
+    "en": [
+        "go from ward to ward {}",
+        "go to every ward {}",
+        "visit all the wards {}",
+    ],
+    "de": ["fahr von Station zu Station {}", "fahr in jede Station {}"],
+    "fr": ["va de service en service {}", "passe dans tous les services {}"],
+}
+SEARCHES = {
+    "en": ["look for Bob in every ward {}", "check each ward for Bob {}"],
+    "de": ["such Bob in jeder Station {}"],
+    "fr": ["cherche Bob dans chaque service {}"],
+}
+ENOUGH = {
+    "en": [
+        "until you see {}",
+        "until you find {}",
+        "and stop as soon as you see {}",
+        "and stop once you have found {}",
+    ],
+    "de": ["bis du {} siehst", "und bleib stehen, sobald du {} siehst"],
+    "fr": ["jusqu'à ce que tu voies {}", "et arrête-toi dès que tu vois {}"],
+}
+HIM = {"en": "him", "de": "ihn", "fr": "Bob"}
+
+
+def round_ends(language: str, words: str, people: dict[str, str]) -> tuple[list[str], str]:
+    """Where the program for these words looks, and how it ends."""
+    places = {each.name: each.kind for each in HOSPITAL.world.places}
+    events, end = carried_out(program(language, words), Scene(places=places, people=people))
+    return [event.what for event in events if event.kind in ("visits", "looks for")], end
+
+
+@pytest.mark.parametrize("language", ROUNDS)
+def test_a_round_and_a_search_end_where_what_is_looked_for_is_found(language: str) -> None:
+    """Nobody waits at the first place for what may be at the next, or goes round for ever."""
+    orders = [
+        *(
+            order.format(enough.format("Bob"))
+            for order in ROUNDS[language]
+            for enough in ENOUGH[language]
+        ),
+        *(
+            order.format(enough.format(HIM[language]))
+            for order in SEARCHES[language]
+            for enough in ENOUGH[language]
+        ),
+    ]
+    for words in orders:
+        if said(language, words).program is None:
+            continue
+        found, end = round_ends(language, words, {"Bob": "ward b"})
+        assert end == "done" and not any("ward c" in each for each in found), (words, found, end)
+        assert round_ends(language, words, {})[1] == "done", words
+    assert sum(said(language, words).program is not None for words in orders) > len(orders) / 2

@@ -300,3 +300,24 @@ def _texts(data: object) -> list[str]:
             return [text for part in data for text in _texts(part)]
         case _:
             return []
+
+
+@pytest.mark.parametrize(
+    ("language", "words"),
+    [
+        ("en", "look for a cup at ward a, at ward b and at ward c"),
+        ("de", "eine Tasse auf der Station a, auf der Station b und auf der Station c suchen"),
+        ("fr", "chercher une tasse au service a, au service b et au service c"),
+    ],
+)
+def test_a_search_of_several_places_is_one_deed(language: str, words: str) -> None:
+    """And not a condition for each of them."""
+    searches = " or ".join(f'robot.find("cup", place="ward {each}")' for each in "abc")
+    for program in (
+        f'if not ({searches}):\n    robot.say("There is none.")\n',
+        f'if {searches}:\n    robot.grab("cup")\nelse:\n    robot.say("There is none.")\n',
+    ):
+        lexicon, pack = hospital(language), load_language(language)
+        called = naming(lexicon, pack).called
+        said = summary(parse_program(program, language), language, called)
+        assert words in said, said
