@@ -29,6 +29,9 @@ PAUSED: Final = "Paused"
 
 _LOOKS: Final = 0.1
 """Seconds between two looks whether the robot stands."""
+_STANDS_FOR: Final = 0.3
+"""Seconds in which it has to be seen at the same spot. Two looks are not enough: over a radio that
+falters, both are told the pose from before."""
 _SAME_SPOT: Final = 0.008
 """Metres that the poses of a robot that stands may differ by."""
 _SAME_HEADING: Final = 0.6
@@ -87,15 +90,16 @@ def _seconds(arguments: Mapping[str, Any], made: Odometer) -> float:
 def comes_to_rest(robot: Robot, within: float, goes_on: Callable[[], bool]) -> bool:
     """Look at the robot until it stands, at most `within` seconds; raises as `Robot.location`."""
     ends = time.monotonic() + within
-    last = robot.location()
+    spot, since = robot.location(), time.monotonic()
     while goes_on():
         time.sleep(_LOOKS)
-        now = robot.location()
-        if _same(last, now):
+        now, at = robot.location(), time.monotonic()
+        if not _same(spot, now):
+            spot, since = now, at
+        elif at - since >= _STANDS_FOR:
             return True
-        if time.monotonic() > ends:
+        if at > ends:
             return False
-        last = now
     return False
 
 
