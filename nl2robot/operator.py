@@ -9,8 +9,8 @@ from typing import Any, TypeVar
 import msgspec
 
 from nl2robot.answers import Sentence
-from nl2robot.performance import Approval, Status
 from nl2robot.review import Review
+from nl2robot.runs import Approval, Status
 from nl2robot.state import GOING
 from nl2robot.thinking import EVENT, OnProgress, Progress
 from nl2robot.translation import Translation

@@ -11,6 +11,7 @@ An approval is bound to the hash of exactly one program and is used up by one ru
 
 from __future__ import annotations
 
+import contextlib
 import secrets
 import threading
 import time
@@ -21,16 +22,18 @@ from typing import Any, Final
 
 import msgspec
 
-from nl2robot.going_on import Recall, Unfinished, unfinished
+from nl2robot.going_on import Recall, Unfinished, told, unfinished
 from nl2robot.history import Record, done_calls
 from nl2robot.knowledge import Knowledge
-from nl2robot.performance import Approval, Means, Performance, Status
+from nl2robot.pausing import pose_of
+from nl2robot.performance import Means, Performance
 from nl2robot.present import Present
 from nl2robot.review import Review, digest, review
 from nl2robot.runlog import LogError, RunLog
+from nl2robot.runs import Approval, Status
 from nl2robot.state import State
 from robot_api.client import Robot
-from robot_api.errors import AccessDenied, LostConnection, NotPossible
+from robot_api.errors import AccessDenied, LostConnection, NotPossible, RobotError, Stopped
 from sim.simulation import Simulation
 from sim.world import World, builtin_worlds
 
@@ -91,6 +94,15 @@ class Runner:
         if self.present.state.run is not None:
             return None
         return unfinished(self.log, run)
+
+    def told_of(self, rest: Unfinished, language: str) -> list[str]:
+        """What is done of it and what is left, in sentences; and whether the robot was moved since
+        it stopped."""
+        here = None
+        if rest.stood is not None:
+            with contextlib.suppress(RobotError, Stopped), self._means.connect() as robot:
+                here = pose_of(robot.location())
+        return told(rest, self.knowledge, language, here)
 
     def approve(
         self,
@@ -293,7 +305,10 @@ class Runner:
 
     def _recall(self, run: int | None, program: str) -> Recall | None:
         """What was done before, if it goes on with a run. Raises `NotPossible`."""
-        return None if run is None else Recall(self._rest(run, program).done)
+        if run is None:
+            return None
+        rest = self._rest(run, program)
+        return Recall(rest.done, rest.again)
 
     def _check_free(self) -> None:
         """Raise `NotPossible` while a program runs."""

@@ -13,7 +13,6 @@ import msgspec
 from grammar.planning.planner import Interrupted
 from grammar.samples import samples
 from nl2robot.answers import answer
-from nl2robot.going_on import told
 from nl2robot.planners import names
 from nl2robot.runner import Runner
 from nl2robot.state import GOING, Reviewing
@@ -102,7 +101,7 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
         rest = runner.unfinished(run)
         if rest is None:
             return None
-        more = {"line": rest.line, "told": told(rest, runner.knowledge, language)}
+        more = {"line": rest.line, "told": runner.told_of(rest, language)}
         return {**msgspec.to_builtins(rest), **more}
 
     def listed(p: Mapping[str, Any]) -> Any:

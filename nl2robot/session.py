@@ -22,8 +22,8 @@ from nl2robot.going_on import texts as going_on_texts
 from nl2robot.harmless import approver, needs_no_question
 from nl2robot.operator import Operator
 from nl2robot.other_language import accepted, hint, language_of, question
-from nl2robot.performance import Approval, Status
 from nl2robot.review import Review
+from nl2robot.runs import Approval, Status
 from nl2robot.state import GOING, HELD
 from nl2robot.terminal import Decision, Terminal
 from nl2robot.translation import Translation

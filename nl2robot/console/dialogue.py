@@ -25,7 +25,6 @@ from nl2robot.console.visitor import texts
 from nl2robot.errors import UserError
 from nl2robot.going_on import asks_to_go_on
 from nl2robot.going_on import texts as going_on_texts
-from nl2robot.going_on import told as rest_told
 from nl2robot.harmless import approver, needs_no_question
 from nl2robot.other_language import accepted, declined, language_of, question
 from nl2robot.review import Review, digest
@@ -383,7 +382,7 @@ class Dialogue:
         if rest is None:
             self._tell(Line("robot", going_on_texts(language)["nothing_left"]))
             return
-        self._tell(Line("robot", " ".join(rest_told(rest, runner.knowledge, language))))
+        self._tell(Line("robot", " ".join(runner.told_of(rest, language))))
         with self._turn:
             self._review(Draft(rest.program, continues=rest.run), language)
 

@@ -255,10 +255,10 @@ def test_an_odometer_counts_backwards_and_round_and_round() -> None:
     odometer = Odometer(pose(0, 0, 170))
     for theta in (-170, -90, 0, 90, 170, -170):
         odometer.at(pose(0, 0, theta))
-    assert odometer.degrees == pytest.approx(380)
+    assert odometer.made.degrees == pytest.approx(380)
     back = Odometer(pose(0, 0, 0))
     back.at(pose(-0.4, 0, 0))
-    assert back.metres == pytest.approx(-0.4)
-    assert rest_of("move", {"metres": -1.0}, back) == {"metres": -0.6}
-    assert rest_of("move", {"metres": -0.41}, back) is None
-    assert rest_of("drive", {"linear": 0.0, "angular": 0.0, "seconds": 2.0}, back) is not None
+    assert back.made.metres == pytest.approx(-0.4)
+    assert rest_of("move", {"metres": -1.0}, back.made) == {"metres": -0.6}
+    assert rest_of("move", {"metres": -0.41}, back.made) is None
+    assert rest_of("drive", {"linear": 0.0, "angular": 0.0, "seconds": 2.0}, back.made) is not None

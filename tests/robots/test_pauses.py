@@ -166,3 +166,17 @@ def test_of_a_drive_only_the_rest_is_made(ward: Ward) -> None:
     ward.pause()
     ward.go_on(run)
     assert ward.robot.pose() == pytest.approx((1.2, 0, 0), abs=0.15)
+
+
+def test_after_a_stop_only_the_rest_of_a_move_is_made(ward: Ward) -> None:
+    run = ward.begin("robot.move(1.5)\n")
+    ward.until(lambda: ward.gone() > 0.3)
+    ward.nurse.stop()
+    assert ward.nurse.wait(run).state == "stopped"
+    left = ward.nurse.unfinished()
+    assert left is not None
+    assert "only the rest of it is left" in left.told[-1]
+    review = ward.nurse.check(left.program, "en", left.run)
+    again = ward.nurse.run(ward.nurse.approve(review, continues=left.run))
+    assert ward.nurse.wait(again).state == "done"
+    assert ward.robot.pose() == pytest.approx((1.5, 0, 0), abs=0.1)
