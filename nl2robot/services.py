@@ -156,7 +156,8 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             "Approve exactly the program with this SHA-256 for one run. With `continues`, the"
             " number of a run that was broken off, what was done there is not done again. Where it"
             " was changed by hand, `proposed` is the program from before; the log keeps both, and"
-            " who did.",
+            " who did. One that does not come to its end in the dry run, which is made now unless"
+            " it was lately, is refused unless somebody `insists`.",
             {
                 "program": _PROGRAM,
                 "sha256": {"type": "string", "pattern": "^[0-9a-f]{64}$"},
@@ -168,6 +169,7 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
                 "continues": _MAYBE_RUN,
                 "proposed": _MAYBE,
                 "changed_by": {"type": ["string", "null"], "minLength": 1, "maxLength": 200},
+                "insists": {"type": "boolean"},
             },
             "program sha256 by",
         ),

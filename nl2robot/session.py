@@ -29,6 +29,7 @@ from nl2robot.terminal import Decision, Terminal
 from nl2robot.translation import Translation
 from nl2robot.waiting import GivenUp
 from robot_api.errors import (
+    AccessDenied,
     InvalidCall,
     LostConnection,
     NotPossible,
@@ -245,13 +246,22 @@ class Session:
         by: str | None = None,
         proposed: str | None = None,
     ) -> Approval | None:
-        """None while another program runs, which is said."""
+        """None while another program runs, or where it is not as it was when they decided, which
+        is said. What did not come to its end is only approved here by who insists."""
+        insists = not review.came_through
         try:
-            return self.operator.approve(review, translation, heard, continues, by, proposed)
+            return self.operator.approve(
+                review, translation, heard, continues, by, proposed, insists
+            )
         except NotPossible:
             if self.approve_all:
                 raise
             self.terminal.console.print(self.terminal.words["busy"], markup=False)
+            return None
+        except AccessDenied:
+            if self.approve_all or insists:
+                raise
+            self.terminal.console.print(self.terminal.words["not_as_it_was"], markup=False)
             return None
 
     def _decision(self, review: Review) -> tuple[Decision | None, str]:

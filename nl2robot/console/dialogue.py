@@ -35,7 +35,7 @@ from nl2robot.translation import Translation, translate
 from nl2robot.trouble import told
 from nl2robot.words import words_in
 from robot_api.driver import StopFlag
-from robot_api.errors import NotPossible, RobotError
+from robot_api.errors import AccessDenied, NotPossible, RobotError
 
 LINES_KEPT: Final = 200
 
@@ -480,8 +480,20 @@ class Dialogue:
                     continues=draft.continues,
                     proposed=draft.proposed,
                     changed_by=draft.changed_by,
+                    insists=insists,
                 )
                 self.runs.add(runner.run(approval.id))
+            except AccessDenied as error:
+                if insists:
+                    self._tell(Line("robot", str(error), "trouble"))
+                    return
+                # The world has changed since, and with it what comes of the program.
+                self._review(replace(draft, review=None), language)
+                now = self.draft.review if self.draft else None
+                open_end = now is not None and not now.came_through
+                why = _said("must_insist", language) if open_end else str(error)
+                self._tell(Line("robot", why, "trouble"))
+                return
             except (RobotError, UserError) as error:
                 busy = runner.present.state.run is not None
                 why = _said("busy", language) if busy else str(error)

@@ -11,6 +11,7 @@ from nl2robot.replay import Replay, replay
 from nl2robot.runlog import Run, RunLog
 from sim.simulation import Simulation
 from sim.world import BUILTIN, load_world
+from tests.nl2robot.test_runner import start
 
 ASKING = """\
 robot.goto("ward a")
@@ -24,7 +25,7 @@ def run(operator, log):
     """Run a program; returns its row in the log."""
 
     def run(program: str) -> Run:
-        number = operator.run(operator.approve(operator.check(program)))
+        number = start(operator, program)
         operator.wait(number)
         row = log.run(number)
         assert row is not None
