@@ -12,11 +12,12 @@ import dataclasses
 import functools
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
 import msgspec
+from msgspec import structs
 
 from nl2robot.knowledge import Knowledge
 from nl2robot.pausing import MEASURED, PAUSED, Made, rest_of
@@ -88,7 +89,7 @@ def unfinished(log: RunLog, number: int | None = None) -> Unfinished | None:
             return None  # the program's own fault: it would fail again
         again = done.pop()
     if again is not None and again.left is None:  # broken off at its very end
-        done.append(msgspec.structs.replace(again, error=None))
+        done.append(structs.replace(again, error=None))
         again = None
     return Unfinished(
         run=run.id,
@@ -112,33 +113,58 @@ def _done(log: RunLog, number: int) -> tuple[list[DoneCall], DoneCall | None]:
         before = unfinished(log, run.continues)
         if before is not None:
             done, begun = list(before.done), before.again
-    for call in log.calls(number):
-        kind = (call.error or "").partition(":")[0]
-        made = _made(call, begun)
-        if kind == PAUSED:
-            if made.left is None:
-                done.append(msgspec.structs.replace(made, error=None))
-            begun = made if made.left is not None else None
-            continue
+    for whole, last in whole_calls(log.calls(number)):
+        made = _made(whole, last, begun)
         begun = None
-        if call.seconds is None or kind in BROKEN_OFF:
+        if whole.seconds is None or _kind(whole) in BROKEN_OFF:
             return done, made
         done.append(made)
     return done, begun
 
 
-def _made(call: LoggedCall, begun: DoneCall | None) -> DoneCall:
-    """A call as the program made it, which may have `begun` with another of the log."""
-    given = msgspec.json.decode(call.arguments)
-    made = msgspec.json.decode(call.made, type=Made) if call.made is not None else None
+def whole_calls(calls: Iterable[LoggedCall]) -> Iterator[tuple[LoggedCall, LoggedCall]]:
+    """The calls as the program made them: a pause has broken some into pieces, of which each comes
+    with its last. One that was still to go on reads as one that never came back."""
+    pieces: list[LoggedCall] = []
+    for call in calls:
+        pieces.append(call)
+        paused = _kind(call) == PAUSED
+        if paused and _left(call) is not None:
+            continue
+        first, pieces = pieces[0], []
+        whole = structs.replace(call, number=first.number, arguments=first.arguments)
+        yield structs.replace(whole, error=None, result="null") if paused else whole, call
+    if pieces:
+        last = pieces[-1]
+        yield structs.replace(pieces[0], seconds=None, error=None), last
+
+
+def _made(whole: LoggedCall, last: LoggedCall, begun: DoneCall | None) -> DoneCall:
+    """A call as the program made it, which may have `begun` in a run before."""
     return DoneCall(
-        call.method,
-        begun.arguments if begun is not None else given,
-        call.line,
-        msgspec.json.decode(call.result) if call.result is not None else None,
-        call.error,
-        rest_of(call.method, given, made),
+        whole.method,
+        msgspec.json.decode(whole.arguments) if begun is None else begun.arguments,
+        whole.line,
+        msgspec.json.decode(whole.result) if whole.result is not None else None,
+        whole.error,
+        _left(last),
     )
+
+
+def _left(piece: LoggedCall) -> dict[str, Any] | None:
+    """The arguments that make what is left of what was broken off; None if nothing is."""
+    made = msgspec.json.decode(piece.made, type=Made) if piece.made is not None else None
+    return rest_of(piece.method, msgspec.json.decode(piece.arguments), made)
+
+
+def _kind(call: LoggedCall) -> str:
+    return (call.error or "").partition(":")[0]
+
+
+def recall_of(log: RunLog, run: int | None) -> Recall | None:
+    """What was done in a run that another one `continues`; None without one."""
+    rest = unfinished(log, run) if run is not None else None
+    return Recall(rest.done, rest.again) if rest is not None else None
 
 
 class Recall:
