@@ -225,8 +225,10 @@ class Performance:
                 # A connection that is lost needs no stop: its server has stopped the robot, too.
                 if self._outcome.status != "done" and robot.connected:
                     robot.stop()
-                    self._note_where_it_stands(robot)
+                    self._note_where_it_stands(self._where(robot))
         except RobotError as error:  # the robot cannot be reached
+            if self._outcome is not None:
+                self._note_where_it_stands(self._pose)
             if self._outcome is not None and isinstance(error, StopNotConfirmed):
                 self._outcome = _unconfirmed(self._outcome, error)
             if self._outcome is None:
@@ -375,13 +377,13 @@ class Performance:
             self._logged(self._means.log.made, number, made)
         return odometer.made
 
-    def _note_where_it_stands(self, robot: Robot) -> None:
-        """The program was ended before its end: who goes on with it has to know from where."""
-        here = self._where(robot)
+    def _note_where_it_stands(self, here: Mapping[str, Any] | None) -> None:
+        """The program was ended before its end: who goes on with it has to know from where. Of a
+        robot that is lost that is where it was last."""
         with contextlib.suppress(Stopped):  # the log is full, which its end tells
             if here is not None:
-                stood = msgspec.json.encode(here).decode()
-                self._logged(self._means.log.stands_at, stood)
+                stood = msgspec.json.encode({each: here[each] for each in ("x", "y", "theta")})
+                self._logged(self._means.log.stands_at, stood.decode())
             self._note_made(here)
 
     def _print(self, text: str) -> None:

@@ -31,6 +31,8 @@ class Robot:
 
     def __init__(self, driver: Driver, pose: Callable[[], Pose], stands: Callable[[], bool]):
         self.driver, self.pose, self.stands = driver, pose, stands
+        self.cut: Callable[[], None] | None = None
+        self.mend: Callable[[], None] | None = None
 
 
 @contextmanager
@@ -40,11 +42,13 @@ def ros(version: int) -> Iterator[Robot]:
         connected(robot, RosSettings(speed=0.8), places=PLACES) as driver,
     ):
         body = robot.body
-        yield Robot(
+        ours = Robot(
             driver,
             lambda: (body.x, body.y, math.degrees(body.theta)),
             lambda: robot.stands and robot.goal is None,
         )
+        ours.cut, ours.mend = robot.cut, robot.mend
+        yield ours
 
 
 @contextmanager
@@ -88,8 +92,11 @@ class Ward:
     def __init__(self, robot: Robot, nurse: Operator, log: RunLog) -> None:
         self.robot, self.nurse, self.log = robot, nurse, log
 
-    def begin(self, program: str) -> int:
-        return self.nurse.run(self.nurse.approve(self.nurse.check(program)))
+    def begin(self, program: str, continues: int | None = None) -> int:
+        """Somebody may stand in the way of the dry run, in the simulation."""
+        review = self.nurse.check(program, "en", continues)
+        approval = self.nurse.approve(review, continues=continues, insists=True)
+        return self.nurse.run(approval)
 
     def until(self, true: Callable[[], Any], within: float = 20.0) -> None:
         ends = time.monotonic() + within
@@ -176,7 +183,22 @@ def test_after_a_stop_only_the_rest_of_a_move_is_made(ward: Ward) -> None:
     left = ward.nurse.unfinished()
     assert left is not None
     assert "only the rest of it is left" in left.told[-1]
-    review = ward.nurse.check(left.program, "en", left.run)
-    again = ward.nurse.run(ward.nurse.approve(review, continues=left.run))
+    again = ward.begin(left.program, left.run)
     assert ward.nurse.wait(again).state == "done"
     assert ward.robot.pose() == pytest.approx((1.5, 0, 0), abs=0.1)
+
+
+@pytest.mark.parametrize("ward", ["ros2", "ros1"], indirect=True)
+def test_a_robot_that_was_lost_in_a_move_does_not_make_all_of_it_again(ward: Ward) -> None:
+    assert ward.robot.cut is not None and ward.robot.mend is not None
+    run = ward.begin("robot.move(1.5)\n")
+    ward.until(lambda: ward.gone() > 0.4)
+    ward.robot.cut()
+    assert ward.nurse.wait(run).error == "LostConnection"
+    ward.robot.mend()
+    ward.until(lambda: ward.nurse.state() == "stopped" and ward.robot.stands())
+    left = ward.nurse.unfinished()
+    assert left is not None
+    assert "only the rest of it is left" in left.told[1]
+    kept = ward.log.run(run)
+    assert kept is not None and kept.stood is not None
