@@ -2,25 +2,30 @@
 
 The same program runs again from its first line, but the robot calls that were done are answered
 from the log (`Recall`) and move nothing; from the call that was broken off it runs as any other.
-A program that does not make the same calls again, in the same order, is ended before it does
-anything new.
+Of a movement that is measured only the rest is made, as after a pause. A program that does not make
+the same calls again, in the same order, is ended before it does anything new.
 """
 
 from __future__ import annotations
 
+import dataclasses
 import functools
+import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
 import msgspec
+from msgspec import structs
 
 from nl2robot.knowledge import Knowledge
-from nl2robot.pausing import PAUSED
+from nl2robot.pausing import MEASURED, PAUSED, Made, rest_of
 from nl2robot.review import reading
 from nl2robot.runlog import LoggedCall, RunLog
+from nl2robot.words import decimal
 from robot_api.errors import RobotError, Stopped, error_named
+from sandbox.execution import Outcome
 
 DATA: Final = Path(__file__).parent / "data" / "going_on.yaml"
 BROKEN_OFF: Final = ("Stopped", "LostConnection", "StopNotConfirmed")
@@ -30,6 +35,10 @@ DEVIATES: Final = (
     " {now}. It was ended before it did anything. Have it done from the beginning instead."
 )
 STEPS_TOLD: Final = 8
+ASIDE: Final = 0.3
+"""Metres that a robot may be away from where it stopped without a word of it."""
+TURNED: Final = 20.0
+"""The same in degrees."""
 
 
 class DoneCall(msgspec.Struct, frozen=True):
@@ -41,6 +50,9 @@ class DoneCall(msgspec.Struct, frozen=True):
     result: Any = None
     error: str | None = None
     """Its name and sentence, as the log has it."""
+    left: dict[str, Any] | None = None
+    """Of one that was broken off: the arguments that make the rest of it; None if nothing is
+    left."""
 
 
 class Unfinished(msgspec.Struct, frozen=True, kw_only=True):
@@ -52,7 +64,9 @@ class Unfinished(msgspec.Struct, frozen=True, kw_only=True):
     utterance: str | None
     done: tuple[DoneCall, ...]
     again: DoneCall | None
-    """The call that was broken off, and is made again in full."""
+    """The call that was broken off, of which what is `left` is made."""
+    stood: dict[str, float] | None
+    """The pose in which the robot came to stand, if that is known."""
 
     @property
     def line(self) -> int:
@@ -74,6 +88,9 @@ def unfinished(log: RunLog, number: int | None = None) -> Unfinished | None:
         if not done or done[-1].error is None:
             return None  # the program's own fault: it would fail again
         again = done.pop()
+    if again is not None and again.left is None:  # broken off at its very end
+        done.append(structs.replace(again, error=None))
+        again = None
     return Unfinished(
         run=run.id,
         program=run.program,
@@ -81,6 +98,7 @@ def unfinished(log: RunLog, number: int | None = None) -> Unfinished | None:
         utterance=run.utterance,
         done=tuple(done),
         again=again,
+        stood=msgspec.json.decode(run.stood) if run.stood is not None else None,
     )
 
 
@@ -89,36 +107,73 @@ def _done(log: RunLog, number: int) -> tuple[list[DoneCall], DoneCall | None]:
     was broken off."""
     run = log.run(number)
     done: list[DoneCall] = []
+    begun: DoneCall | None = None
+    """A call that was broken off: what comes next makes the rest of it."""
     if run is not None and run.continues is not None:
         before = unfinished(log, run.continues)
-        done = list(before.done) if before is not None else []
-    begun: LoggedCall | None = None
-    """A call that a pause has broken off: what comes next makes the rest of it."""
-    for call in log.calls(number):
-        first = begun or call
-        kind = (call.error or "").partition(":")[0]
-        if kind == PAUSED:
-            begun = first
-            continue
+        if before is not None:
+            done, begun = list(before.done), before.again
+    for whole, last in whole_calls(log.calls(number)):
+        made = _made(whole, last, begun)
         begun = None
-        made = _made(first, call)
-        if call.seconds is None or kind in BROKEN_OFF:
+        if whole.seconds is None or _kind(whole) in BROKEN_OFF:
             return done, made
         done.append(made)
-    return done, _made(begun, begun) if begun is not None else None
+    return done, begun
 
 
-def _made(first: LoggedCall, last: LoggedCall) -> DoneCall:
-    result = msgspec.json.decode(last.result) if last.result is not None else None
-    arguments = msgspec.json.decode(first.arguments)
-    return DoneCall(first.method, arguments, first.line, result, last.error)
+def whole_calls(calls: Iterable[LoggedCall]) -> Iterator[tuple[LoggedCall, LoggedCall]]:
+    """The calls as the program made them: a pause has broken some into pieces, of which each comes
+    with its last. One that was still to go on reads as one that never came back."""
+    pieces: list[LoggedCall] = []
+    for call in calls:
+        pieces.append(call)
+        paused = _kind(call) == PAUSED
+        if paused and _left(call) is not None:
+            continue
+        first, pieces = pieces[0], []
+        whole = structs.replace(call, number=first.number, arguments=first.arguments)
+        yield structs.replace(whole, error=None, result="null") if paused else whole, call
+    if pieces:
+        last = pieces[-1]
+        yield structs.replace(pieces[0], seconds=None, error=None), last
+
+
+def _made(whole: LoggedCall, last: LoggedCall, begun: DoneCall | None) -> DoneCall:
+    """A call as the program made it, which may have `begun` in a run before."""
+    return DoneCall(
+        whole.method,
+        msgspec.json.decode(whole.arguments) if begun is None else begun.arguments,
+        whole.line,
+        msgspec.json.decode(whole.result) if whole.result is not None else None,
+        whole.error,
+        _left(last),
+    )
+
+
+def _left(piece: LoggedCall) -> dict[str, Any] | None:
+    """The arguments that make what is left of what was broken off; None if nothing is."""
+    made = msgspec.json.decode(piece.made, type=Made) if piece.made is not None else None
+    return rest_of(piece.method, msgspec.json.decode(piece.arguments), made)
+
+
+def _kind(call: LoggedCall) -> str:
+    return (call.error or "").partition(":")[0]
+
+
+def recall_of(log: RunLog, run: int | None) -> Recall | None:
+    """What was done in a run that another one `continues`; None without one."""
+    rest = unfinished(log, run) if run is not None else None
+    return Recall(rest.done, rest.again) if rest is not None else None
 
 
 class Recall:
     """Answers the calls of a program from what was done before, in their order."""
 
-    def __init__(self, done: Sequence[DoneCall]) -> None:
+    def __init__(self, done: Sequence[DoneCall], again: DoneCall | None = None) -> None:
+        """`again` comes after those, and is made as far as it is left."""
         self._done = list(done)
+        self._again = again
         self._next = 0
         self.deviation: str | None = None
         """Why it was ended, if the program made other calls than before."""
@@ -132,17 +187,37 @@ class Recall:
         """What came of this call; raises what it raised then. Raises `Stopped` if it is another."""
         before = self._done[self._next]
         self._next += 1
+        self._compare(before, method, arguments)
+        if before.error is not None:
+            name, _, sentence = before.error.partition(": ")
+            error = error_named(name)
+            raise (error if issubclass(error, RobotError) else RobotError)(sentence)
+        return before.result
+
+    def left_of(self, method: str, arguments: dict[str, Any]) -> dict[str, Any]:
+        """The arguments that make what is left of a call that was not done. Raises `Stopped` if it
+        is another than the one that was broken off."""
+        again, self._again = self._again, None
+        if again is None:
+            return arguments
+        self._compare(again, method, arguments)
+        return arguments if again.left is None else again.left
+
+    def judged(self, outcome: Outcome) -> Outcome:
+        """How a run really ended that was to go on: one that deviated was not stopped."""
+        if self.deviation is None:
+            return outcome
+        return dataclasses.replace(
+            outcome, status="failed", message=self.deviation, error="Deviates"
+        )
+
+    def _compare(self, before: DoneCall, method: str, arguments: Mapping[str, Any]) -> None:
         now = msgspec.json.decode(msgspec.json.encode(arguments))
         if (method, now) != (before.method, before.arguments):
             self.deviation = DEVIATES.format(
                 before=_written(before.method, before.arguments), now=_written(method, now)
             )
             raise Stopped(self.deviation)
-        if before.error is not None:
-            name, _, sentence = before.error.partition(": ")
-            error = error_named(name)
-            raise (error if issubclass(error, RobotError) else RobotError)(sentence)
-        return before.result
 
 
 def _written(method: str, arguments: Mapping[str, Any]) -> str:
@@ -155,8 +230,14 @@ def asks_to_go_on(words: str, language: str) -> bool:
     return words.lower().strip(" .!,") in texts(language)["words"]
 
 
-def told(rest: Unfinished, knowledge: Knowledge, language: str) -> list[str]:
-    """What is done of it and what is left, in sentences."""
+def told(
+    rest: Unfinished,
+    knowledge: Knowledge,
+    language: str,
+    here: Mapping[str, float] | None = None,
+) -> list[str]:
+    """What is done of it and what is left, in sentences. `here` is where the robot is now, if that
+    is known."""
     words = texts(language)
     read = {
         each.line: each.text.rstrip(".:") for each in reading(rest.program, knowledge, language)
@@ -170,13 +251,43 @@ def told(rest: Unfinished, knowledge: Knowledge, language: str) -> list[str]:
     if len(steps) > STEPS_TOLD:
         more = words["more"].format(number=len(steps) - STEPS_TOLD)
         steps = [*steps[:STEPS_TOLD], more]
-    sentences = [
-        words["done"].format(steps="; ".join(steps) + ".") if steps else words["nothing_done"],
-        words["left"].format(line=rest.line, reading=f"{read.get(rest.line, '')}."),
-    ]
-    if rest.again is not None and rest.done:
+    part = _left_in_words(rest.again, words, language)
+    sentences = []
+    if steps:
+        sentences.append(words["done"].format(steps="; ".join(steps) + "."))
+    elif part is None:
+        sentences.append(words["nothing_done"])
+    sentences.append(words["left"].format(line=rest.line, reading=f"{read.get(rest.line, '')}."))
+    if part is not None:
+        sentences.append(words["rest"].format(left=part))
+    elif rest.again is not None and rest.done:
         sentences.append(words["again"])
+    if rest.stood is not None and here is not None:
+        sentences += _moved(rest.stood, here, words, language)
     return sentences
+
+
+def _left_in_words(again: DoneCall | None, words: Mapping[str, Any], language: str) -> str | None:
+    """How much is left of a movement of which a part was made."""
+    if again is None or again.method not in MEASURED or again.left in (None, again.arguments):
+        return None
+    assert again.left is not None
+    [(name, value)] = [
+        (name, value) for name, value in again.left.items() if value != again.arguments.get(name)
+    ]
+    sort: str = words["amounts"][name]
+    return sort.format(amount=decimal(round(abs(value), 1), language))
+
+
+def _moved(
+    stood: Mapping[str, float], here: Mapping[str, float], words: Mapping[str, Any], language: str
+) -> list[str]:
+    """That the robot is not where it stopped any more, if it is not."""
+    away = math.hypot(here["x"] - stood["x"], here["y"] - stood["y"])
+    if away > ASIDE:
+        return [words["moved"].format(metres=decimal(round(away, 1), language))]
+    turned = (here["theta"] - stood["theta"] + 180.0) % 360.0 - 180.0
+    return [words["turned"]] if abs(turned) > TURNED else []
 
 
 @functools.cache

@@ -9,8 +9,8 @@ from typing import Any, TypeVar
 import msgspec
 
 from nl2robot.answers import Sentence
-from nl2robot.performance import Approval, Status
 from nl2robot.review import Review
+from nl2robot.runs import Approval, Status
 from nl2robot.state import GOING
 from nl2robot.thinking import EVENT, OnProgress, Progress
 from nl2robot.translation import Translation
@@ -131,10 +131,12 @@ class Operator:
         continues: int | None = None,
         by: str | None = None,
         proposed: str | None = None,
+        insists: bool = False,
     ) -> Approval:
         """Approve exactly the program that was reviewed; with `continues`, what is left of it.
         `by`: how the log calls whoever does. `proposed`: the program from before, if it was changed
-        here by hand."""
+        here by hand. `insists`: somebody wants it run though it did not come to its end when it
+        was tried."""
         parameters: dict[str, Any] = {
             "program": review.program,
             "sha256": review.sha256,
@@ -149,6 +151,8 @@ class Operator:
                 parameters["plan"] = msgspec.json.encode(translation.plan).decode()
         if proposed is not None and proposed != review.program:
             parameters |= {"proposed": proposed, "changed_by": self.name}
+        if insists:
+            parameters["insists"] = True
         return self._request("program.approve", parameters, Approval)
 
     def run(self, approval: Approval) -> int:

@@ -1,7 +1,8 @@
 """A pause halts the wheels: a movement is broken off, and what is left of it is made later.
 
 A way to a place is simply asked for again. Of a `move`, a `turn` and a `drive` only the rest is
-made, which an `Odometer` tells from the robot's poses.
+made, which an `Odometer` tells from the robot's poses. So it is when a program goes on after a stop
+(`going_on`), from what the log has of it.
 """
 
 from __future__ import annotations
@@ -10,6 +11,8 @@ import math
 import time
 from collections.abc import Callable, Mapping
 from typing import Any, Final
+
+import msgspec
 
 from robot_api.client import Robot
 from robot_api.values import Location
@@ -23,12 +26,15 @@ DRIVING: Final = frozenset(
 """The methods that turn the wheels. They are broken off by a pause; all others end by themselves
 while the robot stands."""
 MEASURED: Final = frozenset({"move", "turn", "drive"})
-"""Those of which only the rest is made after a pause."""
+"""Those of which only the rest is made after a pause or a stop."""
 PAUSED: Final = "Paused"
 """What the log calls the end of a call that a pause broke off."""
 
 _LOOKS: Final = 0.1
 """Seconds between two looks whether the robot stands."""
+_STANDS_FOR: Final = 0.3
+"""Seconds in which it has to be seen at the same spot. Two looks are not enough: over a radio that
+falters, both are told the pose from before."""
 _SAME_SPOT: Final = 0.008
 """Metres that the poses of a robot that stands may differ by."""
 _SAME_HEADING: Final = 0.6
@@ -37,15 +43,28 @@ _NOTHING_LEFT: Final = {"move": 0.03, "turn": 2.0, "drive": 0.05}
 """Metres, degrees and seconds that are not worth making."""
 
 
+class Made(msgspec.Struct, frozen=True):
+    """How much of a movement is made."""
+
+    metres: float
+    """Along the robot's own heading, forwards positive."""
+    degrees: float
+    """To the left positive."""
+
+
 class Odometer:
-    """Adds up what a movement has made: metres along the robot's own heading, forwards positive,
-    and degrees, to the left positive."""
+    """Adds up what a movement has made."""
 
     def __init__(self, start: Mapping[str, Any] | None) -> None:
         """`start` is a pose: x, y (metres), theta (degrees)."""
-        self.metres = 0.0
-        self.degrees = 0.0
+        self._metres = 0.0
+        self._degrees = 0.0
         self._last = start
+
+    @property
+    def made(self) -> Made | None:
+        """None where nobody has told it a pose."""
+        return Made(self._metres, self._degrees) if self._last is not None else None
 
     def at(self, pose: Mapping[str, Any]) -> None:
         """The robot is here now."""
@@ -55,12 +74,15 @@ class Odometer:
         turned = (pose["theta"] - last["theta"] + 180.0) % 360.0 - 180.0
         heading = math.radians(last["theta"] + turned / 2)
         east, north = pose["x"] - last["x"], pose["y"] - last["y"]
-        self.degrees += turned
-        self.metres += east * math.cos(heading) + north * math.sin(heading)
+        self._degrees += turned
+        self._metres += east * math.cos(heading) + north * math.sin(heading)
 
 
-def rest_of(method: str, arguments: dict[str, Any], made: Odometer) -> dict[str, Any] | None:
-    """The arguments of the call that makes what is left; None if nothing is."""
+def rest_of(method: str, arguments: dict[str, Any], made: Made | None) -> dict[str, Any] | None:
+    """The arguments of the call that makes what is left; None if nothing is. All of it is left
+    where nobody knows how much was made."""
+    if made is None:
+        return arguments
     match method:
         case "move":
             name, whole, done = "metres", arguments["metres"], made.metres
@@ -76,7 +98,7 @@ def rest_of(method: str, arguments: dict[str, Any], made: Odometer) -> dict[str,
     return {**arguments, name: round(left, 3)}
 
 
-def _seconds(arguments: Mapping[str, Any], made: Odometer) -> float:
+def _seconds(arguments: Mapping[str, Any], made: Made) -> float:
     """How much of a `drive` was made."""
     linear, angular = float(arguments["linear"]), float(arguments["angular"])
     if abs(linear) >= 0.02:
@@ -87,15 +109,16 @@ def _seconds(arguments: Mapping[str, Any], made: Odometer) -> float:
 def comes_to_rest(robot: Robot, within: float, goes_on: Callable[[], bool]) -> bool:
     """Look at the robot until it stands, at most `within` seconds; raises as `Robot.location`."""
     ends = time.monotonic() + within
-    last = robot.location()
+    spot, since = robot.location(), time.monotonic()
     while goes_on():
         time.sleep(_LOOKS)
-        now = robot.location()
-        if _same(last, now):
+        now, at = robot.location(), time.monotonic()
+        if not _same(spot, now):
+            spot, since = now, at
+        elif at - since >= _STANDS_FOR:
             return True
-        if time.monotonic() > ends:
+        if at > ends:
             return False
-        last = now
     return False
 
 

@@ -19,7 +19,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, Final, Literal
+from typing import Any, Final
 
 import msgspec
 
@@ -32,6 +32,7 @@ from nl2robot.pausing import (
     DRIVING,
     MEASURED,
     PAUSED,
+    Made,
     Odometer,
     comes_to_rest,
     pose_of,
@@ -39,14 +40,13 @@ from nl2robot.pausing import (
 )
 from nl2robot.present import Present
 from nl2robot.runlog import LogError, RunLog
+from nl2robot.runs import Approval, State, Status
 from nl2robot.state import HELD
 from robot_api.client import Robot
 from robot_api.errors import LostConnection, NotPossible, RobotError, StopNotConfirmed, Stopped
 from sandbox.execution import Execution, Outcome
 
 _log = logging.getLogger(__name__)
-
-State = Literal["running", "pausing", "paused", "done", "failed", "stopped", "limit"]
 
 SECONDS_TO_REST: Final = 2.0
 """How long a paused robot may take to stand, beside what it says of a stop. Then it is stopped."""
@@ -55,43 +55,6 @@ BREAK_OFF_EVERY: Final = 0.02
 
 _HALTED = "The movement was halted; what is left of it is made when the program goes on."
 _DOES_NOT_REST = "The robot did not come to rest when it was paused, so it was stopped."
-
-
-class Approval(msgspec.Struct, frozen=True, kw_only=True):
-    """Somebody's word that exactly this program may run once."""
-
-    id: str
-    program: str
-    sha256: str
-    by: str
-    at: float
-    """Seconds since the epoch."""
-    utterance: str | None = None
-    heard: str | None = None
-    language: str | None = None
-    plan: str | None = None
-    continues: int | None = None
-    """The run that was broken off, with which it goes on; what was done there is not done again."""
-    proposed: str | None = None
-    """The program that was proposed, if somebody changed it by hand."""
-    changed_by: str | None = None
-
-
-class Status(msgspec.Struct, frozen=True, kw_only=True):
-    """How a run stands; what `program.state` and `program.wait` answer."""
-
-    run: int
-    state: State
-    line: int | None
-    message: str | None
-    """Why it is not done, if it is over and is not."""
-    error: str | None
-    """What it failed with, as `sandbox.execution.Outcome.error`."""
-    program: str
-    sha256: str
-    calls: int
-    robot_lost_since: float | None = None
-    """Seconds since the epoch; None while the robot can be reached."""
 
 
 @dataclass(frozen=True)
@@ -154,6 +117,8 @@ class Performance:
         """Whether a pause has broken that off."""
         self._odometer: Odometer | None = None
         """Of the movement that is measured."""
+        self._broken_movement: tuple[int, Odometer] | None = None
+        """The number of the last movement that came to no good end, and how much of it is made."""
         self._states: deque[tuple[float, str, str | None]] = deque()
         """Those that are not written down yet."""
         self._noted: str | None = None
@@ -260,7 +225,10 @@ class Performance:
                 # A connection that is lost needs no stop: its server has stopped the robot, too.
                 if self._outcome.status != "done" and robot.connected:
                     robot.stop()
+                    self._note_where_it_stands(self._where(robot))
         except RobotError as error:  # the robot cannot be reached
+            if self._outcome is not None:
+                self._note_where_it_stands(self._pose)
             if self._outcome is not None and isinstance(error, StopNotConfirmed):
                 self._outcome = _unconfirmed(self._outcome, error)
             if self._outcome is None:
@@ -283,7 +251,8 @@ class Performance:
         def call(method: str, arguments: dict[str, Any], line: int) -> Any:
             if recall is not None and recall.goes_on:
                 return recall.answer(method, arguments)
-            return self._call(robot, method, arguments, line)
+            left = arguments if recall is None else recall.left_of(method, arguments)
+            return self._call(robot, method, left, line)
 
         def on_print(text: str) -> None:
             if recall is None or not recall.goes_on:  # else it was printed before
@@ -305,11 +274,7 @@ class Performance:
         outcome = execution.run()
         for place, why in closed:
             self.report("was_closed", place=[place], reason=why)
-        if recall is not None and recall.deviation is not None:
-            return dataclasses.replace(
-                outcome, status="failed", message=recall.deviation, error="Deviates"
-            )
-        return outcome
+        return recall.judged(outcome) if recall is not None else outcome
 
     def _as_lost(self, outcome: Outcome) -> Outcome:
         """How a run ended whose robot was lost meanwhile: not by somebody's stop."""
@@ -357,12 +322,9 @@ class Performance:
                     self._drives = False  # from now on nothing else is to be broken off
                 # Nothing else moves it: it comes to rest even if it is to go on by now.
                 self._come_to_rest(robot, lambda: self._stop_because is None)
-                odometer, self._odometer = self._odometer, None
-                if odometer is not None:
-                    here = self._where(robot)
-                    if here is not None:
-                        odometer.at(here)
-                    left = rest_of(method, left, odometer)
+                self._odometer = None
+                made = self._note_made(self._where(robot))
+                left = rest_of(method, left, made)
                 self._execution.hold()
             finally:
                 with self._gate:
@@ -385,7 +347,11 @@ class Performance:
             seconds = time.perf_counter() - began
             broken_off = isinstance(error, Stopped) and self._was_broken_off()
             told = f"{PAUSED}: {_HALTED}" if broken_off else f"{type(error).__name__}: {error}"
-            self._logged(log.call_ends, number, seconds, error=told)
+            made = None
+            if self._odometer is not None:
+                self._broken_movement = number, self._odometer
+                made = _on_paper(self._odometer.made)
+            self._logged(log.call_ends, number, seconds, error=told, made=made)
             self._tell("result", **about, error=told, seconds=seconds)
             if broken_off:
                 raise _BrokenOff from None
@@ -397,6 +363,28 @@ class Performance:
         if method == "stop":
             raise Stopped  # whoever stops the robot, its program is over
         return result
+
+    def _note_made(self, here: Mapping[str, Any] | None) -> Made | None:
+        """How much of the movement that was broken off last is made, now that the robot stands
+        `here`. It is written down."""
+        if self._broken_movement is None:
+            return None
+        (number, odometer), self._broken_movement = self._broken_movement, None
+        if here is not None:
+            odometer.at(here)
+        made = _on_paper(odometer.made)
+        if made is not None:
+            self._logged(self._means.log.made, number, made)
+        return odometer.made
+
+    def _note_where_it_stands(self, here: Mapping[str, Any] | None) -> None:
+        """The program was ended before its end: who goes on with it has to know from where. Of a
+        robot that is lost that is where it was last."""
+        with contextlib.suppress(Stopped):  # the log is full, which its end tells
+            if here is not None:
+                stood = msgspec.json.encode({each: here[each] for each in ("x", "y", "theta")})
+                self._logged(self._means.log.stands_at, stood.decode())
+            self._note_made(here)
 
     def _print(self, text: str) -> None:
         self._logged(self._means.log.printed, text)
@@ -432,6 +420,7 @@ class Performance:
             with self._gate:
                 if not self._pauses():
                     self._broken_off = False
+                    self._broken_movement = None
                     self._drives = method in DRIVING
                     break
             self._execution.hold()
@@ -499,7 +488,7 @@ class Performance:
         """None if the robot does not know."""
         if not self._knows_where:
             return None
-        with contextlib.suppress(RobotError):
+        with contextlib.suppress(RobotError, Stopped):
             return pose_of(robot.location())
         return None
 
@@ -534,6 +523,11 @@ class Performance:
             "message": self._message,
         }
         self._means.publish("program", {**data, **more})
+
+
+def _on_paper(made: Made | None) -> str | None:
+    """As the log has it."""
+    return msgspec.json.encode(made).decode() if made is not None else None
 
 
 def _unconfirmed(outcome: Outcome, error: StopNotConfirmed) -> Outcome:

@@ -185,12 +185,13 @@ def watched(
     def call(method: str, arguments: dict[str, Any], line: int) -> Any:
         if recall is not None and recall.goes_on:
             return recall.answer(method, arguments)
+        left = arguments if recall is None else recall.left_of(method, arguments)
         at = simulation.time
         try:
-            return do(method, arguments)
+            return do(method, left)
         finally:
             counts[method] += 1
-            calls.append(Call(line, method, arguments, at, simulation.time))
+            calls.append(Call(line, method, left, at, simulation.time))
 
     def do(method: str, arguments: dict[str, Any]) -> Any:
         done = len(calls)
@@ -229,6 +230,8 @@ def watched(
         watchdog.cancel()
         driver.close()
 
+    if recall is not None:
+        outcome = recall.judged(outcome)
     broke_off = patience.broke_off
     if outcome.error == "rounds":
         broke_off = "computing"

@@ -3,7 +3,8 @@
 The same program runs again in a fresh simulation of the same world, with the same seed, from where
 the robot stood. What came from people then (answers, scanned codes, touches) comes from the log
 again, so the program takes the same branches; everything else is simulated anew and compared. A
-run that was broken off ends at the same call.
+run that was broken off ends at the same call. What a pause broke into pieces is made in one, and
+what was done in a run before this one, with which it went on, is not done here either.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from typing import Any
 
 import msgspec
 
+from nl2robot.going_on import Recall, whole_calls
 from nl2robot.runlog import LoggedCall, Run
 from robot_api import errors
 from robot_api.driver import StopFlag
@@ -43,16 +45,22 @@ def replay(
     calls: Sequence[LoggedCall],
     simulation: Simulation,
     on_call: Callable[[int, str, dict[str, Any]], None],
+    recall: Recall | None = None,
 ) -> Replay:
-    """Run the program again; `on_call(line, method, arguments)` is told of each call."""
+    """Run the program again; `on_call(line, method, arguments)` is told of each call. `recall` has
+    what was done before, if it went on with another run."""
     from robot_api.drivers import simulated
 
     driver = simulated(simulation)
-    logged = deque(calls)
+    logged = deque(whole for whole, _ in whole_calls(calls))
     differences = list(_put_at_start(run, simulation))
     stop = StopFlag()
 
     def call(method: str, arguments: dict[str, Any], line: int) -> Any:
+        if recall is not None and recall.goes_on:
+            return recall.answer(method, arguments)
+        if recall is not None:
+            arguments = recall.left_of(method, arguments)
         then = logged.popleft() if logged else None
         if then is None and run.status != "done":
             raise errors.Stopped(BROKEN_OFF)

@@ -46,7 +46,8 @@ CREATE TABLE IF NOT EXISTS runs (
     process INTEGER,                 -- that runs it
     continues INTEGER,               -- the run with which this one goes on
     proposed TEXT,                   -- the program that was proposed, if somebody changed it
-    changed_by TEXT                  -- who did
+    changed_by TEXT,                 -- who did
+    stood TEXT                       -- JSON: the pose where it stood when it was not "done"
 );
 CREATE TABLE IF NOT EXISTS calls (
     run INTEGER NOT NULL REFERENCES runs(id),
@@ -58,6 +59,7 @@ CREATE TABLE IF NOT EXISTS calls (
     seconds REAL,                    -- NULL: never came back
     result TEXT,                     -- JSON
     error TEXT,                      -- the error's name and sentence
+    made TEXT,                       -- JSON: metres and degrees of a movement that was broken off
     PRIMARY KEY (run, number)
 );
 CREATE TABLE IF NOT EXISTS output (
@@ -77,15 +79,19 @@ CREATE TABLE IF NOT EXISTS movements (
 );
 """
 
-_VERSION = 7
+_VERSION = 8
 _ADDED = {
-    "start": "TEXT",
-    "process": "INTEGER",
-    "continues": "INTEGER",
-    "proposed": "TEXT",
-    "changed_by": "TEXT",
+    "runs": {
+        "start": "TEXT",
+        "process": "INTEGER",
+        "continues": "INTEGER",
+        "proposed": "TEXT",
+        "changed_by": "TEXT",
+        "stood": "TEXT",
+    },
+    "calls": {"made": "TEXT"},
 }
-"""Columns of `runs` that a log of an older version has not got."""
+"""Columns that a log of an older version has not got, by their tables."""
 
 
 class LogError(UserError):
@@ -117,6 +123,7 @@ class Run(msgspec.Struct, frozen=True, kw_only=True):
     continues: int | None = None
     proposed: str | None = None
     changed_by: str | None = None
+    stood: str | None = None
 
     @property
     def going_on(self) -> bool:
@@ -139,7 +146,7 @@ _COLUMNS = ", ".join(Run.__struct_fields__)
 
 
 class LoggedCall(msgspec.Struct, frozen=True, kw_only=True):
-    """A robot call of a run. `arguments` and `result` are JSON."""
+    """A robot call of a run. `arguments`, `result` and `made` are JSON."""
 
     number: int
     line: int
@@ -149,6 +156,7 @@ class LoggedCall(msgspec.Struct, frozen=True, kw_only=True):
     seconds: float | None
     result: str | None
     error: str | None
+    made: str | None = None
 
 
 class RunLog:
@@ -229,11 +237,17 @@ class RunLog:
         *,
         result: str | None = None,
         error: str | None = None,
+        made: str | None = None,
     ) -> None:
         self._write(
-            "UPDATE calls SET seconds = ?, result = ?, error = ? WHERE run = ? AND number = ?",
-            *(seconds, result, error, run, number),
+            "UPDATE calls SET seconds = ?, result = ?, error = ?, made = ?"
+            " WHERE run = ? AND number = ?",
+            *(seconds, result, error, made, run, number),
         )
+
+    def made(self, run: int, number: int, made: str) -> None:
+        """Note how much of a movement that was broken off is made, now that the robot stands."""
+        self._write("UPDATE calls SET made = ? WHERE run = ? AND number = ?", made, run, number)
 
     def state(self, run: int, since: float, state: str, because: str | None) -> None:
         """Note how the robot and the program stood from then on."""
@@ -252,6 +266,10 @@ class RunLog:
         """Note where a simulated robot stands when the run begins."""
         start = msgspec.json.encode({"x": x, "y": y, "theta": theta}).decode()
         self._write("UPDATE runs SET start = ? WHERE id = ?", start, run)
+
+    def stands_at(self, run: int, pose: str) -> None:
+        """Note where the robot came to stand, JSON, when a run was broken off."""
+        self._write("UPDATE runs SET stood = ? WHERE id = ?", pose, run)
 
     def picture(self, run: int, path: str) -> None:
         self._write("UPDATE runs SET picture = ? WHERE id = ?", path, run)
@@ -278,7 +296,7 @@ class RunLog:
 
     def calls(self, run: int) -> list[LoggedCall]:
         rows = self._read(
-            "SELECT number, line, method, arguments, started, seconds, result, error"
+            "SELECT number, line, method, arguments, started, seconds, result, error, made"
             " FROM calls WHERE run = ? ORDER BY number",
             run,
         )
@@ -315,10 +333,11 @@ class RunLog:
         if version >= _VERSION:
             return
         self._db.executescript(f"BEGIN IMMEDIATE; {_SCHEMA}")
-        there = {row[1] for row in self._db.execute("PRAGMA table_info(runs)")}
-        for name, kind in _ADDED.items():
-            if name not in there:
-                self._db.execute(f"ALTER TABLE runs ADD COLUMN {name} {kind}")
+        for table, columns in _ADDED.items():
+            there = {row[1] for row in self._db.execute(f"PRAGMA table_info({table})")}
+            for name, kind in columns.items():
+                if name not in there:
+                    self._db.execute(f"ALTER TABLE {table} ADD COLUMN {name} {kind}")
         self._db.execute(f"PRAGMA user_version = {_VERSION}")
         self._db.execute("COMMIT")
 

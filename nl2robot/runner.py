@@ -11,6 +11,7 @@ An approval is bound to the hash of exactly one program and is used up by one ru
 
 from __future__ import annotations
 
+import contextlib
 import secrets
 import threading
 import time
@@ -21,16 +22,19 @@ from typing import Any, Final
 
 import msgspec
 
-from nl2robot.going_on import Recall, Unfinished, unfinished
+from nl2robot.going_on import Recall, Unfinished, told, unfinished
 from nl2robot.history import Record, done_calls
 from nl2robot.knowledge import Knowledge
-from nl2robot.performance import Approval, Means, Performance, Status
+from nl2robot.pausing import pose_of
+from nl2robot.performance import Means, Performance
 from nl2robot.present import Present
 from nl2robot.review import Review, digest, review
+from nl2robot.reviews import Reviews, as_it_is
 from nl2robot.runlog import LogError, RunLog
+from nl2robot.runs import Approval, Status
 from nl2robot.state import State
 from robot_api.client import Robot
-from robot_api.errors import AccessDenied, LostConnection, NotPossible
+from robot_api.errors import AccessDenied, LostConnection, NotPossible, RobotError, Stopped
 from sim.simulation import Simulation
 from sim.world import World, builtin_worlds
 
@@ -71,6 +75,7 @@ class Runner:
         self._stage = stage
         self._seed = seed
         self._lock = threading.Lock()
+        self._reviews = Reviews()
         self._approvals: OrderedDict[str, Approval] = OrderedDict()
         self._performance: Performance | None = None
         """The run that goes on, or the last that did."""
@@ -84,13 +89,27 @@ class Runner:
         """Review a program, and read it in a language; nothing moves. `continues`: only what is
         left of it after that run is tried. Raises `NotPossible` if nothing is."""
         recall = self._recall(continues, program)
-        return review(program, self.knowledge, self._stage, language, self._seed, recall)
+        simulation = self._stage() if self._stage is not None else None
+        world = as_it_is(simulation) if simulation is not None else None
+        stage = (lambda: simulation) if simulation is not None else None
+        made = review(program, self.knowledge, stage, language, self._seed, recall)
+        self._reviews.keep(made, continues, world)
+        return made
 
     def unfinished(self, run: int | None = None) -> Unfinished | None:
         """What is left of that run, or of the last one, if it was broken off."""
         if self.present.state.run is not None:
             return None
         return unfinished(self.log, run)
+
+    def told_of(self, rest: Unfinished, language: str) -> list[str]:
+        """What is done of it and what is left, in sentences; and whether the robot was moved since
+        it stopped."""
+        here = None
+        if rest.stood is not None:
+            with contextlib.suppress(RobotError, Stopped), self._means.connect() as robot:
+                here = pose_of(robot.location())
+        return told(rest, self.knowledge, language, here)
 
     def approve(
         self,
@@ -105,11 +124,14 @@ class Runner:
         continues: int | None = None,
         proposed: str | None = None,
         changed_by: str | None = None,
+        insists: bool = False,
     ) -> Approval:
         """Approve exactly this program. `proposed` is what lay before them first, where somebody
-        has changed it (`changed_by`; else who approves it); kept with the run. Raises
-        `AccessDenied` if the hash is that of another text, or if the review finds an error in it,
-        `NotPossible` while another program runs."""
+        has changed it (`changed_by`; else who approves it); kept with the run. `insists`: though it
+        does not come to its end in the dry run, which is made now unless it was lately. Raises
+        `AccessDenied` if the hash is that of another text, if the review finds an error in it, or
+        if it does not come to its end and nobody insists, `NotPossible` while another program
+        runs."""
         self._check_free()
         if digest(program) != sha256:
             raise AccessDenied(
@@ -126,6 +148,8 @@ class Runner:
             )
         if continues is not None:
             utterance = utterance or self._rest(continues, program).utterance
+        if not insists:
+            self._check_comes_through(program, sha256, continues)
         changed = proposed is not None and proposed != program
         approval = Approval(
             id=secrets.token_urlsafe(16),
@@ -293,7 +317,24 @@ class Runner:
 
     def _recall(self, run: int | None, program: str) -> Recall | None:
         """What was done before, if it goes on with a run. Raises `NotPossible`."""
-        return None if run is None else Recall(self._rest(run, program).done)
+        if run is None:
+            return None
+        rest = self._rest(run, program)
+        return Recall(rest.done, rest.again)
+
+    def _check_comes_through(self, program: str, sha256: str, continues: int | None) -> None:
+        """Raise `AccessDenied` if it does not come to its end in the dry run."""
+        if self._stage is None:
+            return  # there is nothing to try it in
+        last = self._reviews.of(sha256, continues, as_it_is(self._stage()))
+        dry_run = (last or self.check(program, continues=continues)).dry_run
+        if dry_run is None or dry_run.complete:
+            return
+        ends = f"line {dry_run.line}: {dry_run.message}" if dry_run.message else "it broke off"
+        raise AccessDenied(
+            f"The program did not come to its end when it was tried ({ends.rstrip('.')})."
+            " Change it, or say that you want it run all the same (`insists`)."
+        )
 
     def _check_free(self) -> None:
         """Raise `NotPossible` while a program runs."""

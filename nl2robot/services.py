@@ -13,7 +13,6 @@ import msgspec
 from grammar.planning.planner import Interrupted
 from grammar.samples import samples
 from nl2robot.answers import answer
-from nl2robot.going_on import told
 from nl2robot.planners import names
 from nl2robot.runner import Runner
 from nl2robot.state import GOING, Reviewing
@@ -102,7 +101,7 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
         rest = runner.unfinished(run)
         if rest is None:
             return None
-        more = {"line": rest.line, "told": told(rest, runner.knowledge, language)}
+        more = {"line": rest.line, "told": runner.told_of(rest, language)}
         return {**msgspec.to_builtins(rest), **more}
 
     def listed(p: Mapping[str, Any]) -> Any:
@@ -157,7 +156,8 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             "Approve exactly the program with this SHA-256 for one run. With `continues`, the"
             " number of a run that was broken off, what was done there is not done again. Where it"
             " was changed by hand, `proposed` is the program from before; the log keeps both, and"
-            " who did.",
+            " who did. One that does not come to its end in the dry run, which is made now unless"
+            " it was lately, is refused unless somebody `insists`.",
             {
                 "program": _PROGRAM,
                 "sha256": {"type": "string", "pattern": "^[0-9a-f]{64}$"},
@@ -169,6 +169,7 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
                 "continues": _MAYBE_RUN,
                 "proposed": _MAYBE,
                 "changed_by": {"type": ["string", "null"], "minLength": 1, "maxLength": 200},
+                "insists": {"type": "boolean"},
             },
             "program sha256 by",
         ),

@@ -22,13 +22,14 @@ from nl2robot.going_on import texts as going_on_texts
 from nl2robot.harmless import approver, needs_no_question
 from nl2robot.operator import Operator
 from nl2robot.other_language import accepted, hint, language_of, question
-from nl2robot.performance import Approval, Status
 from nl2robot.review import Review
+from nl2robot.runs import Approval, Status
 from nl2robot.state import GOING, HELD
 from nl2robot.terminal import Decision, Terminal
 from nl2robot.translation import Translation
 from nl2robot.waiting import GivenUp
 from robot_api.errors import (
+    AccessDenied,
     InvalidCall,
     LostConnection,
     NotPossible,
@@ -245,13 +246,22 @@ class Session:
         by: str | None = None,
         proposed: str | None = None,
     ) -> Approval | None:
-        """None while another program runs, which is said."""
+        """None while another program runs, or where it is not as it was when they decided, which
+        is said. What did not come to its end is only approved here by who insists."""
+        insists = not review.came_through
         try:
-            return self.operator.approve(review, translation, heard, continues, by, proposed)
+            return self.operator.approve(
+                review, translation, heard, continues, by, proposed, insists
+            )
         except NotPossible:
             if self.approve_all:
                 raise
             self.terminal.console.print(self.terminal.words["busy"], markup=False)
+            return None
+        except AccessDenied:
+            if self.approve_all or insists:
+                raise
+            self.terminal.console.print(self.terminal.words["not_as_it_was"], markup=False)
             return None
 
     def _decision(self, review: Review) -> tuple[Decision | None, str]:

@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterator
 
 from sim.hospital import chart_of
-from sim.navigation import Spot
+from sim.navigation import Chart, Spot
 from sim.world import Place, World
-from sim.zones import distance_to
+from sim.zones import distance_to, distance_to_line
 
 NEAR = 0.6
 """Metres that a spot is put aside at most, to where there is room."""
@@ -16,20 +16,44 @@ _STEP, _AROUND = 0.05, 24
 
 
 def room_near(world: World, x: float, y: float, within: float = NEAR) -> Spot | None:
-    """The spot, or the nearest within so many metres where the robot has room; None if there is
-    none."""
+    """The spot, or the nearest within so many metres where the robot has room and leaves doorways
+    free, as far as there is one; None if it has no room at all."""
     chart = chart_of(world)
     free = chart.nearest_free(x, y)
     if free is not None and math.dist(free, (x, y)) <= within:
-        return free
+        if not blocks_a_door(world, *free):
+            return free
+        # Not beyond a wall: people would look for it here.
+        beside = (
+            spot
+            for spot in _around(chart, x, y, within)
+            if not blocks_a_door(world, *spot) and chart.in_sight(free, spot)
+        )
+        return next(beside, free)
     # It is in a wall, or just beyond one.
+    near = list(_around(chart, x, y, within))
+    return next((spot for spot in near if not blocks_a_door(world, *spot)), next(iter(near), None))
+
+
+def _around(chart: Chart, x: float, y: float, within: float) -> Iterator[Spot]:
+    """Spots with room, the nearest first."""
     for ring in range(1, round(within / _STEP) + 1):
         for number in range(_AROUND):
             angle = math.tau * number / _AROUND
             spot = (x + ring * _STEP * math.cos(angle), y + ring * _STEP * math.sin(angle))
             if chart.fits(*spot) and chart.nearest_free(*spot) == spot:
-                return spot
-    return None
+                yield spot
+
+
+def blocks_a_door(world: World, x: float, y: float) -> bool:
+    """Whether a robot that stands there is in people's way through a door: in it, or so close
+    before it that not even another robot came by."""
+    width = 2 * world.robot.radius
+    for x1, y1, x2, y2 in (door.ends for door in world.doors):
+        body = distance_to_line((x1, y1), (x2, y2), (x, y)) - world.robot.radius
+        if body < width:
+            return True
+    return False
 
 
 def zone_around(world: World, x: float, y: float) -> str | None:

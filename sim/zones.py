@@ -84,11 +84,13 @@ def distance_to(polygon: Polygon, x: float, y: float) -> float:
     if contains(polygon, x, y):
         return 0.0
     return min(
-        _to_side(start, end, (x, y)) for start, end in itertools.pairwise((*polygon, polygon[0]))
+        distance_to_line(start, end, (x, y))
+        for start, end in itertools.pairwise((*polygon, polygon[0]))
     )
 
 
-def _to_side(start: Point, end: Point, point: Point) -> float:
+def distance_to_line(start: Point, end: Point, point: Point) -> float:
+    """How far a point is from a line between two others."""
     along = (end[0] - start[0], end[1] - start[1])
     squared = along[0] ** 2 + along[1] ** 2
     share = 0.0

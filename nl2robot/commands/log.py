@@ -101,6 +101,7 @@ def _show(log: RunLog, row: Run, terminal: Terminal) -> None:
 
 
 def _replay(log: RunLog, row: Run, terminal: Terminal, picture: str | None) -> int:
+    from nl2robot.going_on import recall_of
     from nl2robot.replay import replay
     from nl2robot.station import check_picture, draw
     from sim.simulation import Simulation
@@ -120,7 +121,8 @@ def _replay(log: RunLog, row: Run, terminal: Terminal, picture: str | None) -> i
         about = {"what": "call", "line": line, "method": method, "arguments": arguments}
         terminal.show_event("program", about)
 
-    again = replay(row, log.calls(row.id), simulation, on_call)
+    recall = recall_of(log, row.continues)
+    again = replay(row, log.calls(row.id), simulation, on_call, recall)
     terminal.show_end(again.status, again.message)
     for each in again.differences:
         terminal.console.print(each, style="yellow", markup=False)

@@ -25,7 +25,6 @@ from nl2robot.console.visitor import texts
 from nl2robot.errors import UserError
 from nl2robot.going_on import asks_to_go_on
 from nl2robot.going_on import texts as going_on_texts
-from nl2robot.going_on import told as rest_told
 from nl2robot.harmless import approver, needs_no_question
 from nl2robot.other_language import accepted, declined, language_of, question
 from nl2robot.review import Review, digest
@@ -36,7 +35,7 @@ from nl2robot.translation import Translation, translate
 from nl2robot.trouble import told
 from nl2robot.words import words_in
 from robot_api.driver import StopFlag
-from robot_api.errors import NotPossible, RobotError
+from robot_api.errors import AccessDenied, NotPossible, RobotError
 
 LINES_KEPT: Final = 200
 
@@ -383,7 +382,7 @@ class Dialogue:
         if rest is None:
             self._tell(Line("robot", going_on_texts(language)["nothing_left"]))
             return
-        self._tell(Line("robot", " ".join(rest_told(rest, runner.knowledge, language))))
+        self._tell(Line("robot", " ".join(runner.told_of(rest, language))))
         with self._turn:
             self._review(Draft(rest.program, continues=rest.run), language)
 
@@ -481,8 +480,20 @@ class Dialogue:
                     continues=draft.continues,
                     proposed=draft.proposed,
                     changed_by=draft.changed_by,
+                    insists=insists,
                 )
                 self.runs.add(runner.run(approval.id))
+            except AccessDenied as error:
+                if insists:
+                    self._tell(Line("robot", str(error), "trouble"))
+                    return
+                # The world has changed since, and with it what comes of the program.
+                self._review(replace(draft, review=None), language)
+                now = self.draft.review if self.draft else None
+                open_end = now is not None and not now.came_through
+                why = _said("must_insist", language) if open_end else str(error)
+                self._tell(Line("robot", why, "trouble"))
+                return
             except (RobotError, UserError) as error:
                 busy = runner.present.state.run is not None
                 why = _said("busy", language) if busy else str(error)

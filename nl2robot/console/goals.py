@@ -64,8 +64,8 @@ def part(backstage: Backstage) -> Part:
                     aim(backstage, p["x"], p["y"], p.get("place"), p.get("language", "en"))
                 ),
                 "Tell what a spot or a place on the map means as a goal: the nearest spot where the"
-                " robot has room, by how many metres that was moved, what people call it, and the"
-                " program that goes there. Moves nothing.",
+                " robot has room and blocks no door, by how many metres that was moved, what people"
+                " call it, and the program that goes there. Moves nothing.",
                 {
                     "x": {"type": "number"},
                     "y": {"type": "number"},
@@ -99,6 +99,7 @@ def aim(backstage: Backstage, x: float, y: float, place: str | None, language: s
     if named is not None:
         program = f"robot.goto({json.dumps(named, ensure_ascii=False)})\n"
         return Aimed(x, y, named, 0.0, program, phrase("goal_place", place=named), "")
+    meant = x, y
     x, y, moved = free_spot(world, x, y, ASIDE)
     x, y = round(x, 2), round(y, 2)
     where = phrase("goal_at", x=_number(x, language), y=_number(y, language))
@@ -109,14 +110,15 @@ def aim(backstage: Backstage, x: float, y: float, place: str | None, language: s
         said = words["goal_spot"].format(where=f"{near}, {where}")
     note = ""
     if moved > MOVED:
-        note = words["goal_moved"].format(metres=_number(round(moved, 1), language))
+        key = "goal_doorway" if _has_room(world, *meant) else "goal_moved"
+        note = words[key].format(metres=_number(round(moved, 1), language))
     program = f"robot.goto({x:g}, {y:g})  # {near}\n"
     return Aimed(x, y, None, round(moved, 2), program, said, note)
 
 
 def free_spot(world: World, x: float, y: float, within: float) -> tuple[float, float, float]:
-    """The nearest spot where the robot has room, and how many metres that is from there. Raises
-    `UserError` if none is within so many metres."""
+    """The nearest spot where the robot has room and blocks no door, and how many metres that is
+    from there. Raises `UserError` if none is within so many metres."""
     if not (abs(x) <= FARTHEST and abs(y) <= FARTHEST):  # nor is NaN
         raise UserError("That is no spot on this map. Click on the map.")
     if not world.has_geometry:
@@ -138,6 +140,13 @@ def free_spot(world: World, x: float, y: float, within: float) -> tuple[float, f
             " of it, or remove the zone first."
         )
     return (*spot, math.dist(spot, (x, y)))
+
+
+def _has_room(world: World, x: float, y: float) -> bool:
+    """Whether the robot could stand right there, if only in people's way."""
+    from sim.hospital import chart_of
+
+    return chart_of(world).nearest_free(x, y) == (x, y)
 
 
 def _place_at(world: World, x: float, y: float) -> str | None:

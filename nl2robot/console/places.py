@@ -31,8 +31,8 @@ MOST_PLACES: Final = 200
 MOST_ALIASES: Final = 10
 """Of a place, in one language."""
 LONGEST_NAME: Final = 60
-ASIDE: Final = 0.6
-"""Metres that a place is put aside at most, to where the robot has room."""
+ASIDE: Final = 1.0
+"""Metres that a place is put aside at most, to where the robot has room and blocks no door."""
 
 _NUMBER = {"type": "number"}
 _NAME = {"type": "string", "maxLength": 1000}
@@ -57,7 +57,7 @@ def part(backstage: Backstage) -> Part:
             "places.set": service(
                 naming.set,
                 "Name a place, or change the one that `was` called so. Returns the places, and by"
-                " how many metres it was `moved` to where the robot has room.",
+                " how many metres it was `moved` to where the robot has room and blocks no door.",
                 {
                     "name": _NAME,
                     "kind": _NAME,

@@ -5,11 +5,13 @@ from typing import Any
 
 import msgspec
 import pytest
+from shapely import LineString, Point
 
 from nl2robot.console.goals import Aimed, aim
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
-from sim.world import Zone, load_world
+from sim.spots import room_near
+from sim.world import Door, World, Zone, load_world
 
 HOSPITAL = load_world("city-hospital")
 
@@ -65,6 +67,38 @@ def test_a_spot_without_room_becomes_the_nearest_that_has_some_and_says_so() -> 
     assert "0.4 m away" in beside.note
     assert beside.program == "robot.goto(5.5, 6.9)  # by the door of the pharmacy\n"
     assert aimed(5.5, 7.2).note == ""
+
+
+@pytest.mark.parametrize(
+    ("x", "y"),
+    [
+        (3.7, 6.5),  # in the doorway of the pharmacy
+        (3.7, 6.9),  # right before it
+        (3.7, 6.1),  # right behind it
+        (34.0, 5.0),  # in the inner doorway of the kitchen
+    ],
+)
+def test_by_the_door_is_where_nobody_is_kept_from_going_through(x: float, y: float) -> None:
+    spot = aimed(x, y)
+    for door in HOSPITAL.doors:
+        line = LineString([door.ends[:2], door.ends[2:]])
+        assert line.distance(Point(spot.x, spot.y)) > 0.74, "a robot's width, and the robot"
+    assert spot.moved < 1 and "by the door of" in spot.program
+    assert "in people's way through a door" in spot.note
+
+
+def test_who_clicks_before_a_door_finds_the_robot_on_that_side_of_it() -> None:
+    assert aimed(3.7, 6.8).y > 6.5
+    assert aimed(3.7, 6.2).y < 6.5
+    assert aimed(4.6, 6.9).y > 6.5, "beside the door, and not in the room behind the wall"
+
+
+def test_where_there_is_nothing_but_a_doorway_the_robot_stands_in_it() -> None:
+    """A cupboard of a lobby: better there than nowhere."""
+    walls = ((0.0, 0.0, 1.2, 0.0), (1.2, 0.0, 1.2, 0.9), (1.2, 0.9, 0.0, 0.9), (0.0, 0.9, 0.0, 0.0))
+    door = Door(ends=(0.4, 0.0, 0.8, 0.0), at="cupboard")
+    world = World(name="tiny", drawn_walls=walls, doors=(door,))
+    assert room_near(world, 0.6, 0.45) == (0.6, 0.45)
 
 
 def test_where_the_robot_cannot_go_a_sentence_says_why() -> None:

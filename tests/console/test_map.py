@@ -109,6 +109,21 @@ def test_a_click_on_the_floor_is_reviewed_and_run_without_leaving_the_map(
     assert kept["utterance"] == "Go to the spot by the door of the pharmacy."
 
 
+def test_a_click_in_a_doorway_sends_it_to_where_people_get_through(
+    floor: Callable[..., Page], picture: Picture
+) -> None:
+    page = floor(width=390, height=844)
+    choose(page, "Send")
+    page.mouse.click(*pixel(page, 3.7, 6.6))  # of the pharmacy
+    expect(
+        page.get_by_role("status").filter(has_text="people's way through a door")
+    ).to_be_visible()
+    program = page.locator(".desk-editor .cm-content")
+    expect(program).to_contain_text("# by the door of the pharmacy")
+    expect(program).to_contain_text(", 7.2")  # a robot's width before the door, in the corridor
+    picture(page, "map-doorway")
+
+
 def test_where_nobody_can_stand_nothing_is_proposed(
     floor: Callable[..., Page], served: Served
 ) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from queue import SimpleQueue
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -210,6 +211,28 @@ def test_after_a_stop_one_looks_at_what_is_left_and_goes_on(
         expect(page.locator("#run-panel .chip[role=status]")).to_have_text("Done")
         rows = page.locator("#run-panel .calls li code")
         expect(rows).to_have_text(['goto(place="ward a")', 'say(text="Three.")'])
+
+
+def test_of_a_move_the_rest_is_left_and_that_the_robot_was_moved_is_told(
+    look: Look, page: Page, served: Served, picture: Picture
+) -> None:
+    with served.robot() as robot:
+        robot.localize("corridor")
+        poses: SimpleQueue[float] = SimpleQueue()
+        robot.subscribe(["pose"], lambda kind, data: poses.put(data["x"]))
+        began = robot.location().x
+        runs(robot, "robot.move(2)\n")
+        while abs(poses.get(timeout=20) - began) < 0.5:
+            pass
+        page.keyboard.press("Escape")
+        expect(page.locator("#run-panel .chip[role=status]")).to_have_text("Stopped")
+        robot.localize("ward a")
+    page.get_by_role("button", name="Go on from there").click()
+    told = page.locator(".said.by-robot").last
+    expect(told).to_contain_text("A part of that step is done already")
+    expect(told).to_contain_text("The robot is no longer where it stopped, but ")
+    picture(page, "go-on-rest")
+    page.get_by_role("button", name="Reject").click()
 
 
 def test_go_on_is_typed_as_well(look: Look, page: Page, served: Served, running: int) -> None:

@@ -1,9 +1,16 @@
 """After a stop, an approved program goes on from where it was, and does nothing twice."""
 
+import math
+
+import msgspec
 import pytest
 
-from nl2robot.going_on import DoneCall, Recall, asks_to_go_on
+from nl2robot.going_on import DoneCall, Recall, asks_to_go_on, unfinished
+from nl2robot.rehearsal import watched
+from nl2robot.station import simulated_station
 from robot_api.errors import Blocked, NotPossible, Stopped
+from sim.simulation import Simulation
+from sim.world import load_world
 from tests.nl2robot.test_pausing import Watching
 from tests.nl2robot.test_runner import start as run_program
 from tests.nl2robot.test_runner import what
@@ -111,6 +118,146 @@ def test_what_failed_at_the_robot_can_be_tried_again(operator) -> None:
     left = operator.unfinished()
     assert left.run == run
     assert "line 2" in left.told[1]
+
+
+# --- of a movement only the rest
+
+
+def stopped_after(operator, station, program: str, metres: float) -> int:
+    """Run it, and stop the robot when it has come so far."""
+    began, watch = station.simulation.robot, Watching(operator)
+    run = run_program(operator, program)
+    watch.until(
+        lambda kind, data: (
+            kind == "pose" and math.hypot(data["x"] - began.x, data["y"] - began.y) > metres
+        )
+    )
+    operator.stop()
+    assert operator.wait(run).state == "stopped"
+    return run
+
+
+def driven(station, before) -> float:
+    robot = station.simulation.robot
+    return math.hypot(robot.x - before.x, robot.y - before.y)
+
+
+@pytest.mark.parametrize(
+    ("program", "call", "whole"),
+    [
+        ("robot.move(3)\n", "metres", 3.0),
+        ("robot.drive(0.3, 0, 8)\n", "seconds", 8.0),
+    ],
+)
+def test_a_bed_comes_along_and_only_the_rest_of_the_way_is_made(
+    slow_operator, slow_station, log, program, call, whole
+) -> None:
+    before = slow_station.simulation.robot
+    stopped_after(slow_operator, slow_station, program, 0.6)
+    made_so_far = driven(slow_station, before)
+    left = slow_operator.unfinished()
+    assert len(left.told) == 2, "nothing was done but a part of this"
+    assert "only the rest of it is left" in left.told[1]
+    dry_run = slow_operator.check(program, "en", left.run).dry_run
+    assert dry_run.metres == pytest.approx(
+        abs(whole if call == "metres" else 2.4) - made_so_far, abs=0.2
+    )
+    again, _ = going_on(slow_operator)
+    assert slow_operator.wait(again).state == "done"
+    assert driven(slow_station, before) == pytest.approx(
+        abs(whole) if call == "metres" else 2.4, abs=0.15
+    )
+    [rest] = log.calls(again)
+    assert abs(msgspec.json.decode(rest.arguments)[call]) < abs(whole) - 0.5
+    assert slow_operator.unfinished() is None
+
+
+def test_a_turn_that_was_stopped_ends_where_it_should_have(log, sit_down) -> None:
+    with simulated_station(load_world("ward"), log, seed=1, speed=2) as station:
+        operator = sit_down(station)
+        before, watch = station.simulation.robot.theta, Watching(operator)
+        run = run_program(operator, "robot.turn(270)\n")
+        watch.until(lambda kind, data: kind == "pose" and abs(data["theta"] - before) % 360 > 60)
+        operator.stop()
+        operator.wait(run)
+        again, told = going_on(operator, "de")
+        assert told[-1].startswith("Ein Teil dieses Schritts ist schon getan") and "°" in told[-1]
+        assert operator.wait(again).state == "done"
+        off = (station.simulation.robot.theta - before - 270 + 180) % 360 - 180
+        assert off == pytest.approx(0, abs=6)
+
+
+def test_paused_stopped_and_stopped_again_it_makes_it_once(slow_operator, slow_station, log):
+    """Each of them leaves less of it; what follows is done once, too."""
+    program = 'robot.move(4)\nrobot.say("Here I am.")\n'
+    before, watch = slow_station.simulation.robot, Watching(slow_operator)
+    run = run_program(slow_operator, program)
+    watch.until(lambda kind, data: kind == "pose" and driven(slow_station, before) > 0.5)
+    slow_operator.pause()
+    watch.until_state("paused")
+    slow_operator.resume()
+    watch.until(lambda kind, data: kind == "pose" and driven(slow_station, before) > 1.5)
+    slow_operator.stop()
+    assert slow_operator.wait(run).state == "stopped"
+    second, _ = going_on(slow_operator)
+    watch.until(lambda kind, data: kind == "pose" and driven(slow_station, before) > 2.5)
+    slow_operator.stop()
+    assert slow_operator.wait(second).state == "stopped"
+    third, told = going_on(slow_operator, "fr")
+    assert told[-1].startswith("Une partie de cette étape est déjà faite")
+    assert slow_operator.wait(third).state == "done"
+    assert driven(slow_station, before) == pytest.approx(4, abs=0.2)
+    assert [method for method, _ in made(log, third)] == ["move", "say"]
+
+
+def test_who_goes_on_is_told_that_the_robot_was_moved_meanwhile(
+    slow_operator, slow_station
+) -> None:
+    stopped_after(slow_operator, slow_station, "robot.move(3)\n", 0.6)
+    assert not any("no longer" in each for each in slow_operator.unfinished().told)
+    slow_operator.robot.turn(90)
+    assert "no longer faces the way" in slow_operator.unfinished().told[-1]
+    slow_operator.robot.goto("ward b")
+    [*_, moved] = slow_operator.unfinished().told
+    assert "The robot is no longer where it stopped, but " in moved
+    assert "goes on from where it is now" in moved
+
+
+def test_of_what_a_log_from_before_has_no_measure_it_is_all_done_again(log) -> None:
+    about = {"approved_by": "Nurse Kim", "approved_at": 0.0, "sha256": "0" * 64}
+    run = log.begin(program="robot.move(3)\n", **about)
+    log.call_begins(run, 1, 1, "move", '{"metres":3}')
+    log.call_ends(run, 1, 2.0, error="Stopped: The nurse said so.")
+    log.end(run, "stopped", None)
+    again = unfinished(log).again
+    assert (again.arguments, again.left) == ({"metres": 3}, {"metres": 3})
+    log.made(run, 1, '{"metres":2.99,"degrees":0.0}')
+    assert (unfinished(log).again, len(unfinished(log).done)) == (None, 1)
+
+
+def test_a_movement_that_a_pause_broke_off_at_its_very_end_is_done(log) -> None:
+    """The next call is another one, not the rest of it."""
+    about = {"approved_by": "Nurse Kim", "approved_at": 0.0, "sha256": "0" * 64}
+    run = log.begin(program='robot.move(1)\nrobot.say("Here.")\n', **about)
+    log.call_begins(run, 1, 1, "move", '{"metres":1}')
+    log.call_ends(run, 1, 2.0, error="Paused: Halted.", made='{"metres":0.99,"degrees":0.0}')
+    log.call_begins(run, 2, 2, "say", '{"text":"Here."}')
+    log.call_ends(run, 2, 0.1, error="Stopped: The nurse said so.")
+    log.end(run, "stopped", None)
+    rest = unfinished(log)
+    assert [call.method for call in rest.done] == ["move"]
+    assert rest.again.method == "say"
+
+
+def test_a_dry_run_that_comes_to_other_calls_has_not_come_through() -> None:
+    simulation = Simulation(load_world("ward"))
+    recall = Recall([DoneCall("say", {"text": "Hello."}, 1)])
+    dry_run, _ = watched('robot.say("Goodbye.")\n', simulation, recall=recall)
+    assert (dry_run.status, dry_run.error) == ("failed", "Deviates")
+    again = DoneCall("move", {"metres": 3}, 1, left={"metres": 1})
+    other = Simulation(load_world("ward"))
+    dry_run, _ = watched("robot.move(2)\n", other, recall=Recall([], again))
+    assert (dry_run.status, dry_run.metres) == ("failed", 0)
 
 
 def test_a_program_that_calls_otherwise_is_ended_before_it_does_anything() -> None:

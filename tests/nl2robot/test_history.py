@@ -19,7 +19,9 @@ class Nurse:
         translation = self.says(words)
         assert translation.program is not None, translation.message
         review = self.operator.check(translation.program)
-        status = self.operator.wait(self.operator.run(self.operator.approve(review, translation)))
+        insists = not review.came_through
+        approval = self.operator.approve(review, translation, insists=insists)
+        status = self.operator.wait(self.operator.run(approval))
         return status.state
 
     def hears(self, words: str) -> str:

@@ -7,10 +7,11 @@ import threading
 import pytest
 
 from nl2robot import performance
-from nl2robot.pausing import Odometer, rest_of
+from nl2robot.pausing import Odometer, comes_to_rest, rest_of
 from nl2robot.runlog import RunLog
 from nl2robot.station import robot_station, simulated_station
 from robot_api.robots.wire import WireDriver
+from robot_api.values import Location
 from sim.world import load_world
 from tests.nl2robot.test_runner import Watch, start, what
 
@@ -230,6 +231,22 @@ def test_who_comes_late_is_told_the_present_state_first(slow_operator, slow_stat
     assert slow_operator.robot.request("station.state")["sequence"] > first[0]["sequence"]
 
 
+def test_a_robot_whose_radio_falters_is_not_taken_for_one_that_stands() -> None:
+    """Twice it is told the pose from before, while it still rolls."""
+    told = iter([0.0, 0.2, 0.2, 0.4, 0.5])
+
+    class Rolling:
+        x = 0.0
+
+        def location(self) -> Location:
+            self.x = next(told, 0.5)
+            return Location(self.x, 0, 0)
+
+    robot = Rolling()
+    assert comes_to_rest(robot, 10, lambda: True)
+    assert robot.x == 0.5
+
+
 def pose(x: float, y: float, theta: float) -> dict[str, float]:
     return {"x": x, "y": y, "theta": theta}
 
@@ -238,10 +255,10 @@ def test_an_odometer_counts_backwards_and_round_and_round() -> None:
     odometer = Odometer(pose(0, 0, 170))
     for theta in (-170, -90, 0, 90, 170, -170):
         odometer.at(pose(0, 0, theta))
-    assert odometer.degrees == pytest.approx(380)
+    assert odometer.made.degrees == pytest.approx(380)
     back = Odometer(pose(0, 0, 0))
     back.at(pose(-0.4, 0, 0))
-    assert back.metres == pytest.approx(-0.4)
-    assert rest_of("move", {"metres": -1.0}, back) == {"metres": -0.6}
-    assert rest_of("move", {"metres": -0.41}, back) is None
-    assert rest_of("drive", {"linear": 0.0, "angular": 0.0, "seconds": 2.0}, back) is not None
+    assert back.made.metres == pytest.approx(-0.4)
+    assert rest_of("move", {"metres": -1.0}, back.made) == {"metres": -0.6}
+    assert rest_of("move", {"metres": -0.41}, back.made) is None
+    assert rest_of("drive", {"linear": 0.0, "angular": 0.0, "seconds": 2.0}, back.made) is not None

@@ -7,10 +7,13 @@ import sqlite3
 import pytest
 
 from nl2robot.errors import ExitStatus
+from nl2robot.going_on import recall_of
 from nl2robot.replay import Replay, replay
 from nl2robot.runlog import Run, RunLog
 from sim.simulation import Simulation
 from sim.world import BUILTIN, load_world
+from tests.nl2robot.test_pausing import Watching
+from tests.nl2robot.test_runner import start
 
 ASKING = """\
 robot.goto("ward a")
@@ -24,7 +27,7 @@ def run(operator, log):
     """Run a program; returns its row in the log."""
 
     def run(program: str) -> Run:
-        number = operator.run(operator.approve(operator.check(program)))
+        number = start(operator, program)
         operator.wait(number)
         row = log.run(number)
         assert row is not None
@@ -37,7 +40,9 @@ def again(log: RunLog, row: Run, seed: int | None = None) -> tuple[Replay, Simul
     """Replay it in a fresh simulation."""
     assert row.world is not None
     simulation = Simulation(load_world(row.world), seed=row.seed if seed is None else seed)
-    return replay(row, log.calls(row.id), simulation, lambda line, method, given: None), simulation
+    recall = recall_of(log, row.continues)
+    calls, nobody = log.calls(row.id), lambda line, method, given: None
+    return replay(row, calls, simulation, nobody, recall), simulation
 
 
 def test_a_run_comes_out_the_same(run, log, station) -> None:
@@ -176,3 +181,32 @@ def test_a_log_of_the_first_version_is_read_and_goes_on(nl2robot, home) -> None:
     assert log.run(1).start is None
     assert log.run(2).start is not None
     log.close()
+
+
+def test_what_was_paused_is_replayed_in_one_and_nothing_came_out_otherwise(
+    slow_operator, log
+) -> None:
+    watch = Watching(slow_operator)
+    run = start(slow_operator, 'robot.goto("ward b")\nrobot.move(0.5)\nrobot.say("Here.")\n')
+    watch.until_fast()
+    slow_operator.pause()
+    watch.until_state("paused")
+    slow_operator.resume()
+    assert slow_operator.wait(run).state == "done"
+    replayed, simulation = again(log, log.run(run))
+    assert (replayed.status, replayed.differences) == ("done", ())
+    assert simulation.robot.place == "ward b"
+
+
+def test_what_went_on_after_a_stop_is_replayed_from_there(slow_operator, log) -> None:
+    program = 'robot.say("I begin.")\nrobot.goto("ward b")\nrobot.say("Here.")\n'
+    watch = Watching(slow_operator)
+    first = start(slow_operator, program)
+    watch.until_fast()
+    slow_operator.stop()
+    slow_operator.wait(first)
+    rest = slow_operator.check(program, "en", first)
+    second = slow_operator.run(slow_operator.approve(rest, continues=first))
+    assert slow_operator.wait(second).state == "done"
+    replayed, _ = again(log, log.run(second))
+    assert (replayed.status, replayed.differences) == ("done", ())

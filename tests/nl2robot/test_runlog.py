@@ -129,3 +129,23 @@ def test_a_log_from_before_changes_were_kept_is_read_and_goes_on(tmp_path) -> No
     log.begin(**ROUND, proposed="x", changed_by="Kim")
     assert log.run(2).changed_by == "Kim"
     log.close()
+
+
+def test_a_log_from_before_movements_were_measured_is_read_and_goes_on(tmp_path) -> None:
+    old = RunLog(tmp_path / "runs.sqlite")
+    run = old.begin(**ROUND)
+    old.call_begins(run, 1, 1, "move", '{"metres":3}')
+    old.close()
+    database = sqlite3.connect(tmp_path / "runs.sqlite")
+    database.execute("ALTER TABLE runs DROP COLUMN stood")
+    database.execute("ALTER TABLE calls DROP COLUMN made")
+    database.execute("PRAGMA user_version = 7")
+    database.commit()
+    database.close()
+    log = RunLog(tmp_path / "runs.sqlite")
+    assert (log.run(run).stood, log.calls(run)[0].made) == (None, None)
+    log.call_ends(run, 1, 2.0, error="Stopped: So.", made='{"metres":1.0,"degrees":0.0}')
+    log.stands_at(run, '{"x":1.0,"y":0.0,"theta":0.0}')
+    assert log.whole(log.run(run))["calls"][0]["made"] == '{"metres":1.0,"degrees":0.0}'
+    assert log.run(run).stood is not None
+    log.close()

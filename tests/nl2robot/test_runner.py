@@ -16,7 +16,9 @@ ENDLESS = 'while True:\n    robot.goto("ward a")\n    robot.goto("ward b")\n'
 
 
 def start(operator, program: str) -> int:
-    return operator.run(operator.approve(operator.check(program)))
+    """As somebody does who wants it run whatever came of it when it was tried."""
+    review = operator.check(program)
+    return operator.run(operator.approve(review, insists=not review.came_through))
 
 
 class Watch:
