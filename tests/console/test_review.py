@@ -21,6 +21,7 @@ SIZES = [
 """Width, height and zoom; a browser that zooms has as much less room."""
 
 LONG = "".join(f'robot.say("Sentence number {number}.")\n' for number in range(1, 61))
+RECEPTION = 'while True:\n    robot.wait_for("person")\n    robot.say("Welcome!")\n'
 FAILS = 'robot.say("I look for it.")\nrobot.grab("unicorn")\n'
 
 
@@ -188,6 +189,28 @@ def test_what_did_not_come_to_its_end_is_changed_or_insisted_on(
     expect(page.locator(".cm-content")).to_be_focused()
     page.get_by_role("button", name=anyway).click()
     expect(page.locator("#run-panel")).to_have_attribute("data-state", "failed")
+
+
+@pytest.mark.parametrize(
+    ("language", "goes_on", "approve"),
+    [
+        ("en", "go on until somebody stops it", "Approve and run"),
+        ("de", "weitergehen, bis jemand es anhält", "Freigeben und starten"),
+        ("fr", "jusqu'à ce que quelqu'un l'arrête", "Approuver et lancer"),
+    ],
+)
+def test_a_reception_has_not_failed_for_that_it_has_no_end(
+    look: Look, picture: Picture, language: str, goes_on: str, approve: str
+) -> None:
+    page = laid_before(look, (1440, 900, 1.0), RECEPTION, language=language)
+    expect(page.locator(".outlook:not(.bad)")).to_contain_text(goes_on)
+    expect(page.locator(".facts")).to_contain_text("Welcome!")
+    expect(page.locator(".mark.risk")).to_have_count(1)  # that it has no end
+    expect(page.locator("#change, #run-anyway")).to_have_count(0)
+    expect(page.locator("#decide #approve.primary")).to_have_text(approve)
+    read_all(page)
+    picture(page, f"console-reception-{language}")
+    expect(page.locator("#approve")).to_be_enabled()
 
 
 def test_to_change_it_is_to_say_it_otherwise(page: Page) -> None:
