@@ -103,9 +103,10 @@ class Terminal:
 
     def called(self, place: str) -> str:
         """A place by the name that it has in the language spoken."""
+        from sim.world import name_in
+
         known = self.world.place(place) if self.world is not None else None
-        aliases = known.aliases.get(self.language, ()) if known is not None else ()
-        return aliases[0] if aliases and self.language != "en" else place
+        return name_in(known, self.language) if known is not None else place
 
     # --- before the run
 

@@ -59,7 +59,7 @@ def _pages(backstage: Backstage, archive: Archive) -> None:
 
     def show(html: str) -> None:
         with frame(backstage, "runs") as visit:
-            visit.hand_over({"words": {name: visit.words[name] for name in _FOR_SCRIPTS}})
+            visit.hand_over({"words": _for_scripts(visit.language)})
             ui.add_head_html(_HEAD)
             ui.html(html, sanitize=False)
 
@@ -70,6 +70,13 @@ def _pages(backstage: Backstage, archive: Archive) -> None:
     @ui.page("/runs/{number:int}")
     async def run(request: Request, number: int) -> None:
         show(await asyncio.to_thread(_run_page, backstage, archive, request, number))
+
+
+def _for_scripts(language: str) -> dict[str, str]:
+    """What a replay says, with what looks and gestures are called."""
+    words, drive = texts("runs", language), texts("drive", language)
+    called = {name: drive[name] for name in drive if name.startswith(("emotion_", "gesture_"))}
+    return {**called, **{name: words[name] for name in _FOR_SCRIPTS}}
 
 
 def _list_page(archive: Archive, request: Request) -> str:
