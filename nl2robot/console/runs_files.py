@@ -150,7 +150,7 @@ def _told(handler: _Handler) -> _Handler:
 def _of_run(handler: Callable[[Run, Request], Response], log: RunLog) -> _Handler:
     def answer(request: Request) -> Response:
         number = request.path_params["number"]
-        run = log.run(number) if number < 2**63 else None
+        run = log.run(number)
         if run is None:
             return PlainTextResponse(f"There is no run {number}.\n", 404, SAFE)
         return handler(run, request)

@@ -200,6 +200,14 @@ def test_a_long_run_shows_its_newest_calls(log, knowledge) -> None:
 # --- what can be asked ---------------------------------------------------------------------------
 
 
+def test_there_is_no_run_of_a_number_beyond_all(log, backstage) -> None:
+    """It was a fault of the page."""
+    assert log.run(10**30) is None
+    show = runs.part(backstage).services["runs.show"].handler
+    with pytest.raises(NotPossible, match="There is no run"):
+        show({"run": 10**30}, None)
+
+
 def test_what_makes_no_sense_in_an_address_is_left_out_but_a_day() -> None:
     assert asked({"state": "dancing", "before": "x", "words": " a "}).query() == "?words=a"
     assert asked({"before": "9" * 30}).before is None
