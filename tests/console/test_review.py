@@ -17,6 +17,7 @@ SIZES = [
     (820, 1180, 1.0),
     (390, 844, 1.0),
     (1440, 900, 2.0),
+    (390, 844, 2.0),
 ]
 """Width, height and zoom; a browser that zooms has as much less room."""
 
