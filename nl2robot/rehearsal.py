@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 import msgspec
 
+from nl2robot.endless import went_on
 from robot_api.driver import StopFlag
 from robot_api.errors import Stopped
 from sandbox.limits import Limits
@@ -85,11 +86,15 @@ class DryRun(msgspec.Struct, frozen=True, kw_only=True):
     """The name of the error it would end with: a robot's ("NotFound") or Python's ("NameError")."""
     broke_off: BreakOff | None = None
     """Why it is unfinished."""
+    goes_on: bool = False
+    """Unfinished for that it has no end: it goes on until somebody stops it, and did so without a
+    failure for as long as it was followed."""
 
     @property
     def complete(self) -> bool:
-        """Whether it came to the end that the program has, and nothing failed on the way."""
-        return self.status in ("done", "stopped")
+        """Whether it came to the end that the program has, if it has one, and nothing failed on
+        the way."""
+        return self.status in ("done", "stopped") or self.goes_on
 
 
 class Event(msgspec.Struct, frozen=True):
@@ -264,6 +269,7 @@ def watched(
         closed=tuple(closed),
         error=None if broke_off else outcome.error,
         broke_off=broke_off,
+        goes_on=broke_off in ("time", "calls") and went_on(program, [call.line for call in calls]),
     )
     return dry_run, Course(tuple(calls), record)
 

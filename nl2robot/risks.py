@@ -12,7 +12,7 @@ import functools
 import itertools
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from pathlib import Path
@@ -22,6 +22,7 @@ import msgspec
 
 from grammar.language import load_language
 from grammar.naming import naming
+from nl2robot import endless
 from nl2robot.knowledge import Knowledge
 from nl2robot.policy import robot_calls
 from robot_api.limits import loudest
@@ -312,11 +313,20 @@ class _Looking:
 
     def unproven(self, dry_run: DryRun) -> _Found:
         """Where the dry run did not come to the program's end, nobody has seen what comes."""
+        if dry_run.goes_on:
+            yield from self.waited(dry_run)
         if dry_run.complete:
             return
         values = {"minutes": f"{round(dry_run.seconds / 60)}", "calls": str(dry_run.calls)}
         text = f"broke_off_{dry_run.broke_off}" if dry_run.broke_off else "did_not_go"
         yield dry_run.line or 1, "unproven", text, values
+
+    def waited(self, dry_run: DryRun) -> _Found:
+        """What goes on without end may have waited at one line for all of its dry run."""
+        last = self.done[-1]
+        if last.method == "wait_for" and all(call.line != last.line for call in self.done[:-1]):
+            values = {"minutes": f"{round((last.ended - last.began) / 60)}"}
+            yield last.line, "unproven", "waited", values
 
     def long_waits(self) -> _Found:
         for line, method, arguments in self.written:
@@ -325,9 +335,8 @@ class _Looking:
                 yield line, "long", "waits", {"minutes": f"{round(seconds / 60)}"}
 
     def endless(self) -> _Found:
-        for node in ast.walk(self.tree):
-            if isinstance(node, ast.While) and _is_true(node.test) and not _ends(node.body):
-                yield node.lineno, "endless", "endless", {}
+        for loop in endless.loops(self.tree):
+            yield loop.lineno, "endless", "endless", {}
 
 
 # --- places --------------------------------------------------------------------------------------
@@ -374,42 +383,6 @@ def _names(person: Any) -> tuple[str, ...]:
 def _is_night(time: datetime) -> bool:
     evening, morning = NIGHT
     return time.hour >= evening or time.hour < morning
-
-
-# --- loops ---------------------------------------------------------------------------------------
-
-
-def _is_true(test: ast.expr) -> bool:
-    try:
-        return bool(ast.literal_eval(test))
-    except (ValueError, TypeError, SyntaxError, MemoryError, RecursionError):
-        return False
-
-
-def _ends(body: Sequence[ast.stmt], in_inner_loop: bool = False) -> bool:
-    """Whether something in a loop's body may end it. A `break` of a loop in it ends only that."""
-    for statement in body:
-        match statement:
-            case ast.Return() | ast.Raise():
-                return True
-            case ast.Break() if not in_inner_loop:
-                return True
-            case ast.Expr() if ast.unparse(statement.value) == "robot.stop()":
-                return True
-            case ast.For(body=inner) | ast.While(body=inner):
-                if _ends(inner, True) or _ends(statement.orelse, in_inner_loop):
-                    return True
-            case ast.If(body=inner) | ast.With(body=inner):
-                if _ends([*inner, *getattr(statement, "orelse", ())], in_inner_loop):
-                    return True
-            case ast.Try(body=inner, orelse=orelse, finalbody=final):
-                caught = [each for handler in statement.handlers for each in handler.body]
-                if _ends([*inner, *caught, *orelse, *final], in_inner_loop):
-                    return True
-            case ast.Match(cases=cases):
-                if _ends([each for case in cases for each in case.body], in_inner_loop):
-                    return True
-    return False
 
 
 @functools.cache

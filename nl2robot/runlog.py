@@ -98,6 +98,10 @@ class LogError(UserError):
     """The run log cannot be read or written."""
 
 
+_LARGEST = 2**63 - 1
+"""Of the numbers that SQLite knows."""
+
+
 class Run(msgspec.Struct, frozen=True, kw_only=True):
     """A row of `runs`; see the schema above for what the fields mean."""
 
@@ -291,6 +295,8 @@ class RunLog:
         return [Run(**row) for row in rows]
 
     def run(self, number: int) -> Run | None:
+        if number > _LARGEST:
+            return None
         rows = self._read(f"SELECT {_COLUMNS} FROM runs WHERE id = ?", number)
         return Run(**rows[0]) if rows else None
 

@@ -35,7 +35,7 @@ from nl2robot.state import HELD
 from nl2robot.translation import Translation
 from nl2robot.trouble import told as told_of
 from nl2robot.waiting import Waiting
-from nl2robot.words import authorship, decimal, words_in
+from nl2robot.words import authorship, foreseen, words_in
 from robot_api.errors import InvalidCall, RobotError
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ _ELSE: Final[tuple[Decision, ...]] = ("edit", "reject")
 _EDITORS: Final = ("nano", "sensible-editor", "vim", "vi")
 """Tried one after the other where none is named: the first needs no explanation."""
 
-__all__ = ["Decision", "Terminal", "answers", "duration", "words_in"]
+__all__ = ["Decision", "Terminal", "answers", "words_in"]
 
 NARROWEST = 20
 """Columns; a terminal that says it has fewer does not know."""
@@ -103,9 +103,10 @@ class Terminal:
 
     def called(self, place: str) -> str:
         """A place by the name that it has in the language spoken."""
+        from sim.world import name_in
+
         known = self.world.place(place) if self.world is not None else None
-        aliases = known.aliases.get(self.language, ()) if known is not None else ()
-        return aliases[0] if aliases and self.language != "en" else place
+        return name_in(known, self.language) if known is not None else place
 
     # --- before the run
 
@@ -175,15 +176,7 @@ class Terminal:
             self._show_dry_run(review.dry_run)
 
     def _show_dry_run(self, dry_run: DryRun) -> None:
-        ends = {
-            "done": "would_be_done",
-            "failed": "would_fail",
-            "stopped": "would_be_stopped",
-            "limit": "would_be_ended",
-            "unfinished": "would_go_on",
-        }[dry_run.status]
-        time, metres = duration(dry_run.seconds), decimal(dry_run.metres, self.language)
-        text = self.words[ends].format(time=time, metres=metres, line=dry_run.line)
+        text = foreseen(dry_run, self.language)
         heading = self.words["dry_run"]
         why = told_of(dry_run.error, dry_run.message or "", self.language)
         self.console.print(f"[bold]{heading}[/] {text} {_plain(why)}".rstrip())
@@ -403,9 +396,3 @@ def _short(value: Any, longest: int = 70) -> str:
         return str(value.get("place") or f"({value['x']:.2f}, {value['y']:.2f})")
     text = repr(value) if isinstance(value, str) else str(value)
     return text if len(text) <= longest else text[: longest - 1] + "…"
-
-
-def duration(seconds: float) -> str:
-    """A duration for people."""
-    minutes, rest = divmod(round(seconds), 60)
-    return f"{minutes} min {rest} s" if minutes else f"{rest} s"

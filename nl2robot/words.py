@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
+    from nl2robot.rehearsal import DryRun
     from nl2robot.translation import Translation
 
 DATA: Final = Path(__file__).parent / "data" / "terminal.yaml"
@@ -26,6 +27,29 @@ def words_in(language: str) -> Mapping[str, Any]:
 def decimal(value: float, language: str) -> str:
     """A number as it is written in a language: "12.5", "12,5"."""
     return f"{value:g}".replace(".", words_in(language)["decimal_point"])
+
+
+def duration(seconds: float) -> str:
+    """A duration for people."""
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes} min {rest} s" if minutes else f"{rest} s"
+
+
+def foreseen(dry_run: DryRun, language: str) -> str:
+    """How a dry run ended, in a sentence: how long it took, how far it went."""
+    ends = {
+        "done": "would_be_done",
+        "failed": "would_fail",
+        "stopped": "would_be_stopped",
+        "limit": "would_be_ended",
+        "unfinished": "would_go_round" if dry_run.goes_on else "would_go_on",
+    }[dry_run.status]
+    sentence: str = words_in(language)[ends]
+    return sentence.format(
+        time=duration(dry_run.seconds),
+        metres=decimal(dry_run.metres, language),
+        line=dry_run.line,
+    )
 
 
 def authorship(translation: Translation, language: str) -> Iterator[str]:

@@ -25,10 +25,11 @@ from sim.world import World
 __all__ = ["animate", "floor_svg", "png", "svg", "way_svg"]
 
 
-def floor_svg(world: World, people: bool = True) -> str:
+def floor_svg(world: World, people: bool = True, language: str = "en") -> str:
     """The floor as SVG, to be shown alone or with live drawings on top (see
-    `sim.pictures_svg.to_svg`), for which `people=False` leaves out the people."""
-    floor = draw_floor(world, None if people else [])
+    `sim.pictures_svg.to_svg`), for which `people=False` leaves out the people. Places and things
+    go by their names in that language."""
+    floor = draw_floor(world, None if people else [], language=language)
     return to_svg(floor.scene, floor.frame, world.name)
 
 

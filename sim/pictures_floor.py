@@ -26,7 +26,7 @@ from sim.pictures_scene import (
     hatching,
     mixed,
 )
-from sim.world import Door, Furniture, Place, Pose, World, polygon_area, rectangle
+from sim.world import Door, Furniture, Place, Pose, Thing, World, name_in, polygon_area, rectangle
 
 LARGEST = (1480.0, 1080.0)
 """Pixels that the floor's width and height may have."""
@@ -117,10 +117,12 @@ def draw_floor(
     symbols: bool = True,
     top: float = 0.0,
     largest: tuple[float, float] = LARGEST,
+    language: str = "en",
 ) -> Floor:
     """The floor with these people, or with everybody where the simulation begins. Labels
     keep off the `ways` (in metres) that will be drawn on it, as far as they can. Without `symbols`
-    the people are not drawn, only kept clear of. `top` pixels are left free for a title.
+    the people are not drawn, only kept clear of. `top` pixels are left free for a title. What is
+    on the floor goes by its name in the `language`.
 
     Raises `sim.map_image.ImageError` if the image of the world's map can be read no more.
     """
@@ -131,13 +133,13 @@ def draw_floor(
     scene = Scene(width, height + top, BACKGROUND)
     board = Board(Box(4, top + 4, width - 4, height + top - 4))
 
-    _draw_rooms(world, frame, scene)
-    _draw_furniture(world, frame, scene, board)
+    _draw_rooms(world, frame, scene, language)
+    _draw_furniture(world, frame, scene, board, language)
     _draw_doors(world, frame, scene, board)
     _draw_walls(world, frame, scene, board)
     _draw_charger(world, frame, scene, board)
     inhabitants = _inhabitants(world) if people is None else people
-    things = _things(world)
+    things = _things(world, language)
     for x, y, *_ in inhabitants:
         board.labels.append(box_at(*frame.spot(x, y), 2 * _head(frame), 2 * _head(frame)))
     for x, y, *_ in things:
@@ -145,7 +147,7 @@ def draw_floor(
     for way in ways:
         for one, two in itertools.pairwise(_even(frame.spots(way), 12)):
             board.draw(box_about((one, two)).grown(3), 4.0)
-    _draw_place_names(world, frame, scene, board)
+    _draw_place_names(world, frame, scene, board, language)
     _draw_things(things, frame, scene)
     for x, y, name, kind in inhabitants if symbols else ():
         scene.layer("people").extend(person_shapes(frame, x, y, name, kind))
@@ -214,7 +216,7 @@ def _extent(world: World) -> tuple[float, float, float, float]:
 # --- the building --------------------------------------------------------------------------------
 
 
-def _draw_rooms(world: World, frame: Frame, scene: Scene) -> None:
+def _draw_rooms(world: World, frame: Frame, scene: Scene, language: str) -> None:
     rooms = scene.layer("rooms")
     if world.map is not None:
         from sim.maps import painted
@@ -226,7 +228,7 @@ def _draw_rooms(world: World, frame: Frame, scene: Scene) -> None:
     )
     for place in places:
         fill = _ROOMS.get(place.kind) or tint(place.kind, 0.5, 0.91)
-        rooms.append(Area(frame.spots(place.area), fill, note=_note(place)))
+        rooms.append(Area(frame.spots(place.area), fill, note=_note(place, language)))
         if place.inside and world.place(place.inside):
             rim = mixed(fill, INK, 0.22)
             outline = frame.spots((*place.area, place.area[0]))
@@ -237,28 +239,29 @@ def _draw_rooms(world: World, frame: Frame, scene: Scene) -> None:
         rooms.append(Area(outline, None, NO_ENTRY, 2, zone.name))
 
 
-def _note(place: Place) -> str:
-    return f"{place.name} ({place.kind})"
+def _note(place: Place, language: str) -> str:
+    """Its kind has an English name only."""
+    return f"{place.name} ({place.kind})" if language == "en" else name_in(place, language)
 
 
-def _draw_furniture(world: World, frame: Frame, scene: Scene, board: Board) -> None:
+def _draw_furniture(world: World, frame: Frame, scene: Scene, board: Board, language: str) -> None:
     layer = scene.layer("furniture")
     for piece in world.furniture:
         if piece.pose is None:
             continue
-        layer.extend(_furniture_shapes(piece, piece.pose, frame))
+        layer.extend(_furniture_shapes(piece, piece.pose, frame, name_in(piece, language)))
         board.draw(box_about(frame.spots(piece.outline)), 1.0)
 
 
-def _furniture_shapes(piece: Furniture, pose: Pose, frame: Frame) -> Iterable[Shape]:
+def _furniture_shapes(piece: Furniture, pose: Pose, frame: Frame, name: str) -> Iterable[Shape]:
     fill, rim = _FURNITURE.get(piece.kind, (_WOOD, _WOOD_RIM))
     if piece.kind == "plant":
         u, v = frame.spot(pose.x, pose.y)
         radius = min(piece.size) / 2 * frame.scale
-        yield Disc(u, v, radius, fill, rim, 1, piece.name)
+        yield Disc(u, v, radius, fill, rim, 1, name)
         yield Disc(u, v, radius * 0.45, rim)
         return
-    yield Area(frame.spots(piece.outline), fill, rim, 1, piece.name)
+    yield Area(frame.spots(piece.outline), fill, rim, 1, name)
     length, width = piece.size
     if piece.kind == "bed":
         # The head is where the bed's length points to.
@@ -376,7 +379,7 @@ def _inhabitants(world: World) -> list[Inhabitant]:
     ]
 
 
-def _things(world: World) -> list[tuple[float, float, str, str]]:
+def _things(world: World, language: str) -> list[tuple[float, float, str, str]]:
     """x, y, description and colour of every object."""
     from sim.hospital import chart_of
     from sim.placing import things_at_start
@@ -385,12 +388,18 @@ def _things(world: World) -> list[tuple[float, float, str, str]]:
         (
             item.x,
             item.y,
-            " ".join([*item.thing.is_, item.thing.name]),
+            _described(item.thing, language),
             next((_COLOURS[word] for word in item.thing.is_ if word in _COLOURS), "#9aa3ab"),
         )
         for item in things_at_start(world, chart_of(world))
         if item.present
     ]
+
+
+def _described(thing: Thing, language: str) -> str:
+    """Its attributes are English words."""
+    attributes = thing.is_ if language == "en" else ()
+    return " ".join([*attributes, name_in(thing, language)])
 
 
 def _draw_things(
@@ -403,21 +412,24 @@ def _draw_things(
         layer.append(Area(diamond, colour, INK, 1.1, note))
 
 
-def _draw_place_names(world: World, frame: Frame, scene: Scene, board: Board) -> None:
+def _draw_place_names(
+    world: World, frame: Frame, scene: Scene, board: Board, language: str
+) -> None:
     """Small places first: they have less choice. A part's floor is taken for what it is in."""
     layer = scene.layer("names")
     named = sorted(world.places, key=lambda p: polygon_area(p.area) if p.area else 0.0)
     for place in named:
+        name = name_in(place, language)
         if place.area:
             outline = frame.spots(place.area)
-            label = label_area(board, place.name, outline, ROOM_NAME)
+            label = label_area(board, name, outline, ROOM_NAME)
             if label is None and place.pose is not None:
                 spot = frame.spot(place.pose.x, place.pose.y)
-                label = label_spot(board, place.name, spot, 8, 11, ROOM_NAME)
+                label = label_spot(board, name, spot, 8, 11, ROOM_NAME)
             layer.extend(label or [])
             if place.inside and world.place(place.inside):
                 board.draw(box_about(outline), 2.0)
         elif place.pose is not None:
             spot = frame.spot(place.pose.x, place.pose.y)
-            layer.append(Disc(*spot, 3, ROOM_NAME, note=_note(place)))
-            layer.extend(label_spot(board, place.name, spot, 3, 12, ROOM_NAME) or [])
+            layer.append(Disc(*spot, 3, ROOM_NAME, note=_note(place, language)))
+            layer.extend(label_spot(board, name, spot, 3, 12, ROOM_NAME) or [])

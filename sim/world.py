@@ -348,6 +348,12 @@ class World(msgspec.Struct, frozen=True, kw_only=True, dict=True):
 # --- names and shapes ----------------------------------------------------------------------------
 
 
+def name_in(named: Place | Person | Thing | Furniture | Contact, language: str) -> str:
+    """What it is called in a language: its first alias there, else the name, which is English."""
+    aliases = named.aliases.get(language, ())
+    return aliases[0] if aliases and language != "en" else named.name
+
+
 def contains(polygon: Polygon, x: float, y: float) -> bool:
     """Whether the point is in the polygon (crossings of a ray to the right)."""
     inside = False

@@ -20,6 +20,7 @@ from starlette.responses import HTMLResponse
 from starlette.routing import Route
 
 from nl2robot.console import video
+from nl2robot.console.choices import called, language_of_program
 from nl2robot.console.forgetting import Forgetting
 from nl2robot.console.part import Backstage, Part
 from nl2robot.console.tablet import FaceTablet
@@ -41,10 +42,11 @@ SEARCHING: Final = ("find", "wait_for", "sees", "count", "objects", "people", "d
 """The calls during which the robot looks as if it thought."""
 
 EVENTS: Final = {
-    "face": "version and what has changed of: language, emotion, mood (thinking | null), screen,"
-    " asking, speech, robot (the state, as of the event `state`), stopped, unconfirmed (whether the"
-    " last stop was not confirmed), lost (since when the robot is, or null); as `face.state` tells"
-    " all of it",
+    "face": "version and what has changed of: language, chosen (whether a visitor has chosen it),"
+    " emotion, mood (thinking | null), screen, asking (number, question, options, person, called:"
+    " the options in each language, language: of the program, or null), speech, robot (the state,"
+    " as of the event `state`), stopped, unconfirmed (whether the last stop was not confirmed),"
+    " lost (since when the robot is, or null); as `face.state` tells all of it",
     "face.act": "number, act (click | type), selector, text: what this face is to do to its page",
 }
 
@@ -124,12 +126,25 @@ class Face:
 def part(backstage: Backstage) -> Part:
     face = Face(backstage)
     calls = video.Calls(backstage.publish)
-    tablet = FaceTablet(backstage.publish, face.change, calls, face.state["screen"])
+    runner = backstage.runner
+    tablet = FaceTablet(
+        backstage.publish,
+        face.change,
+        calls,
+        face.state["screen"],
+        called=lambda options, code: called(options, runner.knowledge.world, code),
+        speaks=lambda: language_of_program(runner),
+    )
     if isinstance(backstage.driver, ComposedDriver):
         backstage.driver.attach(tablet)
+
+    def hush() -> None:
+        face.change("speech", None)
+        face.change("chosen", False)
+
     forgetting = Forgetting(
         backstage.driver,
-        hush=lambda: face.change("speech", None),
+        hush=hush,
         typed=lambda: tablet.typed,
         fresh=lambda: tablet.fresh,
     )
@@ -188,6 +203,7 @@ def _services(
 
     def language(p: Mapping[str, Any], context: Context) -> None:
         backstage.driver.call("set_language", {"code": p["code"]}, context.stop)
+        face.change("chosen", True)
 
     return {
         "face.state": Service(
@@ -287,6 +303,7 @@ def _at_the_start(backstage: Backstage) -> dict[str, Any]:
     return {
         "version": 1,
         "language": robot.language if robot else "en",
+        "chosen": False,
         "emotion": robot.emotion if robot else "neutral",
         "mood": None,
         "screen": {**screen, "number": 0, "page": 0, "by": None},

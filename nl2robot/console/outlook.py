@@ -10,8 +10,8 @@ from grammar.language import load_language
 from grammar.naming import naming
 from nl2robot.knowledge import Knowledge
 from nl2robot.review import Review
-from nl2robot.terminal import duration, words_in
 from nl2robot.trouble import told
+from nl2robot.words import foreseen
 
 MOST_PLACES: Final = 12
 
@@ -69,17 +69,6 @@ def outlook(
     dry_run = review.dry_run
     if dry_run is None:
         return Outlook("", review.acceptable, (), tuple(marks), ())
-    said = words_in(language)
-    template = {
-        "done": "would_be_done",
-        "failed": "would_fail",
-        "stopped": "would_be_stopped",
-        "limit": "would_be_ended",
-        "unfinished": "would_go_on",
-    }[dry_run.status]
-    sentence = said[template].format(
-        time=duration(dry_run.seconds), metres=_number(dry_run.metres, language), line=dry_run.line
-    )
     why = told(dry_run.error, dry_run.message, language) if dry_run.message else None
     way = _way(dry_run.places, knowledge, language)
     asks = tuple(dict.fromkeys(dry_run.asks))
@@ -91,17 +80,12 @@ def outlook(
         (words["shows"], tuple(dict.fromkeys(dry_run.shows))),
     ]
     return Outlook(
-        sentence=" ".join(filter(None, (sentence, why))),
+        sentence=" ".join(filter(None, (foreseen(dry_run, language), why))),
         good=dry_run.complete,
         facts=tuple((heading, items) for heading, items in facts if items),
         marks=tuple(marks),
         path=dry_run.path,
     )
-
-
-def _number(number: float, language: str) -> str:
-    written = f"{number:g}"
-    return written if language == "en" else written.replace(".", ",")
 
 
 def _called(knowledge: Knowledge, language: str) -> Callable[[str], str]:

@@ -66,6 +66,12 @@ def failed(request: HTTPConnection) -> Response:
     return _trouble(request, 500, "fault", "The robot's software has a fault. Its log says why.")
 
 
+def slow(request: HTTPConnection) -> Response:
+    """What is answered where it takes too long to find out what should be."""
+    _log.warning("the page %s was not ready in time", request.url.path)
+    return _trouble(request, 503, "slow", "The robot's computer is too busy just now.")
+
+
 class Caught:
     """An application whose faults are logged once, and answered with a page."""
 
@@ -106,6 +112,9 @@ def _trouble(request: HTTPConnection, status: int, kind: str, sentence: str) -> 
     places = [("/face", frame["face"])]
     if visitor.seat != "face":
         places = [("/", frame["desk"]), ("/map", frame["map"]), ("/runs", frame["runs"])]
+    if status >= 500 and request.scope.get("method") == "GET":  # a tablet may have no other way
+        again = request.url.path + (f"?{request.url.query}" if request.url.query else "")
+        places = [(again, words["again"]), *places]
     return page(
         request,
         "door_trouble.html",

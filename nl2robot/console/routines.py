@@ -10,7 +10,6 @@ moves a robot: to run one lays it before you at the desk.
 
 from __future__ import annotations
 
-import asyncio
 import itertools
 from collections import OrderedDict
 from collections.abc import Mapping
@@ -24,7 +23,7 @@ from starlette.routing import Route
 
 from nl2robot import routine_files
 from nl2robot.archive import Archive
-from nl2robot.console import routine_view
+from nl2robot.console import routine_view, slow_pages
 from nl2robot.console.part import Backstage, Part
 from nl2robot.console.rendering import rendered
 from nl2robot.console.routine_view import Body, Card, Viewer
@@ -44,8 +43,6 @@ _HEAD: Final = (
     '<link rel="stylesheet" href="/static/routines/routines.css">'
     '<script type="module" src="/static/routines/routines.js"></script>'
 )
-FIRST_LOOK: Final = 60.0
-"""Seconds in which all sentences are understood, when nobody has looked since the start."""
 _NAME: Final = {"type": "string", "maxLength": 200}
 _LANGUAGE: Final = {"type": "string", "pattern": "^[a-z]{2}$"}
 _READER: Final = {"enum": list(LANGUAGES)}
@@ -65,14 +62,18 @@ def part(backstage: Backstage) -> Part:
 
         from nl2robot.console.frame import frame
 
-        @ui.page("/routines", response_timeout=FIRST_LOOK)
-        async def routines(request: Request) -> None:
-            visitor = visitor_of(request)
-            html = await asyncio.to_thread(shelf.page, visitor.language, visitor.operates)
+        def show(html: str) -> None:
             with frame(backstage, "routines") as visit:
                 visit.hand_over({"words": dict(visit.words), "languages": LANGUAGES})
                 ui.add_head_html(_HEAD)
                 ui.html(html, sanitize=False)
+
+        @slow_pages.page(
+            "/routines", show
+        )  # all sentences are understood, when nobody has looked before
+        def routines(request: Request) -> str:
+            visitor = visitor_of(request)
+            return shelf.page(visitor.language, visitor.operates)
 
     async def cards(request: Request) -> Response:
         visitor = visitor_of(request)

@@ -13,7 +13,6 @@ keeps a run that goes on up to date, and lets its movement be watched. Nothing h
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
@@ -21,7 +20,7 @@ from typing import Any
 from starlette.requests import Request
 
 from nl2robot.archive import Archive
-from nl2robot.console import runs_files, runs_view
+from nl2robot.console import runs_files, runs_view, slow_pages
 from nl2robot.console.part import Backstage, Part
 from nl2robot.console.runs_asked import PROPERTIES, Asked, BadDay, asked
 from nl2robot.console.visitor import texts, visitor_of
@@ -59,17 +58,24 @@ def _pages(backstage: Backstage, archive: Archive) -> None:
 
     def show(html: str) -> None:
         with frame(backstage, "runs") as visit:
-            visit.hand_over({"words": {name: visit.words[name] for name in _FOR_SCRIPTS}})
+            visit.hand_over({"words": _for_scripts(visit.language)})
             ui.add_head_html(_HEAD)
             ui.html(html, sanitize=False)
 
-    @ui.page("/runs")
-    async def runs(request: Request) -> None:
-        show(await asyncio.to_thread(_list_page, archive, request))
+    @slow_pages.page("/runs", show)
+    def runs(request: Request) -> str:
+        return _list_page(archive, request)
 
-    @ui.page("/runs/{number:int}")
-    async def run(request: Request, number: int) -> None:
-        show(await asyncio.to_thread(_run_page, backstage, archive, request, number))
+    @slow_pages.page("/runs/{number:int}", show)
+    def run(request: Request, number: int) -> str:
+        return _run_page(backstage, archive, request, number)
+
+
+def _for_scripts(language: str) -> dict[str, str]:
+    """What a replay says, with what looks and gestures are called."""
+    words, drive = texts("runs", language), texts("drive", language)
+    called = {name: drive[name] for name in drive if name.startswith(("emotion_", "gesture_"))}
+    return {**called, **{name: words[name] for name in _FOR_SCRIPTS}}
 
 
 def _list_page(archive: Archive, request: Request) -> str:

@@ -28,7 +28,7 @@ from nl2robot.archive import Archive, Brief
 from nl2robot.console import runs_view
 from nl2robot.console.part import Backstage
 from nl2robot.console.runs_asked import BadDay, asked
-from nl2robot.console.visitor import texts, visitor_of
+from nl2robot.console.visitor import LANGUAGES, texts, visitor_of
 from nl2robot.errors import UserError
 from nl2robot.kept_record import unpacked
 from nl2robot.runlog import Run, RunLog
@@ -64,8 +64,9 @@ def routes(backstage: Backstage, archive: Archive) -> list[Route]:
         return _streamed(_json(runs), "application/json", name)
 
     def parts(run: Run, request: Request) -> Response:
-        words = texts("runs", visitor_of(request).language)
-        return JSONResponse(runs_view.run_parts(run, log, words), headers=SAFE)
+        language, knowledge = visitor_of(request).language, backstage.runner.knowledge
+        about = runs_view.run_parts(run, log, knowledge, language, texts("runs", language))
+        return JSONResponse(about, headers=SAFE)
 
     def whole(run: Run, request: Request) -> Response:
         data = json.dumps(log.whole(run), ensure_ascii=False, indent=2)
@@ -85,7 +86,7 @@ def routes(backstage: Backstage, archive: Archive) -> list[Route]:
         return FileResponse(file, headers=SAFE, media_type="image/svg+xml")
 
     def floor(run: Run, request: Request) -> Response:
-        drawn = _floor(run.world or "")
+        drawn = _floor(run.world or "", visitor_of(request).language)
         return _none(run) if drawn is None else Response(drawn, 200, SAFE, "image/svg+xml")
 
     one = {
@@ -149,7 +150,7 @@ def _told(handler: _Handler) -> _Handler:
 def _of_run(handler: Callable[[Run, Request], Response], log: RunLog) -> _Handler:
     def answer(request: Request) -> Response:
         number = request.path_params["number"]
-        run = log.run(number) if number < 2**63 else None
+        run = log.run(number)
         if run is None:
             return PlainTextResponse(f"There is no run {number}.\n", 404, SAFE)
         return handler(run, request)
@@ -165,15 +166,16 @@ def _as_file(name: str) -> dict[str, str]:
     return {**SAFE, "Content-Disposition": f'attachment; filename="{name}"'}
 
 
-@lru_cache(maxsize=4)
-def _floor(world: str) -> str | None:
-    """The floor of a world as it is now; None if that is not to be found any more."""
+@lru_cache(maxsize=4 * len(LANGUAGES))
+def _floor(world: str, language: str) -> str | None:
+    """The floor of a world as it is now, with the names of a language; None if it is not to be
+    found any more."""
     from sim.pictures import floor_svg
     from sim.world import WorldError, load_world
 
     try:
         loaded = load_world(world)
-        return floor_svg(loaded, people=False) if loaded.has_geometry else None
+        return floor_svg(loaded, people=False, language=language) if loaded.has_geometry else None
     except WorldError:
         return None
 

@@ -9,6 +9,7 @@ from typing import Any, Final
 from grammar.explain import LineTold, explain_program
 from grammar.language import load_language
 from grammar.naming import naming
+from nl2robot.answers import answer
 from nl2robot.archive import STATES, Page, state_of
 from nl2robot.changes import changes
 from nl2robot.console.highlight import highlighted
@@ -72,7 +73,7 @@ def run_page(
     ]
     return rendered(
         "run.html",
-        **_standing(run, log, words),
+        **_standing(run, log, knowledge, language, words),
         lines=lines,
         changes=changes(run.proposed, run.program) if run.proposed is not None else (),
         role=role,
@@ -81,14 +82,18 @@ def run_page(
     )
 
 
-def run_parts(run: Run, log: RunLog, words: Words) -> dict[str, Any]:
+def run_parts(
+    run: Run, log: RunLog, knowledge: Knowledge, language: str, words: Words
+) -> dict[str, Any]:
     """What changes of a run's page while it goes on: its parts by name, its state, its line."""
-    about = _standing(run, log, words)
+    about = _standing(run, log, knowledge, language, words)
     parts = {name: rendered(f"run_{name}.html", **about) for name in ("head", "watch", "calls")}
     return {**parts, "state": about["state"], "line": about["line"]}
 
 
-def _standing(run: Run, log: RunLog, words: Words) -> dict[str, Any]:
+def _standing(
+    run: Run, log: RunLog, knowledge: Knowledge, language: str, words: Words
+) -> dict[str, Any]:
     calls = log.calls(run.id)
     state = state_of(run.status, run.process)
     return {
@@ -96,6 +101,7 @@ def _standing(run: Run, log: RunLog, words: Words) -> dict[str, Any]:
         "state": state,
         "line": calls[-1].line if calls and state == "running" else None,
         "title": run.utterance or run.heard or words["written"],
+        "answers": [each.text for each in answer(log, knowledge, run.id, language)],
         "calls": [_call(call, run) for call in calls[-CALLS_SHOWN:]],
         "left_out": max(0, len(calls) - CALLS_SHOWN),
         "printed": "".join(log.output(run.id)),

@@ -10,11 +10,12 @@ from __future__ import annotations
 import itertools
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
 from nl2robot.console.video import Calls
+from nl2robot.console.visitor import LANGUAGES
 from robot_api.capabilities.base import Turns
 from robot_api.capabilities.sound import Asked
 from robot_api.capabilities.tablet import Act
@@ -50,7 +51,8 @@ class _Doing:
 class FaceTablet:
     """`changed(name, value)` is told what the faces are to show: "asking" and "screen", which is
     `content` at the beginning. `publish` sends the event "face.act" to the face that is to do
-    something."""
+    something. `called(options, code)` is what options are called in a language, `speaks()` the
+    language of the program that asks, if that is known."""
 
     def __init__(
         self,
@@ -58,7 +60,12 @@ class FaceTablet:
         changed: Callable[[str, Any], None],
         calls: Calls,
         content: Mapping[str, Any],
+        called: Callable[[Sequence[str], str], Sequence[str]],
+        speaks: Callable[[], str | None],
     ) -> None:
+        self.called = called
+        """See `Tablet.called`."""
+        self._speaks = speaks
         self._publish = publish
         self._changed = changed
         self._calls = calls
@@ -217,6 +224,7 @@ class FaceTablet:
         self._changed("screen", self._content)
 
     def _ask(self, question: _Question | None) -> None:
+        language = self._speaks() if question is not None else None
         with self._lock:
             self._question = question
             if question is None:
@@ -229,6 +237,8 @@ class FaceTablet:
                 "question": asked.question,
                 "options": options,
                 "person": asked.person,
+                "called": {code: list(self.called(options or (), code)) for code in LANGUAGES},
+                "language": language,
             }
             self._changed("asking", about)
 

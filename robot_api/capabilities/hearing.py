@@ -111,7 +111,7 @@ class Hearing(Capability):
                 continue
             if not options:
                 return words[:MAX_TEXT]
-            answer = match_answer(words, options, self.language)
+            answer = self._chosen(words, options)
             if answer is not None:
                 return answer
             misheard = attempt == 0
@@ -123,6 +123,15 @@ class Hearing(Capability):
             )
         choose = language_data(self.language).choose
         return self._screen.touch(stop, options, f"{question} {choose}")
+
+    def _chosen(self, words: str, options: Sequence[str]) -> str | None:
+        """The option that is meant, by its own words or by those that the tablet has for it."""
+        answer = match_answer(words, options, self.language)
+        if answer is not None:
+            return answer
+        names = self.tablet.called(options, self.language)
+        name = match_answer(words, names, self.language)
+        return options[names.index(name)] if name is not None else None
 
     def _confirmed(self, stop: StopFlag, perhaps: str, person: str | None) -> bool:
         """Whether somebody says that this is what they answered."""

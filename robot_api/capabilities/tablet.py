@@ -8,7 +8,7 @@ types and takes calls; a robot without one has `NO_TABLET`, and does what it doe
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Final, Literal, Protocol, TypeVar
 
@@ -36,6 +36,11 @@ class Tablet(Protocol):
     @property
     def helped(self) -> bool:
         """Whether somebody elsewhere may answer for whoever is asked, also while nobody sees it."""
+        ...
+
+    def called(self, options: Sequence[str], language: str) -> Sequence[str]:
+        """What the options are called on it in a language, one after the other: whoever reads that
+        may say it as well."""
         ...
 
     def answer(self, stop: StopFlag, asked: Asked) -> str | None:
@@ -66,6 +71,9 @@ class Tablet(Protocol):
 class _NoTablet:
     connected = False
     helped = False
+
+    def called(self, options: Sequence[str], language: str) -> Sequence[str]:
+        return options
 
     def answer(self, stop: StopFlag, asked: Asked) -> str | None:
         return None

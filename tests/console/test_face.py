@@ -9,13 +9,14 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import MISSING, fields
 from http.server import HTTPServer, SimpleHTTPRequestHandler
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from playwright.sync_api import Page, expect
 from starlette.applications import Starlette
 
-from nl2robot.console import face, tablet
+from nl2robot.console import choices, face, tablet
 from nl2robot.console.part import Backstage
 from nl2robot.operator import Operator
 from nl2robot.present import Present
@@ -70,7 +71,12 @@ class Ward:
         def publish(kind: str, data: Any, to: str | None = None) -> None:
             self.server.publish(kind, data, to)
 
-        backstage = backstage_with(driver=self.driver, simulation=simulation, publish=publish)
+        runner: Any = SimpleNamespace(
+            knowledge=SimpleNamespace(world=simulation.world), state=lambda: None
+        )
+        backstage = backstage_with(
+            driver=self.driver, runner=runner, simulation=simulation, publish=publish
+        )
         self.part = face.part(backstage)
         self.server = Server(
             self.driver,
@@ -214,6 +220,8 @@ def test_an_answer_is_typed_where_there_are_no_options(ward: Ward, front: Tablet
         "question": "What is your name?",
         "options": None,
         "person": None,
+        "called": {"en": [], "de": [], "fr": []},
+        "language": None,
     }
     assert front.touch("Marie") and asked.result(AT_ONCE) == "Marie"
     listened = ward.asks("listen")
@@ -232,6 +240,37 @@ def test_one_may_speak_or_touch(hearing_ward: Ward, ears: Ears) -> None:
     ears.speaks.clear()
     asked = hearing_ward.asks("ask", question="Where to?", options=options)
     assert front.touch("radiology") and asked.result(AT_ONCE) == "radiology"
+    front.close()
+
+
+@pytest.mark.parametrize(
+    ("code", "options", "called"),
+    [
+        ("de", ["yes", "no"], ["ja", "nein"]),
+        ("fr", ["Ja", "Nein"], ["Oui", "Non"]),
+        ("en", ["ja", "nein"], ["yes", "no"]),
+        ("de", ["radiology", "pharmacy"], ["Radiologie", "Apotheke"]),
+        ("en", ["Radiologie", "Apotheke"], ["radiology", "pharmacy"]),
+        ("en", ["front desk", "lobby"], ["front desk", "lobby"]),
+        ("fr", ["yes", "oui"], ["yes", "oui"]),
+        ("fr", ["two sugars", "none"], ["two sugars", "none"]),
+    ],
+)
+def test_answers_are_called_what_a_language_calls_them(
+    code: str, options: list[str], called: list[str]
+) -> None:
+    assert choices.called(options, load_world("city-hospital"), code) == called
+
+
+def test_who_reads_an_answer_in_their_language_may_say_it(hearing_ward: Ward, ears: Ears) -> None:
+    """The program is in English, the visitor has chosen German."""
+    front = Tablet(hearing_ward)
+    front.request("language", code="de")
+    asked = hearing_ward.asks("ask", question="Where to?", options=["radiology", "pharmacy"])
+    assert front.question()["called"]["de"] == ["Radiologie", "Apotheke"]
+    ears.words = "zur Apotheke, bitte"
+    ears.speaks.set()
+    assert asked.result(AT_ONCE) == "pharmacy"
     front.close()
 
 
@@ -389,12 +428,11 @@ robot.say(name + " would like " + drink)
 """
 
 
-def start(robot: Robot, program: str) -> int:
+def start(robot: Robot, program: str, **more: Any) -> int:
     """Run a program as an operator does."""
     review = robot.request("program.check", {"program": program})
-    approval = robot.request(
-        "program.approve", {"program": program, "sha256": review["sha256"], "by": "test"}
-    )
+    about = {"program": program, "sha256": review["sha256"], "by": "test", **more}
+    approval = robot.request("program.approve", about)
     run: int = robot.request("program.run", {"approval": approval["id"]})
     return run
 
@@ -473,8 +511,7 @@ def test_language_and_stop_by_touch(look: Look, served: Served) -> None:
 def test_escape_stops_from_within_a_page_as_well(look: Look, served: Served) -> None:
     page = look("/face", width=1024, height=768)
     robot = served.robot()
-    robot.show(html=FORM)
-    run = start(robot, "robot.wait(60)")
+    run = start(robot, f"robot.show(html={FORM!r})\nrobot.wait(60)")
     page.frame_locator(".shown-page").locator("#name").press("Escape")
     assert end_of(robot, run) == "stopped"
     robot.show(text="")
@@ -491,4 +528,60 @@ def test_who_looks_on_is_told_so(look: Look, served: Served) -> None:
     expect(page.locator("#figure")).to_have_attribute("data-look", "sad")
     robot.emotion("neutral")
     expect(face_of_others.locator("#figure")).to_have_attribute("data-look", "neutral")
+    robot.close()
+
+
+def test_around_a_question_all_is_in_the_language_that_a_visitor_has_chosen(
+    look: Look, served: Served, picture: Callable[[Page, str], None]
+) -> None:
+    page = look("/face", width=1024, height=768)
+    desk = look("/", language="fr")
+    robot = served.robot()
+    expect(page.locator("body[data-ready]")).to_be_attached()
+    program = 'robot.say("It is " + robot.ask("Would you like some water?", ["yes", "no"]))'
+    run = start(robot, program, utterance="ask for water", language="en")
+    expect(page.locator(".choice")).to_have_text(["yes", "no"])
+    expect(page.locator(".hint")).to_have_text("Say it, or touch it here.")
+    page.get_by_role("button", name="Deutsch").click()
+    expect(page.locator(".choice")).to_have_text(["ja", "nein"])
+    expect(page.locator(".hint")).to_have_text(
+        [
+            "Diese Frage gibt es nur auf Englisch. Sie dürfen auf Deutsch antworten.",
+            "Sagen Sie es, oder tippen Sie es hier an.",
+        ]
+    )
+    expect(page.locator(".asking h1[lang=en]")).to_have_text("Would you like some water?")
+    expect(page.locator(".asking[lang=de]")).to_be_visible()
+    expect(desk.locator(".standing-in .suggestion")).to_have_text(["oui", "non"])
+    picture(page, "face-other-language")
+    page.get_by_role("button", name="ja").click()
+    expect(page.locator("#caption")).to_have_text("It is yes")
+    assert end_of(robot, run) == "done"
+    page.get_by_role("button", name="English").click()
+    expect(page.get_by_role("button", name="STOP", exact=True)).to_be_visible()
+    robot.close()
+
+
+def test_where_nobody_has_chosen_a_language_a_question_is_in_that_of_its_program(
+    look: Look, served: Served
+) -> None:
+    """The receptionist speaks German, the robot English; the visitor has touched nothing yet."""
+    robot = served.robot()
+    robot.set_language("en")
+    page = look("/face", width=390, height=844)
+    expect(page.locator("body[data-ready]")).to_be_attached()
+    expect(page.get_by_role("button", name="STOP", exact=True)).to_be_visible()
+    program = 'robot.ask("Wie heißen Sie?")'
+    run = start(robot, program, utterance="Frag, wie er heißt", language="de")
+    expect(page.locator(".hint")).to_have_text("Sagen Sie es, oder schreiben Sie es hier.")
+    page.get_by_label("Ihre Antwort").fill("Mar")
+    page.get_by_role("button", name="Français").click()
+    expect(page.locator(".hint").first).to_have_text(
+        "Cette question n'existe qu'en allemand. Vous pouvez répondre en français."
+    )
+    expect(page.get_by_label("Votre réponse")).to_have_value("Mar")
+    page.get_by_label("Votre réponse").fill("Marie")
+    page.get_by_role("button", name="Envoyer").click()
+    assert end_of(robot, run) == "done"
+    page.get_by_role("button", name="English").click()
     robot.close()

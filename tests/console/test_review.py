@@ -17,10 +17,12 @@ SIZES = [
     (820, 1180, 1.0),
     (390, 844, 1.0),
     (1440, 900, 2.0),
+    (390, 844, 2.0),
 ]
 """Width, height and zoom; a browser that zooms has as much less room."""
 
 LONG = "".join(f'robot.say("Sentence number {number}.")\n' for number in range(1, 61))
+RECEPTION = 'while True:\n    robot.wait_for("person")\n    robot.say("Welcome!")\n'
 FAILS = 'robot.say("I look for it.")\nrobot.grab("unicorn")\n'
 
 
@@ -118,6 +120,39 @@ def test_a_second_command_on_a_small_screen_shows_what_is_approved(
     picture(page, "console-second-command")
 
 
+@pytest.mark.parametrize("size", [(390, 844, 1.0), (820, 1180, 1.0), (1440, 900, 2.0)])
+def test_a_review_begins_in_view_and_the_run_before_it_is_folded_away(
+    look: Look, size: tuple[float, float, float]
+) -> None:
+    """It began below the run from before, under the bar of pages."""
+    page = sized(look, size)
+    say(page, "say hello")
+    approve(page)
+    expect(page.locator("#run-panel .chip[role=status]")).to_have_text("Done")
+    say(page, "go to the pharmacy, say hello, go to the kitchen and grab a cup")
+    expect(page.locator("#decide[data-review]")).to_be_attached()
+    expect(page.locator("#run-panel")).to_be_hidden()
+    begins = page.get_by_role("heading", name="Shall the robot do this?")
+    expect(begins).to_be_in_viewport(ratio=1)
+    top = page.evaluate("document.querySelector('header.frame').getBoundingClientRect().bottom")
+    box = begins.bounding_box()
+    assert box and top <= box["y"] < size[1] / size[2] / 2
+    page.get_by_role("button", name="Reject").click()
+    expect(page.locator("#run-panel")).to_be_visible()
+
+
+def test_who_writes_is_left_where_they_are(look: Look) -> None:
+    """A review that comes, as of a program that is changed, takes nobody from their words."""
+    page = laid_before(look, (390, 844, 1.0), LONG)
+    page.locator(".cm-content").click()
+    page.keyboard.press("Control+End")
+    before = page.locator("#decide").get_attribute("data-review")
+    page.keyboard.insert_text('robot.say("Tea?")')
+    expect(page.locator(f"#decide[data-review]:not([data-review='{before}'])")).to_be_attached()
+    page.wait_for_timeout(100)
+    expect(page.locator(".cm-line", has_text="Tea?")).to_be_in_viewport()
+
+
 def test_by_keyboard_alone_nothing_is_approved_unseen(look: Look, served: Served) -> None:
     page = laid_before(look, (1280, 720, 1.0), LONG)
     expect(read_on(page)).to_be_visible()
@@ -188,6 +223,28 @@ def test_what_did_not_come_to_its_end_is_changed_or_insisted_on(
     expect(page.locator(".cm-content")).to_be_focused()
     page.get_by_role("button", name=anyway).click()
     expect(page.locator("#run-panel")).to_have_attribute("data-state", "failed")
+
+
+@pytest.mark.parametrize(
+    ("language", "goes_on", "approve"),
+    [
+        ("en", "go on until somebody stops it", "Approve and run"),
+        ("de", "weitergehen, bis jemand es anhält", "Freigeben und starten"),
+        ("fr", "jusqu'à ce que quelqu'un l'arrête", "Approuver et lancer"),
+    ],
+)
+def test_a_reception_has_not_failed_for_that_it_has_no_end(
+    look: Look, picture: Picture, language: str, goes_on: str, approve: str
+) -> None:
+    page = laid_before(look, (1440, 900, 1.0), RECEPTION, language=language)
+    expect(page.locator(".outlook:not(.bad)")).to_contain_text(goes_on)
+    expect(page.locator(".facts")).to_contain_text("Welcome!")
+    expect(page.locator(".mark.risk")).to_have_count(1)  # that it has no end
+    expect(page.locator("#change, #run-anyway")).to_have_count(0)
+    expect(page.locator("#decide #approve.primary")).to_have_text(approve)
+    read_all(page)
+    picture(page, f"console-reception-{language}")
+    expect(page.locator("#approve")).to_be_enabled()
 
 
 def test_to_change_it_is_to_say_it_otherwise(page: Page) -> None:

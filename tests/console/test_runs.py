@@ -116,6 +116,32 @@ def test_a_run_is_told_in_every_language(log, knowledge, language) -> None:
     assert "1 &lt; 2" in said
 
 
+@pytest.mark.parametrize(
+    ("language", "answers"),
+    [
+        ("en", ["Reception: yes", "Radiology: no"]),
+        ("de", ["Empfang: yes", "Radiologie: no"]),
+        ("fr", ["Réception: yes", "Radiologie: no"]),
+    ],
+)
+def test_the_answers_stand_first_under_what_was_said(log, knowledge, language, answers) -> None:
+    """A nurse asked whether anybody needs water; tomorrow she looks for who said yes."""
+    about = {"sha256": "0" * 64, "approved_by": "Nurse Kim", "approved_at": 1000.0}
+    run = log.begin(program=PROGRAM, utterance="who needs water?", **about)
+    for number, (place, said) in enumerate([("reception", "yes"), ("radiology", "no")]):
+        log.call_begins(run, 2 * number + 1, 1, "goto", json.dumps({"place": place}))
+        log.call_ends(run, 2 * number + 1, 2.5, result="null")
+        log.call_begins(run, 2 * number + 2, 2, "ask", '{"question":"Water?"}')
+        log.call_ends(run, 2 * number + 2, 2.5, result=json.dumps(said))
+    log.end(run, "done", None)
+    page = page_of(log, knowledge, run, language)
+    order = [
+        unescape(page).replace("\u202f", "").replace("\u00a0", "").replace(" :", ":").find(text)
+        for text in ("who needs water?</h1>", *answers, "Nurse Kim", "run-program")
+    ]
+    assert -1 not in order and order == sorted(order)
+
+
 def test_a_program_is_shown_with_its_lines_in_plain_words(log, knowledge) -> None:
     page = page_of(log, knowledge, ran(log))
     assert re.search(r'<code class="code"><span class="n">robot</span>', page)
@@ -172,6 +198,14 @@ def test_a_long_run_shows_its_newest_calls(log, knowledge) -> None:
 
 
 # --- what can be asked ---------------------------------------------------------------------------
+
+
+def test_there_is_no_run_of_a_number_beyond_all(log, backstage) -> None:
+    """It was a fault of the page."""
+    assert log.run(10**30) is None
+    show = runs.part(backstage).services["runs.show"].handler
+    with pytest.raises(NotPossible, match="There is no run"):
+        show({"run": 10**30}, None)
 
 
 def test_what_makes_no_sense_in_an_address_is_left_out_but_a_day() -> None:
@@ -247,6 +281,23 @@ def test_a_movement_comes_with_the_lines_of_the_program(log, client) -> None:
     assert client.get(f"/runs/{run}/movement.json").json()["poses"][0] == [0, 5, 6, 0]
     log.keep_movement(run, b"junk", 10)
     assert client.get(f"/runs/{run}/movement.json").status_code == 404
+
+
+@pytest.mark.parametrize(
+    ("language", "names"),
+    [
+        ("en", ["pharmacy", "ward a"]),
+        ("de", ["Apotheke", "Station A"]),
+        ("fr", ["pharmacie", "radiologie"]),
+    ],
+)
+def test_the_floor_of_a_replay_has_the_names_of_the_reader(log, client, language, names) -> None:
+    run = ran(log, world=DEFAULT_WORLD)
+    floor = client.get(f"/runs/{run}/floor.svg", cookie=f"language={language}").text
+    others = {"pharmacy", "ward a", "Apotheke", "pharmacie"} - set(names)
+    drawn = set(re.findall(r">([^<>]+)</(?:text|title)>", floor))
+    assert set(names) <= drawn
+    assert not others & drawn
 
 
 def test_a_damaged_log_is_told_in_a_sentence(log, client, backstage) -> None:
@@ -361,6 +412,18 @@ def test_the_pages_fit_phone_and_tablet(
     expect(page.locator("[data-part=calls]")).to_be_visible()
     assert fits(page)
     picture(page, f"runs-{width}")
+
+
+def test_a_replay_tells_looks_and_places_in_the_language_of_the_page(
+    look: Look, served: Served
+) -> None:
+    run = run_by(served, "look happy")
+    page = look(f"/runs/{run}", language="de")
+    expect(page.locator(".run-floor")).to_contain_text("Apotheke")
+    expect(page.locator(".run-replay[data-ready]")).to_be_visible(timeout=SOON)
+    page.get_by_label("Zeit im Lauf").focus()
+    page.keyboard.press("End")
+    expect(page.locator("[data-caption]")).to_have_text("schaut fröhlich")
 
 
 def fits(page: Page) -> bool:

@@ -83,6 +83,23 @@ def test_what_did_not_come_to_its_end_needs_more_than_a_yes(start, log_of) -> No
     assert log_of() == [("grab the unicorn", "failed")]
 
 
+def test_a_reception_that_goes_on_until_it_is_stopped_needs_no_more_than_a_yes(
+    start, log_of
+) -> None:
+    chat = start(*CHAT, at_terminal=True)
+    chat.until("you: ")
+    chat.type("go to ward a and ward b forever\n")
+    shown = " ".join(chat.until("[a]pprove, [e]dit or [r]eject? ").split())
+    assert "would go on until somebody stops it" in shown
+    chat.type("yes\n")
+    chat.until("goto(")
+    chat.interrupt()
+    chat.until("you: ")
+    chat.type("bye\n")
+    assert chat.end() == ExitStatus.OK
+    assert log_of() == [("go to ward a and ward b forever", "stopped")]
+
+
 def test_whoever_asks_for_german_is_spoken_to_in_german(start, log_of) -> None:
     chat = start(*CHAT, at_terminal=True)
     chat.until("you: ")

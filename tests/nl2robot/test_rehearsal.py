@@ -3,6 +3,7 @@
 import threading
 import time
 from collections.abc import Callable
+from textwrap import indent
 
 import pytest
 from hypothesis import given, settings
@@ -59,29 +60,58 @@ def test_a_program_that_stops_the_robot_ends_there(ward) -> None:
     assert told.places[-1] == "ward a"
 
 
+PATROL = 'while True:\n    robot.goto("ward a")\n    robot.goto("ward b")\n'
+SWALLOWS = (
+    'while True:\n    try:\n        robot.goto("ward b")\n        robot.goto("ward a")\n'
+    "    except Exception:\n        pass\n"
+)
+RECEPTION = 'while True:\n    robot.wait_for("person")\n    robot.say("Welcome!")\n'
+AFTER = '    robot.say("Now.")\n'
+LOOKS = '    while not robot.sees("unicorn"):\n        robot.wait(5)\n'
+
+
 @pytest.mark.parametrize(
-    ("program", "why"),
+    ("program", "why", "goes_on"),
     [
-        ('while True:\n    robot.goto("ward a")\n    robot.goto("ward b")\n', "time"),
-        ("while True:\n    robot.battery()\n", "calls"),
-        ('while True:\n    robot.wait_for("unicorn")\n', "time"),
+        (PATROL, "time", True),
+        (RECEPTION, "time", True),
+        ('while True:\n    robot.wait_for("unicorn")\n', "time", True),
+        (SWALLOWS, "time", True),
+        ("while True:\n    robot.battery()\n", "calls", True),
+        (f"if robot.battery() > 5:\n{indent(RECEPTION, '    ')}", "time", True),
+        ('robot.wait_for("unicorn")\nwhile True:\n    robot.wait(1)\n', "time", False),
+        (f"while True:\n{LOOKS}{AFTER}", "time", False),
+        (f"while True:\n    robot.say('Who?')\n{LOOKS}{AFTER}", "time", False),
+        (f"for bed in range(3):\n{indent(PATROL, '    ')}", "time", False),
         (
-            'while True:\n    try:\n        robot.goto("ward b")\n        robot.goto("ward a")\n'
-            "    except Exception:\n        pass\n",
+            'while robot.battery() > 1:\n    robot.goto("ward b")\n    robot.goto("ward a")',
             "time",
+            False,
         ),
-        ("while True:\n    pass\n", "computing"),
+        (f"{PATROL}    if robot.battery() < 2:\n        break\n", "time", False),
+        ("while True:\n    pass\n", "computing", False),
         (
             "def again(n):\n    return 1 if n < 2 else again(n - 1) + again(n - 2)\nagain(90)",
             "computing",
+            False,
         ),
-        ("sum(1 for a in range(10**6) for b in range(10**6) if a > b)", "computing"),
+        ("sum(1 for a in range(10**6) for b in range(10**6) if a > b)", "computing", False),
     ],
 )
-def test_what_takes_too_long_breaks_off_and_says_at_what(ward, program, why) -> None:
+def test_what_takes_too_long_breaks_off_and_says_at_what(ward, program, why, goes_on) -> None:
+    """What has no end, as a reception, has not failed for that it does not come to one."""
     told = rehearse(program, ward, Budget(seconds=60, calls=50, rounds=5_000))
     assert (told.status, told.message, told.broke_off) == ("unfinished", None, why)
-    assert not told.complete
+    assert (told.goes_on, told.complete) == (goes_on, goes_on)
+
+
+def test_a_loop_that_ended_before_may_be_where_it_breaks_off(ward) -> None:
+    """Each of several rounds waits, until nobody comes."""
+    polite = (
+        'while True:\n    while robot.wait_for("person", timeout=5):\n'
+        '        robot.say("Hello.")\n    robot.say("Nobody.")\n'
+    )
+    assert rehearse(polite, ward, Budget(seconds=30)).goes_on
 
 
 def test_waiting_for_the_evening_is_leapt_over(ward) -> None:

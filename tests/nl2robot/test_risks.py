@@ -209,15 +209,15 @@ def test_a_loop_that_nothing_ends_is_endless(loop, ends) -> None:
 
 def test_an_endless_loop_is_not_called_long_as_well() -> None:
     told = found('while True:\n    robot.goto("lobby")\n    robot.goto("pharmacy")')
-    assert [kind for _, kind in told] == ["endless", "unproven"]
+    assert [kind for _, kind in told] == ["endless"]
 
 
 @pytest.mark.parametrize(
     ("program", "words"),
     [
         ('robot.say("A")\nrobot.grab("unicorn")', "went no further than this line"),
-        ('robot.say("A")\nwhile True:\n    robot.wait_for("unicorn")', "after 10 minutes"),
-        ('print("A")\nwhile True:\n    robot.battery()', "after 1001 commands"),
+        ('robot.say("A")\nrobot.wait_for("unicorn")\nrobot.say("B")', "after 10 minutes"),
+        ('print("A")\nwhile robot.battery() > 1:\n    robot.battery()', "after 1001 commands"),
         ("print(1)\nwhile True:\n    pass", "computed on and on"),
     ],
 )
@@ -225,6 +225,25 @@ def test_where_nobody_has_seen_how_it_ends_is_a_risk_in_itself(program, words) -
     told = reviewed(program)
     assert not told.came_through
     assert [words in risk.text for risk in told.risks if risk.kind == "unproven"] == [True]
+
+
+@pytest.mark.parametrize(
+    ("language", "words"),
+    [
+        ("en", "did not come within 10 minutes"),
+        ("de", "kam 10 Minuten Roboterzeit lang nicht"),
+        ("fr", "n'est pas venu en 10 minutes"),
+    ],
+)
+def test_a_reception_came_through_and_says_if_nobody_came(language, words) -> None:
+    welcome = 'while True:\n    robot.wait_for("{}")\n    robot.say("Welcome!")'
+    told = reviewed(welcome.format("person"))
+    assert told.came_through and told.dry_run.goes_on
+    assert [risk.kind for risk in told.risks] == ["endless"]
+    told = reviewed(welcome.format("unicorn"), language=language)
+    assert told.came_through
+    assert [risk.kind for risk in told.risks] == ["endless", "unproven"]
+    assert words in told.risks[1].text
 
 
 def test_a_program_that_comes_to_its_end_has_no_such_risk() -> None:

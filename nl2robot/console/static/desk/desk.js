@@ -3,6 +3,7 @@
 import {appears, pageData} from '/static/page.js';
 import {present} from '/static/state.js';
 import {wire} from '/static/wire.js';
+import {beginInView} from '/static/desk/review_begins.js';
 import {ReviewSeen} from '/static/desk/review_seen.js';
 import {RunPanel} from '/static/desk/run_panel.js';
 import {standIn} from '/static/desk/standing_in.js';
@@ -237,8 +238,10 @@ if (role === 'operator') {
   openDecisions();
   const tellShade = () => tell('desk-shade', {dark: document.documentElement.dataset.look === 'dark'});
   appears('.desk-editor').then((editor) => {
+    const review = editor.closest('.desk-review');
     openEditor(editor);
-    new ReviewSeen(editor.closest('.desk-review'), {words, view: editorView});
+    new ReviewSeen(review, {words, view: editorView});
+    beginInView(review);
     tellShade();
     new MutationObserver(tellShade).observe(document.documentElement, {attributeFilter: ['data-look']});
   });

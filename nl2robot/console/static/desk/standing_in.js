@@ -34,7 +34,7 @@ export function standIn(root, {wire, words, language, who}) {
     if (!(await wire.request('face.stand_in', given).catch(() => false))) enable(true);
   };
 
-  const form = ({question, options, person}) => {
+  const form = ({question, options, called, person}) => {
     const named = person && person !== 'person' ? filled(words.asks_now, {person}) : words.asks_anybody;
     const box = element('form', {class: 'said by-robot question standing-in', 'aria-label': words.answer_for});
     const field = element('input', {
@@ -44,8 +44,9 @@ export function standIn(root, {wire, words, language, who}) {
     const row = element('p', {class: 'row'});
     if (options) {
       row.append(element('span', {class: 'muted'}, words.answer_for));
-      for (const option of options) {
-        const button = element('button', {type: 'button', class: 'suggestion'}, option);
+      for (const [index, option] of options.entries()) {
+        const name = called?.[language]?.[index] ?? option;
+        const button = element('button', {type: 'button', class: 'suggestion'}, name);
         button.addEventListener('click', () => answer(option));
         row.append(button);
       }

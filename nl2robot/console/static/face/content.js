@@ -131,9 +131,10 @@ export class Content {
   }
 
   /** Show what is asked, else what is on the screen; false if there is nothing besides the face. */
-  show({screen, asking, words, mine}) {
+  show({screen, asking, words, language, mine}) {
     this._words = words;
-    const what = JSON.stringify([asking, asking ? null : screen, words.title]);
+    this._language = language;
+    const what = JSON.stringify([asking, asking ? null : screen, language]);
     if (what === this._what) return this._something;
     const samePage = !asking && screen.html !== undefined && this._page?.page === screen.page;
     this._what = what;
@@ -242,12 +243,14 @@ export class Content {
   }
 
   /** A question with its buttons or a field; `inert` if it is not for who stands here. */
-  _showAsking({number, question, options}, inert) {
+  _showAsking({number, question, options, called, language}, inert) {
     const words = this._words;
-    const form = element('form', {class: 'asking'});
+    const form = element('form', {class: 'asking', lang: this._language});
     const heading = question || (options ? words.touch : words.listening);
-    form.append(element('h1', {}, heading));
-    if (options) form.append(this._choices(number, options, inert));
+    form.append(element('h1', {lang: (question && language) || this._language}, heading));
+    const only = question && language && language !== this._language ? words[`only_in_${language}`] : '';
+    if (only) form.append(element('p', {class: 'hint'}, only));
+    if (options) form.append(this._choices(number, options, called?.[this._language] ?? options, inert));
     else form.append(this._reply(number));
     if (!inert) {
       form.append(element('p', {class: 'hint'}, options ? words.speak_or_touch : words.speak_or_type));
@@ -256,13 +259,14 @@ export class Content {
     this._put(form);
   }
 
-  _choices(number, options, inert) {
-    const longest = Math.max(...options.join(' ').split(/\s+/).map((word) => word.length));
+  /** `called`: what stands on the buttons of the options. */
+  _choices(number, options, called, inert) {
+    const longest = Math.max(...called.join(' ').split(/\s+/).map((word) => word.length));
     const choices = element('div', {
       class: 'choices', 'data-many': options.length > MANY, 'data-long': longest > LONG_WORD,
     });
-    for (const option of options) {
-      const choice = element('button', {type: 'button', class: 'choice', disabled: inert}, option);
+    for (const [index, option] of options.entries()) {
+      const choice = element('button', {type: 'button', class: 'choice', disabled: inert}, called[index]);
       choice.addEventListener('click', () => this._answer(number, option, choice));
       choices.append(choice);
     }
@@ -270,7 +274,11 @@ export class Content {
   }
 
   _reply(number) {
-    const field = element('input', {type: 'text', maxlength: 2000, autocomplete: 'off', enterkeyhint: 'send'});
+    const field = element('input', {
+      type: 'text', maxlength: 2000, autocomplete: 'off', enterkeyhint: 'send', 'data-number': number,
+    });
+    // Who chooses another language goes on with what they have written.
+    field.value = this._root.querySelector(`input[data-number="${number}"]`)?.value ?? '';
     const send = element('button', {}, this._words.send);
     const label = element('label', {}, element('span', {class: 'sr'}, this._words.your_answer), field);
     const reply = element('div', {class: 'reply'}, label, send);

@@ -58,12 +58,15 @@ function show() {
   const activity = state.asking ? 'listening' : state.mood;
   const look = face.look({emotion: state.emotion, activity});
   at.figure.setAttribute('aria-label', words[`look_${look}`]);
+  // Around a question the words are those of the program, unless a visitor wants another language.
+  const around = (!state.chosen && pageData.words[state.asking?.language]) || words;
   const asked = state.asking?.question;
   if (asked && at.caption.textContent.includes(asked)) at.caption.classList.add('quiet');
   const beside = content.show({
     screen: state.screen,
     asking: state.asking,
-    words,
+    words: around,
+    language: around === words ? state.language : state.asking.language,
     mine: mine !== null && state.screen.by === mine,
   });
   document.body.dataset.robot = state.robot;

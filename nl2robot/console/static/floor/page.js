@@ -27,14 +27,3 @@ proposeClicks(map, {
     window.emitEvent('desk-propose', {program, said, note, at_once});
   },
 });
-
-// On a phone the review is below the map: who has sent the robot sees it.
-const program = await appears('.map-desk .desk-program');
-let waits = false;
-new MutationObserver(() => {
-  const now = program.querySelector('#approve') !== null;
-  if (now && !waits && matchMedia('(max-width: 1099px)').matches) {
-    program.scrollIntoView({block: 'start', behavior: 'smooth'});
-  }
-  waits = now;
-}).observe(program, {childList: true, subtree: true});
