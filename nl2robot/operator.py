@@ -132,16 +132,18 @@ class Operator:
         by: str | None = None,
         proposed: str | None = None,
         insists: bool = False,
+        language: str | None = None,
     ) -> Approval:
         """Approve exactly the program that was reviewed; with `continues`, what is left of it.
         `by`: how the log calls whoever does. `proposed`: the program from before, if it was changed
         here by hand. `insists`: somebody wants it run though it did not come to its end when it
-        was tried."""
+        was tried. `language`: theirs, in which the run reports and speaks."""
         parameters: dict[str, Any] = {
             "program": review.program,
             "sha256": review.sha256,
             "by": by or self.name,
             "heard": heard,
+            "language": language,
             **_continuing(continues),
         }
         if translation is not None:

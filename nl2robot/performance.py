@@ -41,6 +41,7 @@ from nl2robot.pausing import (
 from nl2robot.present import Present
 from nl2robot.runlog import LogError, RunLog
 from nl2robot.runs import Approval, State, Status
+from nl2robot.spoken_language import SpokenLanguage
 from nl2robot.state import HELD
 from robot_api.client import Robot
 from robot_api.errors import LostConnection, NotPossible, RobotError, StopNotConfirmed, Stopped
@@ -68,6 +69,7 @@ class Means:
     publish: Callable[[str, Mapping[str, Any]], None]
     present: Present
     """How the robot and its program stand."""
+    spoken: SpokenLanguage
     seed: int | None
 
 
@@ -221,6 +223,10 @@ class Performance:
         try:
             with self._means.connect() as robot:
                 self._robot = robot
+                has = self._means.knowledge.capabilities
+                self._means.spoken.adopt(
+                    robot, self.approval.language, has.languages if has is not None else ()
+                )
                 self._outcome = self._as_lost(self._execute(robot))
                 # A connection that is lost needs no stop: its server has stopped the robot, too.
                 if self._outcome.status != "done" and robot.connected:

@@ -251,7 +251,7 @@ class Session:
         insists = not review.came_through
         try:
             return self.operator.approve(
-                review, translation, heard, continues, by, proposed, insists
+                review, translation, heard, continues, by, proposed, insists, self.language
             )
         except NotPossible:
             if self.approve_all:

@@ -370,6 +370,8 @@ def _open(
             runner.note_pose(data)
         elif kind == "searched":
             runner.note_search(data)
+        elif kind == "language":
+            runner.note_language(data["code"])
         elif kind == STOP:
             runner.stop(str(data.get("because", "The robot was stopped.")))
             microphones.give_up()
