@@ -25,7 +25,7 @@ from grammar.naming import joined_up, place_called
 from nl2robot.history import ASKING, FINDING, Done, Record, Witness, done_calls
 from nl2robot.knowledge import Knowledge
 from nl2robot.runlog import RunLog
-from nl2robot.trouble import told
+from nl2robot.trouble import error_told
 
 _LISTS_NOTHING: Final = re.compile(r"(\s*:)\s*\.$")
 """How a report ends whose list is empty: "These are the answers: ."."""
@@ -251,8 +251,7 @@ class _Account:
         return not over and _kind(call) != "Stopped"
 
     def _trouble(self, call: Done) -> str:
-        kind, _, message = (call.error or "").partition(": ")
-        why = told(kind, message, self.pack.code)
+        why = error_told(call.error or "", self.pack.code, self.lexicon)
         if call.method in ASKING and call.arguments.get("person"):
             who = self.witness.person(str(call.arguments["person"]))
             return self.pack.phrase("answer_of", person=who, answer=why)

@@ -17,6 +17,7 @@ from grammar.lexicon import Lexicon
 from grammar.naming import Naming, joined_up, naming, place_called, the
 from grammar.requests import Request
 from nl2robot.runlog import LoggedCall, Run
+from nl2robot.trouble import told
 from sim.world import World
 
 ASKING: Final = frozenset({"ask", "listen", "touch"})
@@ -135,8 +136,9 @@ class Witness:
         run = self.record.run
         if run.status == "done":
             return self.pack.phrase("run_done", task=self.task())
+        reason = told(None, run.message or "", self.pack.code, self.lexicon)
         name = "run_stopped" if run.status == "stopped" else "run_failed"
-        return self.pack.phrase(name, task=self.task(), reason=run.message or "")
+        return self.pack.phrase(name, task=self.task(), reason=reason)
 
     def happened(self) -> str:
         told = [self.doing() if self.record.running else self.ended()]

@@ -17,7 +17,7 @@ import logging
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -42,6 +42,7 @@ from nl2robot.present import Present
 from nl2robot.runlog import LogError, RunLog
 from nl2robot.runs import Approval, State, Status
 from nl2robot.state import HELD
+from nl2robot.trouble import told
 from robot_api.client import Robot
 from robot_api.errors import LostConnection, NotPossible, RobotError, StopNotConfirmed, Stopped
 from sandbox.execution import Execution, Outcome
@@ -201,15 +202,18 @@ class Performance:
             self._noted = state.state
             self._states.append((time.time(), state.state, state.because))
 
-    def report(self, phrase: str, **about: Any) -> None:
+    def report(self, phrase: str, **about: str | Sequence[str]) -> None:
         """Tell something that the program itself does not, in the language of whoever approved it.
-        Lists are of places."""
+        Lists are of places, texts are sentences of the robot."""
         knowledge = self._means.knowledge
         code = self.approval.language or "en"
         pack = load_language(code if code in languages() else "en")
-        called = naming(knowledge.lexicon(pack.code), pack).called
+        lexicon = knowledge.lexicon(pack.code)
+        called = naming(lexicon, pack).called
         gaps = {
-            name: ", ".join(map(called, value)) if isinstance(value, list | tuple) else value
+            name: told(None, value, pack.code, lexicon)
+            if isinstance(value, str)
+            else ", ".join(map(called, value))
             for name, value in about.items()
         }
         with contextlib.suppress(Stopped):  # the next call finds that the log is full

@@ -124,7 +124,9 @@ def test_what_did_not_work_is_told_though_the_program_went_on(nurse) -> None:
     assert told.startswith("This did not work: take an elephant.")
     nurse.language = "de"
     [told] = nurse.reads(program)
-    assert told.startswith("Das ging nicht: „elephant“ nehmen. Der Roboter findet es hier nicht.")
+    assert told.startswith(
+        "Das ging nicht: „elephant“ nehmen. Der Roboter sieht „elephant“ hier nicht."
+    )
 
 
 @pytest.mark.parametrize(
