@@ -17,6 +17,7 @@ from grammar.lexicon import Lexicon
 from grammar.naming import Naming, joined_up, naming, place_called, the
 from grammar.requests import Request
 from nl2robot.runlog import LoggedCall, Run
+from nl2robot.sightings import Sightings
 from nl2robot.trouble import told
 from sim.world import World
 
@@ -65,6 +66,10 @@ class Record:
 
 class History(Protocol):
     """Who knows what was run: the runner."""
+
+    @property
+    def sightings(self) -> Sightings:
+        """Whom and what the robot has seen just now."""
 
     def last(self) -> Record | None:
         """The present run, or the last; None if there was none."""

@@ -41,6 +41,7 @@ from nl2robot.pausing import (
 from nl2robot.present import Present
 from nl2robot.runlog import LogError, RunLog
 from nl2robot.runs import Approval, State, Status
+from nl2robot.sightings import Sightings
 from nl2robot.state import HELD
 from nl2robot.trouble import told
 from robot_api.client import Robot
@@ -69,6 +70,8 @@ class Means:
     publish: Callable[[str, Mapping[str, Any]], None]
     present: Present
     """How the robot and its program stand."""
+    sightings: Sightings
+    """Whom and what the robot has seen just now."""
     seed: int | None
 
 
@@ -364,6 +367,8 @@ class Performance:
         told = msgspec.json.encode(result).decode()
         self._logged(log.call_ends, number, seconds, result=told)
         self._tell("result", **about, result=msgspec.to_builtins(result), seconds=seconds)
+        place = self._pose.get("place") if self._pose is not None else None
+        self._means.sightings.note(method, arguments, result, place)
         if method == "stop":
             raise Stopped  # whoever stops the robot, its program is over
         return result

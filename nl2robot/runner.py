@@ -32,6 +32,7 @@ from nl2robot.review import Review, digest, review
 from nl2robot.reviews import Reviews, as_it_is
 from nl2robot.runlog import LogError, RunLog
 from nl2robot.runs import Approval, Status
+from nl2robot.sightings import Sightings
 from nl2robot.state import State
 from robot_api.client import Robot
 from robot_api.errors import AccessDenied, LostConnection, NotPossible, RobotError, Stopped
@@ -71,7 +72,8 @@ class Runner:
         self.present = present or Present(lambda state: None)
         """How the robot and its program stand."""
         self.log = log
-        self._means = Means(knowledge, connect, log, publish, self.present, seed)
+        self.sightings = Sightings()
+        self._means = Means(knowledge, connect, log, publish, self.present, self.sightings, seed)
         self._stage = stage
         self._seed = seed
         self._lock = threading.Lock()
