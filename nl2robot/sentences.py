@@ -21,8 +21,7 @@ from typing import Final
 
 from grammar.language import Language, UnknownLanguage, load_language
 from grammar.lexicon import Lexicon
-from grammar.naming import joined_up, naming, the
-from grammar.speech import fill, speech
+from grammar.naming import joined_up, listed, naming, the
 from nl2robot.words import words_in
 
 DATA: Final = Path(__file__).parent / "data" / "sentences.yaml"
@@ -74,11 +73,8 @@ def _value(name: str, text: str, pack: Language, lexicon: Lexicon) -> str | None
         case "thing":
             return called(text)
         case "names":
-            *rest, last = [
-                _told(each, pack, lexicon) or called(each) for each in _LISTED.split(text)
-            ]
-            two = speech(pack.code).durations.two
-            return fill(two, {"first": ", ".join(rest), "last": last}) if rest else last
+            names = [_told(each, pack, lexicon) or called(each) for each in _LISTED.split(text)]
+            return listed(names, pack)
         case "the":
             bare = text.removeprefix("the ")
             # People who have a name of their own go without an article.

@@ -102,7 +102,7 @@ def test_people_go_on(clock, operator) -> None:
             "fr",
             "Demande à Alice si elle veut du thé",
             "Tu sais où est Alice ?",
-            "J'ai vu Alice à l'instant, au service A. Redemandez, et j'irai voir.",
+            "J'ai vu Alice à l'instant, ici : le service A. Redemandez, et j'irai voir.",
         ),
     ],
 )
