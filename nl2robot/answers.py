@@ -22,7 +22,7 @@ from grammar.explain import explain_steps
 from grammar.language import Language, load_language
 from grammar.lexicon import Lexicon
 from grammar.naming import joined_up, listed, place_called
-from nl2robot.history import ASKING, FINDING, Done, Record, Witness, done_calls
+from nl2robot.history import ASKING, FINDING, NOTES, Done, Record, Witness, done_calls
 from nl2robot.knowledge import Knowledge
 from nl2robot.runlog import RunLog
 from nl2robot.trouble import error_told
@@ -36,8 +36,6 @@ AWAY: Final = frozenset({"find", "guide", "follow", "dock"})
 SPEAKING: Final = ASKING | {"say", "guide"}
 PERSON: Final = "person"
 """The thing that stands for anybody."""
-NOTES: Final = frozenset({"location", "places", "clock", "battery", "log"})
-"""What a program looks up for itself; it is an answer only where there is no other."""
 
 
 class Sentence(msgspec.Struct, frozen=True):

@@ -25,6 +25,9 @@ ASKING: Final = frozenset({"ask", "listen", "touch"})
 FINDING: Final = frozenset({"find", "sees", "wait_for"})
 MOVING: Final = frozenset({"goto", "guide", "follow", "find", "move", "drive", "dock"})
 
+NOTES: Final = frozenset({"location", "places", "clock", "battery", "log"})
+"""What a program looks up for itself; it is an answer only where there is no other."""
+
 
 @dataclass(frozen=True)
 class Done:
