@@ -1,8 +1,8 @@
 """The sentences of the robot's software in other languages.
 
 Drivers, simulator and server say in English what went wrong, each where it is known best. As with
-gettext the English sentence is the key: `data/sentences.yaml` has every one with gaps for what it
-is about, and the same in other languages. So a sentence carries its values whatever way it takes,
+gettext the English sentence is the key: `data/sentences/` has every one with gaps for what it is
+about, and the same in other languages. So a sentence carries its values whatever way it takes,
 over the wire, through a program and out of an old log. Whose driver says something of its own is
 told in its own words.
 
@@ -24,8 +24,9 @@ from grammar.lexicon import Lexicon
 from grammar.naming import joined_up, listed, naming, the
 from nl2robot.words import words_in
 
-DATA: Final = Path(__file__).parent / "data" / "sentences.yaml"
+DATA: Final = Path(__file__).parent / "data" / "sentences"
 GAP: Final = re.compile(r"\{(\w+)\}")
+_OF_A_FILE: Final = re.compile(r"(\s*(?:\S+?:(?:\d+:)? )?)(.*)", re.DOTALL)
 _LISTED: Final = re.compile(r", | and ")
 
 
@@ -45,11 +46,18 @@ def in_language(sentence: str, language: str, lexicon: Lexicon | None = None) ->
         told = _told(sentence, load_language(language), lexicon or Lexicon())
     except UnknownLanguage:
         return None
-    return told and _capital(joined_up(told, load_language(language)))
+    return told and _capital(told)
+
+
+def told(sentence: str, language: str) -> str:
+    """The same for whoever reads errors at a terminal: as it is where it is somebody else's. What
+    is said of a file may have its name and the line before it: "ward.yaml:3: ..."."""
+    before, bare = _OF_A_FILE.fullmatch(sentence).groups()  # type: ignore[union-attr]
+    return in_language(sentence, language) or before + (in_language(bare, language) or bare)
 
 
 def _told(sentence: str, pack: Language, lexicon: Lexicon) -> str | None:
-    """The same as it is put together, before its little words run together."""
+    """The same, as it stands within a sentence."""
     for entry in entries():
         found = entry.pattern.fullmatch(sentence)
         if found is None or pack.code not in entry.said:
@@ -58,7 +66,9 @@ def _told(sentence: str, pack: Language, lexicon: Lexicon) -> str | None:
             name: _value(name, text, pack, lexicon) for name, text in found.groupdict().items()
         }
         if None not in values.values():
-            return entry.said[pack.code].format(**values)
+            told = entry.said[pack.code].format(**values)
+            has_nouns = any(name.partition("_")[0] in ("the", "thing", "names") for name in values)
+            return joined_up(told, pack) if has_nouns else told
     return None
 
 
@@ -86,11 +96,15 @@ def _value(name: str, text: str, pack: Language, lexicon: Lexicon) -> str | None
 
 @functools.cache
 def entries() -> tuple[Entry, ...]:
-    """All sentences that are known; those with the fewest gaps first."""
+    """All sentences that are known; those that say most by themselves first."""
     import yaml
 
-    known: list[dict[str, str]] = yaml.safe_load(DATA.read_text(encoding="utf-8"))
-    known.sort(key=lambda said: len(GAP.findall(said["en"])))
+    known: list[dict[str, str]] = [
+        said
+        for file in sorted(DATA.glob("*.yaml"))
+        for said in yaml.safe_load(file.read_text(encoding="utf-8"))
+    ]
+    known.sort(key=lambda said: (said["en"].startswith("{"), len(GAP.findall(said["en"]))))
     return tuple(Entry(_pattern(said["en"]), said) for said in known)
 
 

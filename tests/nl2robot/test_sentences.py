@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import argparse
 import ast
+import contextlib
 import json
 import re
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
+from nl2robot.cli import main
+from nl2robot.errors import ExitStatus
 from nl2robot.knowledge import Knowledge
 from nl2robot.sentences import GAP, entries, in_language
 from nl2robot.trouble import error_told, told
@@ -38,6 +43,16 @@ SAYING = {
     "nl2robot/console/localising.py": {"UserError"},
     "nl2robot/console/helm.py": WHILE_IT_WORKS | {"AccessDenied"},
     "nl2robot/console/video.py": WHILE_IT_WORKS,
+    "nl2robot/commands/run.py": {"UserError"},
+    "nl2robot/commands/log.py": {"UserError"},
+    "nl2robot/commands/listen.py": {"UserError"},
+    "nl2robot/commands/models.py": {"UserError"},
+    "nl2robot/commands/routines.py": {"UserError"},
+    "nl2robot/commands/options.py": {"UserError", "ArgumentTypeError"},
+    "nl2robot/models.py": {"ModelError"},
+    "nl2robot/planners.py": {"UserError"},
+    "nl2robot/speech/audio.py": {"AudioError"},
+    "nl2robot/speech/microphone.py": {"AudioError"},
 }
 BEFORE_THERE_IS_A_ROBOT = {
     "The world {} has no map to drive on. Give its places a pose, or choose another world.",
@@ -46,9 +61,26 @@ BEFORE_THERE_IS_A_ROBOT = {
     " Let it start on free floor.",
 }
 """Said to whoever makes a world."""
+OF_SOUND_ITSELF = {
+    "The file {} is broken, or its sound is not of the kind that browsers record (Opus)."
+    " Use a {} file.",
+    "The recording {} says that it has {} samples a second in {} channels, which no voice has."
+    " It is probably broken; record it again.",
+    "Sound with {} samples a second in {} channels cannot be used."
+    " Send one channel at 16000 or 48000.",
+}
+"""Said to whoever sends sound from a program of their own."""
 
-PUT_TOGETHER = {"{} The robot has not confirmed that it stands. Use the robot's own button."}
-"""How a run failed, and then how its stop did."""
+PUT_TOGETHER = {
+    # How a run failed, and then how its stop did.
+    "{} The robot has not confirmed that it stands. Use the robot's own button.",
+    "Something went wrong inside nl2robot ({})."
+    " Run it again with --debug and report what it prints.",
+    *("{} speech model", "second {} speech model"),
+    # The names of models, as `models.yaml` has them.
+    *("speech model Whisper", "small language model", "large language model", "any language"),
+    *("neural voices for training", "English, German and French", "English", "German", "French"),
+}
 
 
 def skeleton(sentence: str) -> str:
@@ -70,6 +102,12 @@ def sentences(node: ast.expr | None) -> list[str]:
             return []
 
 
+def said_by_argparse() -> set[str]:
+    tree = ast.parse(Path(argparse.__file__).read_text(encoding="utf-8"))
+    constants = (node for node in ast.walk(tree) if isinstance(node, ast.Constant))
+    return {node.value for node in constants if isinstance(node.value, str)}
+
+
 def files(under: str) -> list[Path]:
     path = ROOT / under
     return [path] if path.is_file() else sorted(path.rglob("*.py"))
@@ -89,7 +127,7 @@ KNOWN = {skeleton(entry.said["en"]) for entry in entries()} | {"{}"}
 @pytest.mark.parametrize("under", SAYING)
 def test_every_error_that_people_are_told_of_has_its_sentence_in_each_language(under: str) -> None:
     said = {text for path in files(under) for text in raised(path, SAYING[under])}
-    assert said - KNOWN - BEFORE_THERE_IS_A_ROBOT == set()
+    assert said - KNOWN - BEFORE_THERE_IS_A_ROBOT - OF_SOUND_ITSELF == set()
 
 
 def test_no_sentence_is_kept_that_nothing_says_any_more() -> None:
@@ -101,6 +139,8 @@ def test_no_sentence_is_kept_that_nothing_says_any_more() -> None:
         if isinstance(node, ast.expr)
         for text in sentences(node)
     }
+    code |= {text.strip("\n") for text in code}
+    code |= {re.sub(r"%(?:\(\w+\))?[rs]", "{}", text) for text in said_by_argparse()}
     gone = KNOWN - code - PUT_TOGETHER
     assert gone == set()
 
@@ -215,3 +255,47 @@ def test_a_failed_call_goes_through_the_log_without_losing_what_it_is_about(
     assert error_told(kept, "de", knowledge.lexicon("de")).startswith(
         "Einen Ort namens „ward z“ gibt es auf dieser Karte nicht."
     )
+
+
+# --- a terminal that speaks French ---------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (("run", "--wrld", "ward", "--lang", "de"), "Das ist hier nicht bekannt: --wrld"),
+        (("run", "--speed", "-1", "--lang=fr", "hi"), "'-1' n'est pas un nombre au-dessus de 0"),
+        (("listen", "--lang", "de"), "Eines davon muss angegeben werden: --wav --mic"),
+        (("listen", "--lang", "fr", "--wav", "no.wav"), "L'enregistrement no.wav n'est pas là."),
+        (("log", "--replay"), "Dites quelle exécution répéter : nl2robot log NUMÉRO --replay."),
+        (("models", "get", "xx"), "Il n'y a pas de modèle « xx ». Choisissez parmi : en, de,"),
+        (("translate", "--world", "nix", "--lang", "de", "hallo"), "nix: Eine solche Welt gibt es"),
+    ],
+)
+def test_what_the_commands_say_is_in_the_language_asked_for_else_the_terminals(
+    arguments: tuple[str, ...],
+    told: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setenv("LC_ALL", "fr_FR.UTF-8")
+    monkeypatch.setattr("nl2robot.commands.listen.need", lambda code: None)
+    monkeypatch.setattr("nl2robot.commands.listen.lacking_beside", lambda code: ())
+    hearing = SimpleNamespace(recording=None)
+    monkeypatch.setattr("nl2robot.commands.listen._hearing", lambda options: hearing)
+    with contextlib.suppress(SystemExit):
+        assert main(arguments) == ExitStatus.BAD_INPUT
+    err = capsys.readouterr().err
+    assert told in err
+    assert "usage:" not in err and "error:" not in err
+
+
+def test_whoever_says_nothing_of_a_language_reads_english(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("LC_ALL", "C")
+    assert main(("models", "get", "xx")) == ExitStatus.BAD_INPUT
+    assert capsys.readouterr().err.startswith("There is no model called “xx”.")
+    with pytest.raises(SystemExit):
+        main(("run", "--wrld"))
+    assert "error: unrecognized arguments: --wrld" in capsys.readouterr().err
