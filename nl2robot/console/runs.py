@@ -23,7 +23,7 @@ from nl2robot.archive import Archive
 from nl2robot.console import runs_files, runs_view, slow_pages
 from nl2robot.console.part import Backstage, Part
 from nl2robot.console.runs_asked import PROPERTIES, Asked, BadDay, asked
-from nl2robot.console.visitor import visitor_of
+from nl2robot.console.visitor import texts, visitor_of
 from nl2robot.errors import UserError
 from nl2robot.kept_record import Recorder
 from nl2robot.wire import service
