@@ -61,7 +61,7 @@ class _Conversation(Changes):
         if edit is not None and reader.tokens[0].norm in self.language.speech["only"]:
             # "only if she is there"; a place alone would only be one more of them
             part = is_pieces(self.reader(edit.new, Context()))
-            return (None if part else self._gone_on()) or self._unclear(edit)
+            return (None if part else self._gone_on()) or self._unclear(edit, plain)
         if plain.status != "rejected":
             return self._in_that_manner(plain) or self._after_this(plain)
         if question is not None:
@@ -84,7 +84,7 @@ class _Conversation(Changes):
             "drop step",
             "manner",
         ):
-            return self._unclear(edit)
+            return self._unclear(edit, plain)
         return plain
 
     def _after_this(self, plain: Understanding) -> Understanding:
@@ -185,9 +185,21 @@ class _Conversation(Changes):
             return None
         return self.read(f"{self.text.rstrip(' .!?')}. {self.context.text}", self.base)
 
-    def _unclear(self, edit: Edit) -> Understanding:
-        """Nothing of the command before fits what is said of it."""
-        name = "drop_what" if edit.kind in ("drop", "drop step") else "correct_what"
-        part = edit.new or edit.old or self.text
-        message = self.language.phrase(name, part=part)
+    def _unclear(self, edit: Edit, plain: Understanding) -> Understanding:
+        """Nothing of the command before fits what is said of it. Words that change a command begin
+        many a command, too ("remove the plates from the table"): one that cannot be done for a
+        reason of its own is told that, and the one before is left alone."""
+        if self.reader(self.text, self.context).refuses_with_reason:
+            return plain
+        new = self.reader(edit.new, self.context)
+        if new.tokens and new.refuses_with_reason:
+            refused = new.understand()
+            if refused.status == "rejected":
+                return replace(refused, utterance=self.text)
+        if edit.kind == "correct":
+            part = edit.new or self.text
+            message = self.language.phrase("correct_what", part=part)
+        else:
+            part = self.text
+            message = self.language.phrase("no_change", part=part, before=self.context.text)
         return replace(rejected(self.text, message, self.context), unclear=part)

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from grammar.language import Language, spoken_name
 from grammar.lexicon import Lexicon
-from grammar.speech import Speech, speech
+from grammar.speech import Speech, fill, speech
 
 
 @dataclass(frozen=True)
@@ -128,6 +128,13 @@ def place_called(name: str, lexicon: Lexicon, language: Language) -> str:
     called = naming(lexicon, language).called(name)
     words = _words(language)
     return words.joined_up(words.nouns.the(called)) if words else spoken_name(called, language)
+
+
+def listed(names: Sequence[str], language: Language) -> str:
+    """ "ward a, ward b and ward c"."""
+    *first, last = names
+    two = speech(language.code).durations.two
+    return fill(two, {"first": ", ".join(first), "last": last}) if first else last
 
 
 def joined_up(text: str, language: Language) -> str:

@@ -252,6 +252,14 @@ class Reader:
             return False
 
     @property
+    def refuses_with_reason(self) -> bool:
+        """Whether it is known why nothing comes of it: a command that was read as one, or that is
+        none of the robot's business."""
+        why = why_not(self.tokens, self.language, self.names.called)
+        no = forbidden(self.tokens, self.language)
+        return self.reads or no is not None or why != "not_understood_at_all"
+
+    @property
     def slots(self) -> Slots:
         return self._said.slots
 

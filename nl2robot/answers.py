@@ -21,11 +21,11 @@ from grammar import plan as p
 from grammar.explain import explain_steps
 from grammar.language import Language, load_language
 from grammar.lexicon import Lexicon
-from grammar.naming import joined_up, place_called
-from nl2robot.history import ASKING, FINDING, Done, Record, Witness, done_calls
+from grammar.naming import joined_up, listed, place_called
+from nl2robot.history import ASKING, FINDING, NOTES, Done, Record, Witness, done_calls
 from nl2robot.knowledge import Knowledge
 from nl2robot.runlog import RunLog
-from nl2robot.trouble import told
+from nl2robot.trouble import error_told
 
 _LISTS_NOTHING: Final = re.compile(r"(\s*:)\s*\.$")
 """How a report ends whose list is empty: "These are the answers: ."."""
@@ -36,8 +36,6 @@ AWAY: Final = frozenset({"find", "guide", "follow", "dock"})
 SPEAKING: Final = ASKING | {"say", "guide"}
 PERSON: Final = "person"
 """The thing that stands for anybody."""
-NOTES: Final = frozenset({"location", "places", "clock", "battery", "log"})
-"""What a program looks up for itself; it is an answer only where there is no other."""
 
 
 class Sentence(msgspec.Struct, frozen=True):
@@ -84,6 +82,8 @@ class _Happened:
     """What was asked, with who answered what, and where."""
     findings: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    empty: dict[str, None] = field(default_factory=dict)
+    """Where it saw nobody, and nobody was asked either."""
     troubles: list[str] = field(default_factory=list)
     """What did not work, though the program went on."""
 
@@ -102,6 +102,7 @@ class _Account:
             yield from map(Sentence, happened.findings)
         yield from map(Sentence, self._said_to_others(happened))
         yield from map(Sentence, self._answers(happened))
+        yield from map(Sentence, self._nobody(happened))
         for text in happened.reports:
             yield Sentence(text, spoken=True)
         nothing_else = (happened.reports, happened.sayings, happened.questions, happened.findings)
@@ -117,6 +118,7 @@ class _Account:
         for call in self.record.calls:
             if call.arguments.get("thing") not in met and not (spoke and call.method == "people"):
                 self._note(call, where.place, found, happened)
+            _note_who_is_there(call, where.place, happened)
             where.follow(call)
         return happened
 
@@ -176,6 +178,14 @@ class _Account:
                     yield self.pack.phrase("answer_of", person=name, answer=said)
                 else:
                     yield self.pack.phrase("silence_of", person=name)
+
+    def _nobody(self, happened: _Happened) -> Iterator[str]:
+        """Where there was nobody to ask, of a round that asks."""
+        if happened.empty and happened.questions:
+            there = [
+                self.pack.phrase("in_place", place=self._place(each)) for each in happened.empty
+            ]
+            yield self._joined("nobody_was", places=listed(there, self.pack))
 
     def _speaker(self, who: str, place: str) -> str:
         """Whoever answered: by name, else by where they are."""
@@ -251,8 +261,7 @@ class _Account:
         return not over and _kind(call) != "Stopped"
 
     def _trouble(self, call: Done) -> str:
-        kind, _, message = (call.error or "").partition(": ")
-        why = told(kind, message, self.pack.code)
+        why = error_told(call.error or "", self.pack.code, self.lexicon)
         if call.method in ASKING and call.arguments.get("person"):
             who = self.witness.person(str(call.arguments["person"]))
             return self.pack.phrase("answer_of", person=who, answer=why)
@@ -260,6 +269,17 @@ class _Account:
         deed = p.Call(call.method, {k: _value(v) for k, v in call.arguments.items() if v})
         [(_, what), *_] = explain_steps(p.Plan((deed,), self.pack.code), self.pack.code, called)
         return self.pack.phrase("did_not_work", what=what, why=why)
+
+
+def _note_who_is_there(call: Done, place: str | None, happened: _Happened) -> None:
+    """Whether there is anybody at this place, by what came of a call there."""
+    looks = call.method == "people" or call.arguments.get("thing") == PERSON
+    if not place or call.error is not None:
+        return
+    if call.method in ASKING or (looks and call.result):
+        happened.empty.pop(place, None)
+    elif looks and call.method in ("people", "sees", "find", "wait_for"):
+        happened.empty[place] = None
 
 
 class _Where:

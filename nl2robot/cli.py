@@ -16,6 +16,7 @@ import sys
 import traceback
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NoReturn
 
 from nl2robot import __version__
 from nl2robot.errors import ExitStatus, UserError
@@ -68,24 +69,43 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if arguments is None and status == ExitStatus.INTERRUPTED:
             # It ends; whoever presses Ctrl-C twice wants no more than that.
             signal.signal(signal.SIGINT, signal.SIG_IGN)
-        print(sentence, file=sys.stderr)
+        print(_told(sentence, given), file=sys.stderr)
     _let_go_of_output()
     return status
 
 
 def _start() -> str:
     """What it is, and what to try first, in the language of the terminal."""
-    import locale
+    from nl2robot.words import terminal_language, words_in
 
-    from nl2robot.words import words_in
+    return str(words_in(terminal_language())["start"]).format(version=__version__)
 
-    for name in ("LC_ALL", "LC_MESSAGES", "LANG"):  # the first that is set counts
-        if setting := os.environ.get(name):
-            break
-    else:
-        setting = ""
-    language = locale.normalize(setting).partition("_")[0]
-    return str(words_in(language)["start"]).format(version=__version__)
+
+def _told(sentence: str, given: Sequence[str]) -> str:
+    """A sentence of ours in the language that was asked for with --lang, else in that of the
+    terminal; in English where there is none of it."""
+    from nl2robot.sentences import told
+    from nl2robot.words import terminal_language
+
+    language = terminal_language()
+    for number, word in enumerate(given):
+        name, _, value = word.partition("=")
+        if name in ("--lang", "--language"):
+            language = value or next(iter(given[number + 1 :]), "")
+    return told(sentence, language)
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong with a command in the language that was asked for."""
+
+    given: Sequence[str] = ()
+
+    def error(self, message: str) -> NoReturn:
+        told = _told(message, self.given)
+        if told == message:
+            super().error(message)
+        usage = self.format_usage().replace("usage: ", _told("usage: ", self.given), 1)
+        self.exit(ExitStatus.BAD_INPUT, f"{usage}{self.prog}: {told}\n")
 
 
 def _complete(line: str) -> None:
@@ -121,7 +141,8 @@ def _let_go_of_output() -> None:
 
 
 def _parser(given: Sequence[str]) -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    _Parser.given = given
+    parser = _Parser(
         prog="nl2robot",
         description="Tell a social robot what to do in your own words.",
         epilog="nl2robot COMMAND --help says more about a command. Start with: nl2robot",

@@ -19,9 +19,13 @@ from typing import Any, Final
 import msgspec
 from msgspec import structs
 
+from grammar.language import load_language
+from grammar.naming import listed, naming
+from nl2robot.history import NOTES
 from nl2robot.knowledge import Knowledge
 from nl2robot.pausing import MEASURED, PAUSED, Made, rest_of
 from nl2robot.review import reading
+from nl2robot.rounds_left import rounds
 from nl2robot.runlog import LoggedCall, RunLog
 from nl2robot.words import decimal
 from robot_api.errors import RobotError, Stopped, error_named
@@ -242,22 +246,38 @@ def told(
     read = {
         each.line: each.text.rstrip(".:") for each in reading(rest.program, knowledge, language)
     }
-    lines = Counter(call.line for call in rest.done)
-    steps = [
-        words["times"].format(step=read[line], number=number) if number > 1 else read[line]
+    pack = load_language(language)
+    called = naming(knowledge.lexicon(language), pack).called
+    came = rounds(rest.program, rest.done, rest.line, rest.again)
+    within = {line for each in came for line in each.lines}
+    lines = Counter(
+        call.line for call in rest.done if call.method not in NOTES and call.line not in within
+    )
+    told = {
+        line: words["times"].format(step=read[line], number=number) if number > 1 else read[line]
         for line, number in lines.items()
         if line in read
-    ]
+    }
+    told |= {
+        each.lines.start: listed([*map(called, each.done)], pack) for each in came if each.done
+    }
+    steps = [told[line] for line in sorted(told)]
     if len(steps) > STEPS_TOLD:
         more = words["more"].format(number=len(steps) - STEPS_TOLD)
         steps = [*steps[:STEPS_TOLD], more]
     part = _left_in_words(rest.again, words, language)
+    left = words["left"].format(line=rest.line, reading=f"{read.get(rest.line, '')}.")
+    for each in came:
+        if each.left:
+            names = [*map(called, each.left)]
+            gaps = {"names": listed(names, pack), "first": names[0], "line": rest.line}
+            left = words["left_of_round"].format(**gaps)
     sentences = []
     if steps:
         sentences.append(words["done"].format(steps="; ".join(steps) + "."))
     elif part is None:
         sentences.append(words["nothing_done"])
-    sentences.append(words["left"].format(line=rest.line, reading=f"{read.get(rest.line, '')}."))
+    sentences.append(left)
     if part is not None:
         sentences.append(words["rest"].format(left=part))
     elif rest.again is not None and rest.done:

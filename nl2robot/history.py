@@ -17,11 +17,16 @@ from grammar.lexicon import Lexicon
 from grammar.naming import Naming, joined_up, naming, place_called, the
 from grammar.requests import Request
 from nl2robot.runlog import LoggedCall, Run
+from nl2robot.sightings import Sightings
+from nl2robot.trouble import told
 from sim.world import World
 
 ASKING: Final = frozenset({"ask", "listen", "touch"})
 FINDING: Final = frozenset({"find", "sees", "wait_for"})
 MOVING: Final = frozenset({"goto", "guide", "follow", "find", "move", "drive", "dock"})
+
+NOTES: Final = frozenset({"location", "places", "clock", "battery", "log"})
+"""What a program looks up for itself; it is an answer only where there is no other."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +69,10 @@ class Record:
 
 class History(Protocol):
     """Who knows what was run: the runner."""
+
+    @property
+    def sightings(self) -> Sightings:
+        """Whom and what the robot has seen just now."""
 
     def last(self) -> Record | None:
         """The present run, or the last; None if there was none."""
@@ -135,8 +144,9 @@ class Witness:
         run = self.record.run
         if run.status == "done":
             return self.pack.phrase("run_done", task=self.task())
+        reason = told(None, run.message or "", self.pack.code, self.lexicon)
         name = "run_stopped" if run.status == "stopped" else "run_failed"
-        return self.pack.phrase(name, task=self.task(), reason=run.message or "")
+        return self.pack.phrase(name, task=self.task(), reason=reason)
 
     def happened(self) -> str:
         told = [self.doing() if self.record.running else self.ended()]

@@ -17,7 +17,7 @@ import logging
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -41,8 +41,10 @@ from nl2robot.pausing import (
 from nl2robot.present import Present
 from nl2robot.runlog import LogError, RunLog
 from nl2robot.runs import Approval, State, Status
+from nl2robot.sightings import Sightings
 from nl2robot.spoken_language import SpokenLanguage
 from nl2robot.state import HELD
+from nl2robot.trouble import told
 from robot_api.client import Robot
 from robot_api.errors import LostConnection, NotPossible, RobotError, StopNotConfirmed, Stopped
 from sandbox.execution import Execution, Outcome
@@ -70,6 +72,8 @@ class Means:
     present: Present
     """How the robot and its program stand."""
     spoken: SpokenLanguage
+    sightings: Sightings
+    """Whom and what the robot has seen just now."""
     seed: int | None
 
 
@@ -203,15 +207,18 @@ class Performance:
             self._noted = state.state
             self._states.append((time.time(), state.state, state.because))
 
-    def report(self, phrase: str, **about: Any) -> None:
+    def report(self, phrase: str, **about: str | Sequence[str]) -> None:
         """Tell something that the program itself does not, in the language of whoever approved it.
-        Lists are of places."""
+        Lists are of places, texts are sentences of the robot."""
         knowledge = self._means.knowledge
         code = self.approval.language or "en"
         pack = load_language(code if code in languages() else "en")
-        called = naming(knowledge.lexicon(pack.code), pack).called
+        lexicon = knowledge.lexicon(pack.code)
+        called = naming(lexicon, pack).called
         gaps = {
-            name: ", ".join(map(called, value)) if isinstance(value, list | tuple) else value
+            name: told(None, value, pack.code, lexicon)
+            if isinstance(value, str)
+            else ", ".join(map(called, value))
             for name, value in about.items()
         }
         with contextlib.suppress(Stopped):  # the next call finds that the log is full
@@ -366,6 +373,8 @@ class Performance:
         told = msgspec.json.encode(result).decode()
         self._logged(log.call_ends, number, seconds, result=told)
         self._tell("result", **about, result=msgspec.to_builtins(result), seconds=seconds)
+        place = self._pose.get("place") if self._pose is not None else None
+        self._means.sightings.note(method, arguments, result, place)
         if method == "stop":
             raise Stopped  # whoever stops the robot, its program is over
         return result

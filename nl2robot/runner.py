@@ -32,6 +32,7 @@ from nl2robot.review import Review, digest, review
 from nl2robot.reviews import Reviews, as_it_is
 from nl2robot.runlog import LogError, RunLog
 from nl2robot.runs import Approval, Status
+from nl2robot.sightings import Sightings
 from nl2robot.spoken_language import SpokenLanguage
 from nl2robot.state import State
 from robot_api.client import Robot
@@ -73,7 +74,11 @@ class Runner:
         """How the robot and its program stand."""
         self.log = log
         self._spoken = SpokenLanguage()
-        self._means = Means(knowledge, connect, log, publish, self.present, self._spoken, seed)
+        self.sightings = Sightings()
+        """Whom and what the robot has seen just now."""
+        self._means = Means(
+            knowledge, connect, log, publish, self.present, self._spoken, self.sightings, seed
+        )
         self._stage = stage
         self._seed = seed
         self._lock = threading.Lock()

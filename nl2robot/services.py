@@ -12,6 +12,7 @@ import msgspec
 
 from grammar.planning.planner import Interrupted
 from grammar.samples import samples
+from nl2robot import trouble
 from nl2robot.answers import answer
 from nl2robot.planners import names
 from nl2robot.runner import Runner
@@ -197,6 +198,16 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             lambda p: runner.state(),
             "Tell how the present or last run stands.",
             observes=True,
+        ),
+        "sentence.told": service(
+            lambda p: trouble.told(
+                None, p["sentence"], p["language"], runner.knowledge.lexicon(p["language"])
+            ),
+            "Tell a sentence of an error in another language; one that is not the robot's own"
+            " software's as it is.",
+            {"sentence": {"type": "string", "maxLength": 2000}, "language": _LANGUAGE},
+            "sentence language",
+            right="know",
         ),
         "station.state": service(
             lambda p: runner.present.on_wire(),

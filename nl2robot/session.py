@@ -232,6 +232,9 @@ class Session:
                     continue
                 if not self._is_dropped(changed):
                     self._show_answer(changed)
+                    if changed.status == "rejected":
+                        told = self.terminal.words["still_waits"]
+                        self.terminal.console.print(told, markup=False)
                     continue
             self.terminal.console.print(self.terminal.words["rejected"])
             return ExitStatus.NOT_APPROVED

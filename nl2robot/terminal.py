@@ -24,7 +24,9 @@ from rich.syntax import Syntax
 from rich.table import Table
 
 from grammar.language import load_language
+from grammar.lexicon import Lexicon
 from nl2robot.errors import ExitStatus, UserError
+from nl2robot.knowledge import Knowledge
 from nl2robot.line_editor import LineEditor
 from nl2robot.live_line import LiveLine
 from nl2robot.on_the_way import OnTheWay
@@ -33,7 +35,7 @@ from nl2robot.rehearsal import DryRun
 from nl2robot.review import Review
 from nl2robot.state import HELD
 from nl2robot.translation import Translation
-from nl2robot.trouble import told as told_of
+from nl2robot.trouble import error_told, told
 from nl2robot.waiting import Waiting
 from nl2robot.words import authorship, foreseen, words_in
 from robot_api.errors import InvalidCall, RobotError
@@ -64,6 +66,7 @@ class Terminal:
 
     def __init__(self, console: Console | None = None, language: str = "en") -> None:
         self.world: World | None = None
+        self._knowledge: Knowledge | None = None
         self.speak(language)
         self.console = console or _Console(highlight=False, emoji=False)
         if self.console.width < NARROWEST:
@@ -96,6 +99,7 @@ class Terminal:
         """Somebody operates a robot in a world from here; what it does may matter to how lines are
         read, and shows where it drives."""
         self.world = world
+        self._knowledge = Knowledge(world) if world is not None else None
         self._way = OnTheWay(world)
         if self._live.possible:
             with contextlib.suppress(InvalidCall):  # a server that tells of no poses
@@ -107,6 +111,14 @@ class Terminal:
 
         known = self.world.place(place) if self.world is not None else None
         return name_in(known, self.language) if known is not None else place
+
+    def lexicon(self) -> Lexicon | None:
+        """The names of the world that the robot is in, if that is known."""
+        return self._knowledge.lexicon(self.language) if self._knowledge is not None else None
+
+    def trouble(self, kind: str | None, message: str) -> str:
+        """What went wrong, in the language spoken."""
+        return told(kind, message, self.language, self.lexicon())
 
     # --- before the run
 
@@ -167,7 +179,7 @@ class Terminal:
         for finding in review.findings:
             style, word = ("red", "error") if finding.severity == "error" else ("yellow", "note")
             where = f"{self.words[word]}, {self.words['line']} {finding.line}"
-            message = told_of(finding.code, finding.message, self.language)
+            message = self.trouble(finding.code, finding.message)
             self.console.print(f"[{style}]{where}:[/] {_plain(message)}")
         for risk in review.risks:
             where = f"{self.words['risk']}, {self.words['line']} {risk.line}"
@@ -178,7 +190,7 @@ class Terminal:
     def _show_dry_run(self, dry_run: DryRun) -> None:
         text = foreseen(dry_run, self.language)
         heading = self.words["dry_run"]
-        why = told_of(dry_run.error, dry_run.message or "", self.language)
+        why = self.trouble(dry_run.error, dry_run.message or "")
         self.console.print(f"[bold]{heading}[/] {text} {_plain(why)}".rstrip())
         self._way.plan(dry_run.path)
         if dry_run.places:
@@ -291,8 +303,7 @@ class Terminal:
         elif kind == "program" and data["what"] == "result":
             self._way.end()
             if data.get("error"):
-                kind, _, message = str(data["error"]).partition(": ")
-                why = told_of(kind, message, self.language) if message else kind
+                why = error_told(str(data["error"]), self.language, self.lexicon())
                 self.console.print(f"     [red]{_plain(why)}[/]")
             elif data.get("result") is not None:
                 self.console.print(f"     [green]→ {_plain(_short(data['result']))}[/]")
@@ -332,7 +343,7 @@ class Terminal:
 
     def show_error(self, error: RobotError) -> None:
         """What the robot could not do."""
-        why = told_of(type(error).__name__, str(error), self.language)
+        why = self.trouble(type(error).__name__, str(error))
         self.console.print(why, markup=False)
 
     def show_answer(
@@ -355,7 +366,7 @@ class Terminal:
         told = f"[{style}]{self.words.get(state, state)}[/]"
         # The reader of a pipe may have left; how it ended is in the exit status, too.
         with contextlib.suppress(BrokenPipeError):
-            why = told_of(error, message or "", self.language)
+            why = self.trouble(error, message or "")
             self.console.print(f"{told} {_plain(why)}".rstrip())
 
     @staticmethod

@@ -117,8 +117,8 @@ class Talk:
     last_at: float = 0.0
     """When that was: seconds since the epoch."""
     refused: str = ""
-    """The words that were not understood last. Said again, they are meant as they stand, whatever
-    language they seem to be in."""
+    """The words that no program was made of last. Said again, they are meant as they stand:
+    whatever language they seem to be in, and whatever the robot remembers."""
     who: str = ""
     """Who speaks; noted with the routines that they teach."""
 
@@ -202,6 +202,10 @@ def translate(
             )
         case Chosen():
             talk.context = answer.draft.context
+            seen = history.sightings.told(turn, answer.plan) if history and not insists else None
+            if seen is not None:
+                talk.refused = utterance
+                return _remembered(utterance, *seen, started)
             translation = _with_program(utterance, turn, answer, started)
             talk.note(translation)
             return translation
@@ -334,6 +338,13 @@ def _as_kept(turn: Turn, plan: Plan) -> str | None:
                 if kept.steps == normal(plan).steps:
                     return routine.program
     return None
+
+
+def _remembered(utterance: str, thing: str, told: str, started: float) -> Translation:
+    """What the robot need not look for."""
+    from nl2robot.teaching import Reply
+
+    return _answer(utterance, Reply("ok", told), Request("found", thing), started)
 
 
 def _without_program(

@@ -11,6 +11,7 @@ from rich.console import Console
 from grammar.language import load_language
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.operator import Operator
+from nl2robot.sentences import told
 from nl2robot.speech.audio import Samples
 from nl2robot.terminal import Terminal
 from nl2robot.voice import (
@@ -76,7 +77,7 @@ class VoiceTerminal(Terminal):
             self._spoken.use(self._voice_for(language))
             self._heard_language = language
         except UserError as error:  # it can still be typed in
-            self.console.print(str(error), markup=False)
+            self.console.print(told(str(error), language), markup=False)
 
     def accompany(self, operator: Operator, world: World | None = None) -> None:
         super().accompany(operator, world)

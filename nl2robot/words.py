@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -22,6 +23,15 @@ def words_in(language: str) -> Mapping[str, Any]:
     words: dict[str, dict[str, Any]] = yaml.safe_load(DATA.read_text(encoding="utf-8"))
     found: Mapping[str, Any] = words.get(language, words["en"])
     return found
+
+
+def terminal_language() -> str:
+    """The language of the terminal, as its environment says; "" if it does not."""
+    import locale
+
+    named = (os.environ.get(name) for name in ("LC_ALL", "LC_MESSAGES", "LANG"))
+    setting = next(filter(None, named), "")  # the first that is set counts
+    return locale.normalize(setting).partition("_")[0]
 
 
 def decimal(value: float, language: str) -> str:

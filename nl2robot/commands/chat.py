@@ -6,12 +6,14 @@ import argparse
 import contextlib
 import functools
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import yaml
 
+from grammar.language import load_language
+from grammar.naming import joined_up
 from nl2robot import planners
 from nl2robot.commands.options import (
     add_asking,
@@ -22,7 +24,7 @@ from nl2robot.commands.options import (
     robot_of,
 )
 from nl2robot.commands.run import open_session
-from nl2robot.completing import completions, names_said
+from nl2robot.completing import Named, completions, named_here
 from nl2robot.errors import ExitStatus
 from nl2robot.line_editor import Complete, LineEditor
 from nl2robot.paths import data_file
@@ -87,11 +89,17 @@ def _completing(session: Session) -> Complete:
         said = session.operator.phrases(language).values()
         return (*(each for topic in said for each in topic), words["help"], *_endings(language))
 
+    @functools.cache
+    def named(language: str) -> Sequence[Named]:
+        assert session.terminal.world is not None
+        return named_here(session.terminal.world, language)
+
     def complete(line: str) -> list[str]:
-        world, language = session.terminal.world, session.language
-        names = names_said(world, language) if world is not None else ()
+        language = session.language
+        names = named(language) if session.terminal.world is not None else ()
         with contextlib.suppress(RobotError):  # at a server that is gone only the names are known
-            return completions(line, sentences(language), names)
+            joins = functools.partial(joined_up, language=load_language(language))
+            return completions(line, sentences(language), names, joins)
         return completions(line, (), names)
 
     return complete

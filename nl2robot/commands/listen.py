@@ -17,6 +17,7 @@ from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.models import lacking_beside, need
 from nl2robot.routines import open_routines
+from nl2robot.sentences import told
 from nl2robot.waiting import GivenUp, thought_aloud
 from nl2robot.words import words_in
 
@@ -54,9 +55,9 @@ def run(options: argparse.Namespace) -> int:
         raise UserError("--device chooses a microphone. Add --mic, or leave --device out.")
     need(options.lang)
     for sentence in lacking_beside(options.lang):
-        print(sentence, file=sys.stderr)
+        print(told(sentence, options.lang), file=sys.stderr)
     if not options.mic:
-        return recordings(options.wav, _hearing(options))
+        return recordings(options.wav, _hearing(options), options.lang)
     from nl2robot.speech.microphone import Microphone
 
     microphone = Microphone(options.device)  # before the model is loaded, for it may be missing
@@ -89,7 +90,7 @@ class _Commands:
         knowledge = Knowledge(names_of(options), routines=open_routines())
         self._ear = Ear(knowledge, options.lang)
         for missing in self._ear.deaf_to():
-            print(missing.message, file=sys.stderr)
+            print(told(missing.message, options.lang), file=sys.stderr)
 
     def recording(self, audio: Audio) -> None:
         self._print(self._ear.hear(audio))
@@ -153,8 +154,9 @@ class _Answers:
         self.recording(speech.audio)
 
 
-def recordings(files: Sequence[str], hearing: Hearing) -> int:
-    """Hear every file; one that cannot be used does not keep the others from being heard."""
+def recordings(files: Sequence[str], hearing: Hearing, language: str = "en") -> int:
+    """Hear every file; one that cannot be used does not keep the others from being heard, which is
+    told in a language."""
     from nl2robot.speech.audio import read
 
     status = ExitStatus.OK
@@ -164,7 +166,7 @@ def recordings(files: Sequence[str], hearing: Hearing) -> int:
         except GivenUp:
             raise
         except UserError as error:
-            print(error, file=sys.stderr)
+            print(told(str(error), language), file=sys.stderr)
             status = error.status
     return status
 
@@ -198,13 +200,13 @@ def live(
                     try:
                         hearing.spoken(event)
                     except UserError as error:  # the next one may be heard
-                        print(error, file=sys.stderr)
+                        print(told(str(error), language), file=sys.stderr)
                 case TooLong():
                     print(texts["too_long"], file=sys.stderr)
                 case NothingHeard(seconds) if not complained:
                     complained = True
-                    told = texts["nothing_heard"].format(seconds=round(seconds))
-                    print(told, file=sys.stderr)
+                    nothing = texts["nothing_heard"].format(seconds=round(seconds))
+                    print(nothing, file=sys.stderr)
     except KeyboardInterrupt:
         pass
     finally:

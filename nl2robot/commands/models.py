@@ -8,6 +8,8 @@ import json
 from nl2robot import models
 from nl2robot.download import shown
 from nl2robot.errors import ExitStatus, UserError
+from nl2robot.sentences import told
+from nl2robot.words import terminal_language
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -25,16 +27,26 @@ def run(options: argparse.Namespace) -> int:
     if options.action == "get":
         with shown() as progress:
             path = models.get(options.language, progress, again=options.again)
-        print(f"The model is in {path}.")
+        print(_told(f"The model is in {path}."))
         for model in models.list_models():
             second = options.language in model.beside and path != model.path
             if second and model.state == "installed":
-                print(f"The second one is in {model.path}.")
+                print(_told(f"The second one is in {model.path}."))
         return ExitStatus.OK
     with shown() as progress:
         problems = models.verify(options.language, progress)
-    print("\n".join(problems) or "What is installed is whole.")
+    print("\n".join(map(_told, problems or ["What is installed is whole."])))
     return ExitStatus.FAILED if problems else ExitStatus.OK
+
+
+def _told(sentence: str) -> str:
+    return told(sentence, terminal_language())
+
+
+def _own(words: str) -> str:
+    """A few words of a table in the language of the terminal."""
+    said = _told(words)
+    return said if words[:1].isupper() else said[:1].lower() + said[1:]
 
 
 def _list(as_json: bool) -> int:
@@ -42,10 +54,12 @@ def _list(as_json: bool) -> int:
     if as_json:
         print(json.dumps([models.as_json(model) for model in listed], ensure_ascii=False))
         return ExitStatus.OK
-    width = max(len(model.language) for model in listed)
-    for model in listed:
-        named = f"{model.code:<13}  {model.language:<{width}}"
-        print(f"{named} {model.state:<10} {model.megabytes:>5.0f} MB")
+    languages = [_own(model.language) for model in listed]
+    states = [_own(model.state) for model in listed]
+    width, wide = max(map(len, languages)), max(map(len, states))
+    for model, language, state in zip(listed, languages, states, strict=True):
+        named = f"{model.code:<13}  {language:<{width}}"
+        print(f"{named} {state:<{wide}} {model.megabytes:>5.0f} MB")
         if model.state != "installed":
             print(f"    nl2robot models get {model.code}")
     return ExitStatus.OK

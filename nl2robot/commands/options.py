@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import functools
 import getpass
 import math
 import os
@@ -84,15 +85,18 @@ def add_words(parser: argparse.ArgumentParser, help: str, nargs: str | None = No
 
 def _sentences(prefix: str, parsed_args: argparse.Namespace, **_: object) -> list[str]:
     """For the completion by Tab in a shell: what can be said in the world named so far."""
+    from grammar.language import load_language
+    from grammar.naming import joined_up
     from grammar.samples import samples
-    from nl2robot.completing import completions, names_said
+    from nl2robot.completing import completions, named_here
     from nl2robot.knowledge import Knowledge
     from nl2robot.routines import open_routines
 
     world, language = names_of(parsed_args), parsed_args.lang
     lexicon = Knowledge(world, routines=open_routines()).lexicon(language)
     said = (each for topic in samples(lexicon, language).values() for each in topic)
-    return completions(prefix, said, names_said(world, language))
+    joins = functools.partial(joined_up, language=load_language(language))
+    return completions(prefix, said, named_here(world, language), joins)
 
 
 def add_language(parser: argparse.ArgumentParser) -> None:

@@ -326,7 +326,8 @@ class Dialogue:
         try:
             self._backstage.stop(_said("told_to_stop", language))
         except RobotError as error:
-            why = told(type(error).__name__, str(error), language)
+            lexicon = self._backstage.runner.knowledge.lexicon(language)
+            why = told(type(error).__name__, str(error), language, lexicon)
             self._tell(Line("robot", why, "trouble"))
         else:
             self._tell(Line("robot", _said("stopped", language), "done"))
@@ -517,7 +518,8 @@ class Dialogue:
             self.runs.discard(run)
             status = self._backstage.runner.state()
             error = status.error if status and status.run == run else None
-            why = told(error, message, language) if message else None
+            lexicon = self._backstage.runner.knowledge.lexicon(language)
+            why = told(error, message, language, lexicon) if message else None
             end = " ".join(filter(None, (_said(f"ended_{state}", language), why)))
             runner = self._backstage.runner
             came = [each.text for each in answer(runner.log, runner.knowledge, run, language)]

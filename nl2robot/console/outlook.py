@@ -51,13 +51,14 @@ def outlook(
     review: Review, words: Mapping[str, str], language: str, knowledge: Knowledge
 ) -> Outlook:
     """What this review says, in a language."""
+    lexicon = knowledge.lexicon(language)
     endless = {(risk.line, "endless-loop") for risk in review.risks if risk.kind == "endless"}
     marks = [
         *(
             Mark(
                 found.line,
                 "error" if found.severity == "error" else "note",
-                told(found.code, found.message, language),
+                told(found.code, found.message, language, lexicon),
             )
             for found in review.findings
             # That it is endless is a risk as well, and said once.
@@ -69,7 +70,7 @@ def outlook(
     dry_run = review.dry_run
     if dry_run is None:
         return Outlook("", review.acceptable, (), tuple(marks), ())
-    why = told(dry_run.error, dry_run.message, language) if dry_run.message else None
+    why = told(dry_run.error, dry_run.message, language, lexicon) if dry_run.message else None
     way = _way(dry_run.places, knowledge, language)
     asks = tuple(dict.fromkeys(dry_run.asks))
     facts = [

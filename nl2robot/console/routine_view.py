@@ -108,7 +108,7 @@ class Viewer:
         errors = [found for found in findings if found.severity == "error"]
         if errors:
             line = f"{texts('desk', reader)['line']} {errors[0].line}"
-            why = f"{line}: {told(errors[0].code, errors[0].message, reader)}"
+            why = f"{line}: {told(errors[0].code, errors[0].message, reader, lexicons[-1])}"
             return Body(False, why, steps, program)
         called = naming(lexicons[-1], load_language(reader)).called
         return Body(True, summary(plan, reader, called), steps, program)

@@ -9,7 +9,7 @@ import msgspec
 from nl2robot.console.highlight import highlighted
 from nl2robot.console.part import Backstage
 from nl2robot.review import reading
-from nl2robot.trouble import told
+from nl2robot.trouble import call_trouble, told
 
 
 def run_view(backstage: Backstage, language: str) -> dict[str, Any] | None:
@@ -20,10 +20,13 @@ def run_view(backstage: Backstage, language: str) -> dict[str, Any] | None:
     if status is None:
         return None
     logged = runner.log.run(status.run)
+    lexicon = runner.knowledge.lexicon(language)
     read = {each.line: each for each in reading(status.program, runner.knowledge, language)}
     return {
         **msgspec.to_builtins(status),
-        "message": told(status.error, status.message, language) if status.message else None,
+        "message": told(status.error, status.message, language, lexicon)
+        if status.message
+        else None,
         "utterance": logged.utterance if logged else None,
         "by": logged.approved_by if logged else None,
         "started": logged.started if logged else None,
@@ -38,7 +41,7 @@ def run_view(backstage: Backstage, language: str) -> dict[str, Any] | None:
                 "method": call.method,
                 "arguments": msgspec.json.decode(call.arguments),
                 "result": msgspec.json.decode(call.result) if call.result else None,
-                "error": call.error,
+                "error": call_trouble(call, language, lexicon),
                 "seconds": call.seconds,
             }
             for call in runner.log.calls(status.run)[-100:]

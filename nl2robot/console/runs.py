@@ -64,7 +64,7 @@ def _pages(backstage: Backstage, archive: Archive) -> None:
 
     @slow_pages.page("/runs", show)
     def runs(request: Request) -> str:
-        return _list_page(archive, request)
+        return _list_page(backstage, archive, request)
 
     @slow_pages.page("/runs/{number:int}", show)
     def run(request: Request, number: int) -> str:
@@ -78,39 +78,32 @@ def _for_scripts(language: str) -> dict[str, str]:
     return {**called, **{name: words[name] for name in _FOR_SCRIPTS}}
 
 
-def _list_page(archive: Archive, request: Request) -> str:
-    words = texts("runs", visitor_of(request).language)
+def _list_page(backstage: Backstage, archive: Archive, request: Request) -> str:
+    reader = runs_view.reader_of(request, backstage.runner.knowledge)
     try:
         wanted = asked(request.query_params)
         page = archive.page(wanted.wanted, wanted.before)
     except BadDay as error:
-        trouble = words["bad_day"].format(day=error.day)
+        trouble = reader.words["bad_day"].format(day=error.day)
     except UserError as error:
         trouble = str(error)
     else:
-        return runs_view.list_page(wanted, page, None, words)
-    return runs_view.list_page(Asked(), None, trouble, words)
+        return runs_view.list_page(wanted, page, None, reader)
+    return runs_view.list_page(Asked(), None, trouble, reader)
 
 
 def _run_page(backstage: Backstage, archive: Archive, request: Request, number: int) -> str:
-    visitor = visitor_of(request)
-    words = texts("runs", visitor.language)
+    reader = runs_view.reader_of(request, backstage.runner.knowledge)
     log = backstage.runner.log
     try:
         run = log.run(number)
         if run is not None:
-            return runs_view.run_page(
-                run,
-                log,
-                backstage.runner.knowledge,
-                visitor.language,
-                words,
-                visitor.seat,
-                archive.neighbours(number),
-            )
+            seat = visitor_of(request).seat
+            return runs_view.run_page(run, log, reader, seat, archive.neighbours(number))
     except UserError as error:
-        return runs_view.list_page(Asked(), None, str(error), words)
-    return runs_view.list_page(Asked(), None, words["no_such_run"].format(number=number), words)
+        return runs_view.list_page(Asked(), None, str(error), reader)
+    trouble = reader.words["no_such_run"].format(number=number)
+    return runs_view.list_page(Asked(), None, trouble, reader)
 
 
 def _services(backstage: Backstage, archive: Archive) -> dict[str, Service]:

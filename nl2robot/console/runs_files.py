@@ -47,12 +47,14 @@ def routes(backstage: Backstage, archive: Archive) -> list[Route]:
     """Of these files; each handler runs in a thread of its own."""
     log = backstage.runner.log
 
+    def reader(request: Request) -> runs_view.Reader:
+        return runs_view.reader_of(request, backstage.runner.knowledge)
+
     def found(request: Request) -> Response:
         """The list anew, for a page that is open."""
-        words = texts("runs", visitor_of(request).language)
         wanted = asked(request.query_params)
         page = archive.page(wanted.wanted, wanted.before)
-        return HTMLResponse(runs_view.found(wanted, page, None, words), headers=SAFE)
+        return HTMLResponse(runs_view.found(wanted, page, None, reader(request)), headers=SAFE)
 
     def exported(request: Request, kind: str) -> Response:
         wanted = asked(request.query_params).wanted
@@ -64,9 +66,7 @@ def routes(backstage: Backstage, archive: Archive) -> list[Route]:
         return _streamed(_json(runs), "application/json", name)
 
     def parts(run: Run, request: Request) -> Response:
-        language, knowledge = visitor_of(request).language, backstage.runner.knowledge
-        about = runs_view.run_parts(run, log, knowledge, language, texts("runs", language))
-        return JSONResponse(about, headers=SAFE)
+        return JSONResponse(runs_view.run_parts(run, log, reader(request)), headers=SAFE)
 
     def whole(run: Run, request: Request) -> Response:
         data = json.dumps(log.whole(run), ensure_ascii=False, indent=2)

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, Final
+
+from starlette.requests import Request
 
 from grammar.explain import LineTold, explain_program
 from grammar.language import load_language
@@ -15,9 +18,11 @@ from nl2robot.changes import changes
 from nl2robot.console.highlight import highlighted
 from nl2robot.console.rendering import rendered
 from nl2robot.console.runs_asked import Asked
+from nl2robot.console.visitor import texts, visitor_of
 from nl2robot.knowledge import Knowledge
 from nl2robot.pausing import PAUSED
 from nl2robot.runlog import LoggedCall, Run, RunLog
+from nl2robot.trouble import call_trouble, told
 
 CALLS_SHOWN: Final = 500
 """Of a run; the newest."""
@@ -27,18 +32,45 @@ LONGEST_RESULT: Final = 2000
 Words = Mapping[str, str]
 
 
-def list_page(asked: Asked, page: Page | None, trouble: str | None, words: Words) -> str:
+@dataclass(frozen=True)
+class Reader:
+    """Whoever reads the log."""
+
+    language: str
+    words: Words
+    """Of these pages, in that language."""
+    knowledge: Knowledge
+
+    def told(self, message: str | None) -> str:
+        """How a run ended, as the log says it."""
+        return told(None, message or "", self.language, self.knowledge.lexicon(self.language))
+
+
+def reader_of(request: Request, knowledge: Knowledge) -> Reader:
+    """Whoever asks for a page."""
+    language = visitor_of(request).language
+    return Reader(language, texts("runs", language), knowledge)
+
+
+def list_page(asked: Asked, page: Page | None, trouble: str | None, reader: Reader) -> str:
     """The whole list page."""
-    return rendered("runs.html", **_found(asked, page, trouble, words), states=STATES, words=words)
+    return rendered("runs.html", **_found(asked, page, trouble, reader), states=STATES)
 
 
-def found(asked: Asked, page: Page | None, trouble: str | None, words: Words) -> str:
+def found(asked: Asked, page: Page | None, trouble: str | None, reader: Reader) -> str:
     """What was found; None and what is the trouble if it could not be looked for."""
-    return rendered("runs_found.html", **_found(asked, page, trouble, words), words=words)
+    return rendered("runs_found.html", **_found(asked, page, trouble, reader))
 
 
-def _found(asked: Asked, page: Page | None, trouble: str | None, words: Words) -> dict[str, Any]:
-    about: dict[str, Any] = {"asked": asked, "page": page, "trouble": trouble}
+def _found(asked: Asked, page: Page | None, trouble: str | None, reader: Reader) -> dict[str, Any]:
+    words = reader.words
+    about: dict[str, Any] = {
+        "asked": asked,
+        "page": page,
+        "trouble": trouble,
+        "words": words,
+        "told": reader.told,
+    }
     if page is not None:
         number = f"{page.found:,}".replace(",", words["thousands"])
         about |= {
@@ -55,25 +87,23 @@ def _found(asked: Asked, page: Page | None, trouble: str | None, words: Words) -
 def run_page(
     run: Run,
     log: RunLog,
-    knowledge: Knowledge,
-    language: str,
-    words: Words,
+    reader: Reader,
     role: str,
     neighbours: tuple[int | None, int | None],
 ) -> str:
     """The whole page of a run."""
-    told = _told(run.program, knowledge, language)
+    read = _read(run.program, reader)
     lines = [
         {
             "number": number,
             "code": code,
-            "readings": [each for each in told if each.line == number],
+            "readings": [each for each in read if each.line == number],
         }
         for number, code in enumerate(highlighted(run.program), 1)
     ]
     return rendered(
         "run.html",
-        **_standing(run, log, knowledge, language, words),
+        **_standing(run, log, reader),
         lines=lines,
         changes=changes(run.proposed, run.program) if run.proposed is not None else (),
         role=role,
@@ -82,27 +112,25 @@ def run_page(
     )
 
 
-def run_parts(
-    run: Run, log: RunLog, knowledge: Knowledge, language: str, words: Words
-) -> dict[str, Any]:
+def run_parts(run: Run, log: RunLog, reader: Reader) -> dict[str, Any]:
     """What changes of a run's page while it goes on: its parts by name, its state, its line."""
-    about = _standing(run, log, knowledge, language, words)
+    about = _standing(run, log, reader)
     parts = {name: rendered(f"run_{name}.html", **about) for name in ("head", "watch", "calls")}
     return {**parts, "state": about["state"], "line": about["line"]}
 
 
-def _standing(
-    run: Run, log: RunLog, knowledge: Knowledge, language: str, words: Words
-) -> dict[str, Any]:
+def _standing(run: Run, log: RunLog, reader: Reader) -> dict[str, Any]:
+    words = reader.words
     calls = log.calls(run.id)
     state = state_of(run.status, run.process)
     return {
         "run": run,
+        "message": reader.told(run.message),
         "state": state,
         "line": calls[-1].line if calls and state == "running" else None,
         "title": run.utterance or run.heard or words["written"],
-        "answers": [each.text for each in answer(log, knowledge, run.id, language)],
-        "calls": [_call(call, run) for call in calls[-CALLS_SHOWN:]],
+        "answers": [each.text for each in answer(log, reader.knowledge, run.id, reader.language)],
+        "calls": [_call(call, run, reader) for call in calls[-CALLS_SHOWN:]],
         "left_out": max(0, len(calls) - CALLS_SHOWN),
         "printed": "".join(log.output(run.id)),
         "moved": log.movement(run.id) is not None,
@@ -111,11 +139,13 @@ def _standing(
     }
 
 
-def _call(call: LoggedCall, run: Run) -> dict[str, Any]:
+def _call(call: LoggedCall, run: Run, reader: Reader) -> dict[str, Any]:
     given = {name: value for name, value in json.loads(call.arguments).items() if value is not None}
     written = ", ".join(f"{name}={value!r}" for name, value in given.items())
     [code] = highlighted(f"robot.{call.method}({written[:LONGEST_RESULT]})".replace("\n", " "))
-    result = call.error or ("" if call.result in (None, "null") else _shown(call.result or ""))
+    lexicon = reader.knowledge.lexicon(reader.language)
+    trouble = call_trouble(call, reader.language, lexicon)
+    result = trouble or ("" if call.result in (None, "null") else _shown(call.result or ""))
     return {
         "at": call.started - run.started,
         "line": call.line,
@@ -132,9 +162,10 @@ def _shown(result: str) -> str:
     return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
 
 
-def _told(program: str, knowledge: Knowledge, language: str) -> list[LineTold]:
+def _read(program: str, reader: Reader) -> list[LineTold]:
     """The program in plain words; nothing of what is none in this version."""
-    called = naming(knowledge.lexicon(language), load_language(language)).called
+    language = reader.language
+    called = naming(reader.knowledge.lexicon(language), load_language(language)).called
     try:
         return explain_program(program, language, called)
     except (SyntaxError, ValueError, RecursionError):

@@ -291,7 +291,7 @@ def test_it_speaks_german_and_french(look: Look, language: str, words: str, butt
 def test_what_goes_wrong_and_where_it_goes_is_told_in_german_too(look: Look) -> None:
     page = look("/?program=robot.goto(%22pharmacy%22)%0Arobot.grab(%22unicorn%22)", language="de")
     outlook = page.locator(".outlook")
-    expect(outlook).to_contain_text("Der Roboter findet es hier nicht. (")
+    expect(outlook).to_contain_text("Der Roboter sieht „unicorn“ hier nicht.")
     expect(page.locator(".facts")).to_contain_text("Hauptflur → Apotheke")
     page.get_by_role("button", name="Trotzdem starten").click()
     expect(page.locator("#run-panel li.current")).to_contain_text("pharmacy")

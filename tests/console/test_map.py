@@ -124,17 +124,30 @@ def test_a_click_in_a_doorway_sends_it_to_where_people_get_through(
     picture(page, "map-doorway")
 
 
+@pytest.mark.parametrize(
+    ("language", "send", "told", "approve"),
+    [
+        (
+            "en",
+            "Send",
+            'There the robot may not go: it is in the keep-out zone "wet floor".',
+            "run",
+        ),
+        ("de", "Schicken", "Das liegt in der Sperrzone „wet floor“.", "Freigeben"),
+        ("fr", "Envoyer", "c'est dans la zone interdite « wet floor ».", "Approuver"),
+    ],
+)
 def test_where_nobody_can_stand_nothing_is_proposed(
-    floor: Callable[..., Page], served: Served
+    floor: Callable[..., Page], served: Served, language: str, send: str, told: str, approve: str
 ) -> None:
     with served.robot() as robot:
         around = [[27, 1], [30, 1], [30, 4], [27, 4]]
         robot.request("zones.set", {"name": "wet floor", "polygon": around})
-    page = floor()
-    choose(page, "Send")
+    page = floor(language=language)
+    choose(page, send)
     page.mouse.click(*pixel(page, 28.5, 2.5))
-    expect(page.get_by_role("alert").filter(has_text='zone "wet floor"')).to_be_visible()
-    expect(page.get_by_role("button", name="Approve and run")).to_be_hidden()
+    expect(page.get_by_role("alert").filter(has_text=told)).to_be_visible()
+    expect(page.get_by_role("button", name=approve)).to_be_hidden()
     with served.robot() as robot:
         robot.request("zones.remove", {"name": "wet floor"})
 

@@ -19,12 +19,20 @@ from tests.console.test_looks import READY
 FACE = {
     *("robot.stop", "robot.capabilities", "rpc.discover", "program.stop"),
     *("face.state", "face.site", "face.here", "face.touch", "face.page", "face.did"),
-    *("face.language", "face.used", "call.ready", "call.answer", "call.end", "call.signal"),
+    *(
+        "sentence.told",
+        "face.language",
+        "face.used",
+        "call.ready",
+        "call.answer",
+        "call.end",
+        "call.signal",
+    ),
 }
 """All that the tablet on the robot may call: visitors have their hands on it."""
 OBSERVER = {
     *("robot.stop", "robot.capabilities", "rpc.discover", "program.stop"),
-    *("face.state", "face.site"),
+    *("face.state", "face.site", "sentence.told"),
     *("desk.run", "scene.floor", "zones.list", "zones.history", "places.list", "places.export"),
     *("location.history", "helm.state", "helm.body", "helm.log", "runs.list", "runs.show"),
     *("routines.list", "routines.show", "routines.export", "station.state"),

@@ -92,10 +92,8 @@ def ran(log, utterance: str = "go and greet", program: str = PROGRAM, **more: An
 
 
 def page_of(log, knowledge, run: int, language: str = "en", role: str = "operator") -> str:
-    words = texts("runs", language)
-    return runs_view.run_page(
-        log.run(run), log, knowledge, language, words, role, Archive(log.path).neighbours(run)
-    )
+    reader = runs_view.Reader(language, texts("runs", language), knowledge)
+    return runs_view.run_page(log.run(run), log, reader, role, Archive(log.path).neighbours(run))
 
 
 def plain(html: str) -> str:
@@ -112,7 +110,7 @@ def test_a_run_is_told_in_every_language(log, knowledge, language) -> None:
     said = plain(page)
     assert "go and greet" in said and "go and treat" in said and "Nurse Kim" in said
     assert texts("runs", language)["state_failed"] in said
-    assert "2.5" in said and "Blocked: The way is blocked." in said
+    assert "2.5" in said and "The way is blocked." in said
     assert "1 &lt; 2" in said
 
 
@@ -313,7 +311,7 @@ def test_a_damaged_log_is_told_in_a_sentence(log, client, backstage) -> None:
     request: Any = SimpleNamespace(
         query_params={}, cookies={}, headers={}, state=SimpleNamespace(role="operator")
     )
-    assert "damaged" in runs._list_page(Archive(log.path), request)
+    assert "damaged" in runs._list_page(backstage, Archive(log.path), request)
     assert "cannot be used" in runs._run_page(backstage, Archive(log.path), request, 1)
 
 

@@ -64,6 +64,33 @@ def test_a_poll_is_told_by_person(nurse) -> None:
     assert told == [absent, "Alice: yes", "1 want tea."]
 
 
+ROUND = (
+    'for place in ["ward a", "charger", "corridor"]:\n'
+    "    robot.goto(place)\n"
+    '    if robot.sees("person"):\n'
+    '        robot.ask("Do you need water?", ["yes", "no"])\n'
+)
+
+
+@pytest.mark.parametrize(
+    ("language", "told"),
+    [
+        ("en", "Nobody was in the charger and in the corridor."),
+        ("de", "Niemand war an der Ladestation und im Flur."),
+        ("fr", "Ici, il n'y avait personne : la station de charge et le couloir."),
+    ],
+)
+def test_where_there_was_nobody_to_ask_is_told(operator, language: str, told: str) -> None:
+    assert told in Asker(operator, language).reads(ROUND)
+
+
+def test_nobody_is_missed_by_a_look_that_asks_nothing(nurse) -> None:
+    program = (
+        'for place in ["ward a", "charger"]:\n    robot.goto(place)\n    robot.sees("person")\n'
+    )
+    assert not [each for each in nurse.reads(program) if each.startswith("Nobody was")]
+
+
 def test_the_one_answer_that_is_reported_is_not_told_twice(nurse) -> None:
     told = nurse.reads(
         "start = robot.location()\n"
@@ -124,7 +151,9 @@ def test_what_did_not_work_is_told_though_the_program_went_on(nurse) -> None:
     assert told.startswith("This did not work: take an elephant.")
     nurse.language = "de"
     [told] = nurse.reads(program)
-    assert told.startswith("Das ging nicht: „elephant“ nehmen. Der Roboter findet es hier nicht.")
+    assert told.startswith(
+        "Das ging nicht: „elephant“ nehmen. Der Roboter sieht „elephant“ hier nicht."
+    )
 
 
 @pytest.mark.parametrize(

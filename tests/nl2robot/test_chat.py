@@ -116,6 +116,20 @@ def test_whoever_asks_for_german_is_spoken_to_in_german(start, log_of) -> None:
     assert "Traceback" not in chat.output
 
 
+def test_a_new_command_that_cannot_be_done_leaves_the_one_that_waits(start, log_of) -> None:
+    chat = start(*CHAT, at_terminal=True)
+    chat.until("you: ")
+    chat.type("go to ward a\n")
+    chat.until("eject? ")
+    chat.type("take out the trash\n")
+    said = chat.until("eject? ")
+    assert "I cannot do that with my hands" in said and "leave out:" not in said
+    assert "still waits for your decision" in said and 'robot.goto("ward a")' in said
+    chat.type("a\n")
+    assert "goto(place='ward a')" in chat.until("Done.")
+    chat.type("bye\n")
+
+
 def test_ctrl_c_stops_what_is_going_on_and_the_talk_goes_on(start, log_of) -> None:
     chat = start(*CHAT, "--speed", "1", at_terminal=True)
     chat.until("you: ")

@@ -7,6 +7,7 @@ import pytest
 
 from nl2robot.going_on import DoneCall, Recall, asks_to_go_on, unfinished
 from nl2robot.rehearsal import watched
+from nl2robot.rounds_left import rounds
 from nl2robot.station import simulated_station
 from robot_api.errors import Blocked, NotPossible, Stopped
 from sim.simulation import Simulation
@@ -52,9 +53,10 @@ def test_what_was_done_is_not_done_again(slow_operator, slow_station, log) -> No
     where = slow_station.simulation.robot.place
     left = slow_operator.unfinished()
     assert where == "ward a" or slow_station.simulation.robot.speed == 0
-    assert left.told[0].startswith("Done already, and not done again: ")
-    assert "ood evening" in left.told[0]
-    assert "line 3" in left.told[1]
+    assert left.told[:2] == [
+        "Done already, and not done again: ward a.",
+        "Still to do: ward b. It goes on with ward b, at line 3.",
+    ]
     dry_run = slow_operator.check(left.program, "en", left.run).dry_run
     assert dry_run.status == "done"
     assert dry_run.says == ("Good evening.", "I was at 2 places.")
@@ -66,6 +68,44 @@ def test_what_was_done_is_not_done_again(slow_operator, slow_station, log) -> No
     ]
     assert log.run(again).continues == run
     assert log.calls(again)[-1].arguments.count("2 places") == 1
+
+
+def test_of_a_round_people_and_places_are_told(slow_operator) -> None:
+    program = (
+        'robot.say("Here I come.")\n'
+        'wards = robot.places("ward")\n'
+        "for place in wards:\n"
+        "    robot.goto(place)\n"
+        "    for person in robot.people():\n"
+        '        robot.ask("Tea?", ["yes", "no"], person=person)\n'
+        "robot.dock()\n"
+    )
+    stopped_at(slow_operator, program, 7)
+    done = [
+        "Done already, and not done again: say “Here I come.”; ward a.",
+        "Still to do: ward b. It goes on with ward b, at line 5.",
+    ]
+    assert slow_operator.unfinished().told[:2] == done
+    assert slow_operator.unfinished("de").told[1] == (
+        "Noch zu tun: Station B. Es geht weiter mit Station B, in Zeile 5."
+    )
+
+
+def test_a_round_that_was_over_is_told_as_what_it_went_through() -> None:
+    program = (
+        'for who in ["Alice", "Henry"]:\n'
+        '    robot.ask("Tea?", person=who)\n'
+        "for number in range(3):\n"
+        "    robot.wait(number)\n"
+        'robot.goto("lobby")\n'
+    )
+    done = [
+        DoneCall("ask", {"question": "Tea?", "person": "Alice"}, 2, "yes"),
+        DoneCall("ask", {"question": "Tea?", "person": "Henry"}, 2, "no"),
+        DoneCall("wait", {"seconds": 0}, 4),
+    ]
+    [over] = rounds(program, done, 5, DoneCall("goto", {"place": "lobby"}, 5))
+    assert (over.done, over.left) == (("Alice", "Henry"), ())
 
 
 def test_one_can_go_on_again_and_again(slow_operator, log) -> None:

@@ -15,6 +15,7 @@ from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.other_language import accepted, language_of, question
 from nl2robot.present import Present
 from nl2robot.review import Review, review
+from nl2robot.sightings import Sightings
 from nl2robot.talks import Talks
 from nl2robot.translation import Talk, translate
 from nl2robot.words import words_in
@@ -208,6 +209,7 @@ class _Runner:
     def __init__(self, knowledge: Knowledge) -> None:
         self.knowledge = knowledge
         self.present = Present(lambda state: None)
+        self.sightings = Sightings()
 
     def state(self) -> None:
         return None

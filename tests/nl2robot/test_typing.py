@@ -1,14 +1,19 @@
 """At the keyboard: earlier commands come back, Tab completes, and a line tells where it drives."""
 
+import functools
 import io
 import stat
 
 import pytest
 from rich.console import Console
 
+from grammar.language import load_language
+from grammar.naming import joined_up
+from grammar.samples import samples
 from nl2robot.cli import COMMANDS
-from nl2robot.completing import completions, names_said
+from nl2robot.completing import Named, completions, named_here, names_said
 from nl2robot.errors import ExitStatus
+from nl2robot.knowledge import Knowledge
 from nl2robot.live_line import LiveLine
 from nl2robot.on_the_way import OnTheWay
 from sim.world import load_world
@@ -18,6 +23,10 @@ UP, TAB, CTRL_U = "\x1b[A", "\t", "\x15"
 
 SENTENCES = ["go to the lobby", "go home", "wave", "what do you see?"]
 NAMES = ["ward a", "ward b", "lobby"]
+NAMED = [
+    *(Named("places", name, "the lobby" if name == "lobby" else name) for name in NAMES),
+    Named("people", "Rosa", "Rosa"),
+]
 
 
 @pytest.mark.parametrize(
@@ -36,7 +45,7 @@ NAMES = ["ward a", "ward b", "lobby"]
 def test_a_line_becomes_what_can_be_said_here(typed, offered) -> None:
     assert [
         each if each in SENTENCES or " " not in typed else each.removeprefix(typed[: _shared(each)])
-        for each in completions(typed, SENTENCES, NAMES)
+        for each in completions(typed, SENTENCES, NAMED)
     ] == offered
 
 
@@ -46,7 +55,34 @@ def _shared(line: str) -> int:
 
 
 def test_french_names_behind_an_apostrophe() -> None:
-    assert completions("va à l'acc", [], ["accueil"]) == ["va à l'accueil"]
+    assert completions("va à l'acc", [], [Named("places", "accueil", "l'accueil")]) == [
+        "va à l'accueil"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("language", "typed", "offered", "not_offered"),
+    [
+        ("en", "go to ", ["go to the pharmacy", "go to ward a"], ["go to Alice", "go to stapler"]),
+        ("en", "wave and then go to the ", ["wave and then go to the kitchen"], []),
+        ("en", "ask ", ["ask Bob"], ["ask pharmacy"]),
+        ("en", "say ", [], ["say Bob", "say pharmacy"]),
+        ("de", "fahr zum ", ["fahr zum Empfang"], ["fahr zum Apotheke", "fahr zum pharmacy"]),
+        ("de", "frag ", ["frag Bob"], ["frag Apotheke"]),
+        ("fr", "va à la ", ["va à la pharmacie"], ["va à la hall"]),
+        ("fr", "va à ", ["va à la pharmacie"], ["va à le hall"]),
+    ],
+)
+def test_behind_a_blank_stand_the_names_that_may_stand_there(
+    language: str, typed: str, offered: list[str], not_offered: list[str]
+) -> None:
+    world, pack = load_world("city-hospital"), load_language(language)
+    said = samples(Knowledge(world).lexicon(language), language).values()
+    sentences = [each for topic in said for each in topic]
+    joins = functools.partial(joined_up, language=pack)
+    found = set(completions(typed, sentences, named_here(world, language), joins))
+    assert set(offered) <= found
+    assert not found & set(not_offered)
 
 
 def test_names_are_those_of_the_language() -> None:
@@ -90,6 +126,15 @@ def test_tab_completes_a_place_in_chat(start) -> None:
     chat.type("r\n")
     chat.until("you: ")
     chat.type("bye\n")
+    assert chat.end() == ExitStatus.OK
+
+
+def test_tab_offers_the_places_behind_a_blank(start) -> None:
+    chat = start(*CHAT, at_terminal=True)
+    chat.until("you: ")
+    chat.type(f"please go to {TAB}{TAB}")
+    chat.until("please go to ward b")
+    chat.type(f"{CTRL_U}bye\n")
     assert chat.end() == ExitStatus.OK
 
 

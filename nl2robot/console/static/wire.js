@@ -134,10 +134,28 @@ class Wire {
     if (!waiting) return;
     this._waiting.delete(message.id);
     if (message.error) {
-      waiting.reject(new RobotError(message.error.message, message.error.data?.error ?? 'RobotError'));
+      this._refuse(waiting, message.error);
     } else {
       waiting.resolve(message.result);
     }
+  }
+
+  /** What the server says in English is told in the language of the page. */
+  async _refuse(waiting, {message, data}) {
+    const language = document.documentElement.lang.slice(0, 2);
+    const foreign = language && language !== 'en' && !waiting.isTelling && this.connected;
+    const told = foreign ? await this._told(message, language) : message;
+    waiting.reject(new RobotError(told, data?.error ?? 'RobotError'));
+  }
+
+  /** A sentence of an error in another language; as it is where the server cannot tell it. */
+  _told(sentence, language) {
+    const id = (this._number += 1);
+    const params = {sentence, language};
+    return new Promise((resolve) => {
+      this._waiting.set(id, {resolve, reject: () => resolve(sentence), isTelling: true});
+      this._socket.send(JSON.stringify({jsonrpc: '2.0', id, method: 'sentence.told', params}));
+    });
   }
 
   _fail(id, sentence) {

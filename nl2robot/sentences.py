@@ -1,0 +1,122 @@
+"""The sentences of the robot's software in other languages.
+
+Drivers, simulator and server say in English what went wrong, each where it is known best. As with
+gettext the English sentence is the key: `data/sentences/` has every one with gaps for what it is
+about, and the same in other languages. So a sentence carries its values whatever way it takes,
+over the wire, through a program and out of an old log. Whose driver says something of its own is
+told in its own words.
+
+A gap says by its name what stands in it: `the_...` a name that goes with its article, `thing` what
+is called by its name alone, `number` a number, `names` a list, `part` another of these sentences;
+all else stands as it is. An entry may stand in such a gap as well: "the door of the pharmacy".
+"""
+
+from __future__ import annotations
+
+import functools
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from grammar.language import Language, UnknownLanguage, load_language
+from grammar.lexicon import Lexicon
+from grammar.naming import joined_up, listed, naming, the
+from nl2robot.words import words_in
+
+DATA: Final = Path(__file__).parent / "data" / "sentences"
+GAP: Final = re.compile(r"\{(\w+)\}")
+_OF_A_FILE: Final = re.compile(r"(\s*(?:\S+?:(?:\d+:)? )?)(.*)", re.DOTALL)
+_LISTED: Final = re.compile(r", | and ")
+
+
+@dataclass(frozen=True)
+class Entry:
+    pattern: re.Pattern[str]
+    """Of the English sentence, with a group for each of its gaps."""
+    said: dict[str, str]
+
+
+def in_language(sentence: str, language: str, lexicon: Lexicon | None = None) -> str | None:
+    """An English sentence of the robot's software in another language, with the names of the
+    lexicon as they are called there; None for a sentence of somebody else's."""
+    if language == "en":
+        return sentence
+    try:
+        told = _told(sentence, load_language(language), lexicon or Lexicon())
+    except UnknownLanguage:
+        return None
+    return told and _capital(told)
+
+
+def told(sentence: str, language: str) -> str:
+    """The same for whoever reads errors at a terminal: as it is where it is somebody else's. What
+    is said of a file may have its name and the line before it: "ward.yaml:3: ..."."""
+    before, bare = _OF_A_FILE.fullmatch(sentence).groups()  # type: ignore[union-attr]
+    return in_language(sentence, language) or before + (in_language(bare, language) or bare)
+
+
+def _told(sentence: str, pack: Language, lexicon: Lexicon) -> str | None:
+    """The same, as it stands within a sentence."""
+    for entry in entries():
+        found = entry.pattern.fullmatch(sentence)
+        if found is None or pack.code not in entry.said:
+            continue
+        values = {
+            name: _value(name, text, pack, lexicon) for name, text in found.groupdict().items()
+        }
+        if None not in values.values():
+            told = entry.said[pack.code].format(**values)
+            has_nouns = any(name.partition("_")[0] in ("the", "thing", "names") for name in values)
+            return joined_up(told, pack) if has_nouns else told
+    return None
+
+
+def _value(name: str, text: str, pack: Language, lexicon: Lexicon) -> str | None:
+    """What stands in a gap of this name; None for a part that is not known."""
+    called = naming(lexicon, pack).called
+    match name.partition("_")[0]:
+        case "number":
+            return text.replace(".", words_in(pack.code)["decimal_point"])
+        case "part":
+            return text and _told(text, pack, lexicon)
+        case "thing":
+            return called(text)
+        case "names":
+            names = [_told(each, pack, lexicon) or called(each) for each in _LISTED.split(text)]
+            return listed(names, pack)
+        case "the":
+            bare = text.removeprefix("the ")
+            # People who have a name of their own go without an article.
+            noun = the(called(bare), pack) if bare[:1].islower() else called(bare)
+            return _told(text, pack, lexicon) or noun
+        case _:
+            return text
+
+
+@functools.cache
+def entries() -> tuple[Entry, ...]:
+    """All sentences that are known; those that say most by themselves first."""
+    import yaml
+
+    known: list[dict[str, str]] = [
+        said
+        for file in sorted(DATA.glob("*.yaml"))
+        for said in yaml.safe_load(file.read_text(encoding="utf-8"))
+    ]
+    known.sort(key=lambda said: (said["en"].startswith("{"), len(GAP.findall(said["en"]))))
+    return tuple(Entry(_pattern(said["en"]), said) for said in known)
+
+
+def _pattern(sentence: str) -> re.Pattern[str]:
+    pieces = GAP.split(sentence)
+    for at in range(0, len(pieces), 2):
+        pieces[at] = re.escape(pieces[at])
+    for at in range(1, len(pieces), 2):
+        number = pieces[at].partition("_")[0] == "number"
+        pieces[at] = f"(?P<{pieces[at]}>{'[-0-9.]+' if number else '.*?'})"
+    return re.compile("".join(pieces), re.DOTALL)
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]
