@@ -27,14 +27,44 @@ from nl2robot.words import words_in
 DATA: Final = Path(__file__).parent / "data" / "sentences"
 GAP: Final = re.compile(r"\{(\w+)\}")
 _OF_A_FILE: Final = re.compile(r"(\s*(?:\S+?:(?:\d+:)? )?)(.*)", re.DOTALL)
+DEEPEST: Final = 6
+"""Sentences within each other."""
+_NUMBER: Final = re.compile(r"[-0-9.]+")
 _LISTED: Final = re.compile(r", | and ")
 
 
 @dataclass(frozen=True)
 class Entry:
-    pattern: re.Pattern[str]
-    """Of the English sentence, with a group for each of its gaps."""
+    fixed: tuple[str, ...]
+    """What of the English sentence stands around its gaps, the first and the last maybe empty."""
+    gaps: tuple[str, ...]
     said: dict[str, str]
+
+    def values(self, sentence: str) -> dict[str, str] | None:
+        """What stands in the gaps of such a sentence; None if it is another.
+
+        Each gap ends where what is fixed behind it comes first, and nothing is tried again: with a
+        regular expression a sentence made for it by somebody on the wire took a minute, in which
+        nobody's stop was heard.
+        """
+        first, *between = self.fixed
+        if not sentence.startswith(first):
+            return None
+        if not between:
+            return {} if sentence == first else None
+        *between, last = between
+        at, end = len(first), len(sentence) - len(last)
+        if end < at or not sentence.endswith(last):
+            return None
+        found = []
+        for fixed in between:
+            behind = sentence.find(fixed, at, end)
+            if behind < 0:
+                return None
+            found.append(sentence[at:behind])
+            at = behind + len(fixed)
+        values = dict(zip(self.gaps, (*found, sentence[at:end]), strict=True))
+        return values if all(map(_fits, values, values.values())) else None
 
 
 def in_language(sentence: str, language: str, lexicon: Lexicon | None = None) -> str | None:
@@ -56,14 +86,16 @@ def told(sentence: str, language: str) -> str:
     return in_language(sentence, language) or before + (in_language(bare, language) or bare)
 
 
-def _told(sentence: str, pack: Language, lexicon: Lexicon) -> str | None:
-    """The same, as it stands within a sentence."""
+def _told(sentence: str, pack: Language, lexicon: Lexicon, depth: int = 0) -> str | None:
+    """The same, as it stands within so many sentences."""
+    if depth > DEEPEST:
+        return None
     for entry in entries():
-        found = entry.pattern.fullmatch(sentence)
-        if found is None or pack.code not in entry.said:
+        found = entry.values(sentence) if pack.code in entry.said else None
+        if found is None:
             continue
         values = {
-            name: _value(name, text, pack, lexicon) for name, text in found.groupdict().items()
+            name: _value(name, text, pack, lexicon, depth + 1) for name, text in found.items()
         }
         if None not in values.values():
             told = entry.said[pack.code].format(**values)
@@ -72,24 +104,26 @@ def _told(sentence: str, pack: Language, lexicon: Lexicon) -> str | None:
     return None
 
 
-def _value(name: str, text: str, pack: Language, lexicon: Lexicon) -> str | None:
+def _value(name: str, text: str, pack: Language, lexicon: Lexicon, depth: int) -> str | None:
     """What stands in a gap of this name; None for a part that is not known."""
     called = naming(lexicon, pack).called
     match name.partition("_")[0]:
         case "number":
             return text.replace(".", words_in(pack.code)["decimal_point"])
         case "part":
-            return text and _told(text, pack, lexicon)
+            return text and _told(text, pack, lexicon, depth)
         case "thing":
             return called(text)
         case "names":
-            names = [_told(each, pack, lexicon) or called(each) for each in _LISTED.split(text)]
+            names = [
+                _told(each, pack, lexicon, depth) or called(each) for each in _LISTED.split(text)
+            ]
             return listed(names, pack)
         case "the":
             bare = text.removeprefix("the ")
             # People who have a name of their own go without an article.
             noun = the(called(bare), pack) if bare[:1].islower() else called(bare)
-            return _told(text, pack, lexicon) or noun
+            return _told(text, pack, lexicon, depth) or noun
         case _:
             return text
 
@@ -105,17 +139,17 @@ def entries() -> tuple[Entry, ...]:
         for said in yaml.safe_load(file.read_text(encoding="utf-8"))
     ]
     known.sort(key=lambda said: (said["en"].startswith("{"), len(GAP.findall(said["en"]))))
-    return tuple(Entry(_pattern(said["en"]), said) for said in known)
+    return tuple(_entry(said) for said in known)
 
 
-def _pattern(sentence: str) -> re.Pattern[str]:
-    pieces = GAP.split(sentence)
-    for at in range(0, len(pieces), 2):
-        pieces[at] = re.escape(pieces[at])
-    for at in range(1, len(pieces), 2):
-        number = pieces[at].partition("_")[0] == "number"
-        pieces[at] = f"(?P<{pieces[at]}>{'[-0-9.]+' if number else '.*?'})"
-    return re.compile("".join(pieces), re.DOTALL)
+def _entry(said: dict[str, str]) -> Entry:
+    pieces = GAP.split(said["en"])
+    return Entry(tuple(pieces[::2]), tuple(pieces[1::2]), said)
+
+
+def _fits(name: str, text: str) -> bool:
+    """Whether that can stand in a gap of this name."""
+    return name.partition("_")[0] != "number" or _NUMBER.fullmatch(text) is not None
 
 
 def _capital(text: str) -> str:

@@ -299,3 +299,14 @@ def test_whoever_says_nothing_of_a_language_reads_english(
     with pytest.raises(SystemExit):
         main(("run", "--wrld"))
     assert "error: unrecognized arguments: --wrld" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("language", ["de", "fr"])
+def test_a_sentence_made_to_take_long_does_not(language: str) -> None:
+    """Anybody on the wire may have one told; while one is looked at nobody's stop is heard."""
+    for entry in entries():
+        first, *rest = entry.fixed
+        hostile = first + "".join(
+            (fixed or " ") * (20_000 // len(fixed or " ")) for fixed in rest[:-1]
+        )
+        in_language(f"{hostile}\0", language)
