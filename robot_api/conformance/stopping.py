@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -93,7 +94,8 @@ def _cancelled(
         return faults
     began = Attempt(lambda flag: call.flag.set("The check cancels this call.")).began
     _ended(subject, call, began, "a cancel", faults)
-    _stands(subject, name, "a cancel", faults)
+    # It confirms nothing, as a stop does: the wheels may take their time to stand.
+    _stands(subject, name, "a cancel", faults, patience=subject.has.stop_within + ON_THE_WAY)
     return faults
 
 
@@ -136,10 +138,13 @@ def _in_time(subject: Subject, took: float, message: str, faults: _Faults) -> No
         counts.append(message.format(f"{took * 1000:.0f}"))
 
 
-def _stands(subject: Subject, name: str, what: str, faults: _Faults) -> None:
-    method = METHODS[name]
+def _stands(subject: Subject, name: str, what: str, faults: _Faults, patience: float = 0.0) -> None:
+    """It stands, at the latest after so many seconds."""
+    method, until = METHODS[name], time.monotonic() + patience
     if method.moves and method.capability in _DRIVES:
         moves = subject.moves_on()
+        while moves and time.monotonic() < until:
+            moves = subject.moves_on()
         if moves:
             faults.wrong.append(f"{moves} after {what}")
 

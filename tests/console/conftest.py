@@ -19,7 +19,7 @@ from playwright.sync_api import Browser, Page, expect, sync_playwright
 from robot_api.client import Robot
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-SOON = 20_000
+SOON = 40_000
 """Milliseconds; what is waited for comes within some hundred, on a machine that is not busy."""
 expect.set_options(timeout=SOON)
 FLAGS = (

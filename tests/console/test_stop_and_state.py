@@ -53,8 +53,8 @@ def running(served: Served):
         run = runs(robot, ROUND)
         yield run
         robot.stop()
-        present = robot.request("program.state")
-        with suppress(Stopped):  # the stop has broken off this call, too
+        with suppress(Stopped):  # a stop breaks off these calls, too
+            present = robot.request("program.state")
             robot.request("program.wait", {"run": present["run"]})
 
 

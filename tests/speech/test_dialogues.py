@@ -84,7 +84,7 @@ def test_henry_is_asked_what_he_drinks_and_is_understood_at_once(
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        (["--voices", "--lang", "de"], "The German speech model is not installed. Run `nl2robot"),
+        (["--voices", "--lang", "de"], "fehlt das Spracherkennungsmodell für Deutsch"),
         (["--speak", "sound.mp3"], "is no .wav file"),
         (["--speak", "/proc/no/sound.wav"], "cannot be written"),
         (["--speak", "sound.wav", "--robot-voice", "anna"], "There is no voice 'anna'"),

@@ -270,7 +270,7 @@ def test_the_command_says_what_is_wrong(
     assert "is not there" in capsys.readouterr().err
     wav = str(RECORDED / "seven.wav")
     assert main(["hotword", "--lang", "de", "--word", "hallo Anton", "--wav", wav]) == 2
-    assert "German speech model is not installed" in capsys.readouterr().err
+    assert "Hier fehlt das Spracherkennungsmodell für Deutsch." in capsys.readouterr().err
 
 
 # ── long recordings ──────────────────────────────────────────────────────────────────────────────

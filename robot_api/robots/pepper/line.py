@@ -100,6 +100,8 @@ class Line:
         self._address = address
         self._session = qi.Session()
         self._services: dict[str, Any] = {}
+        self._gone: Any = None
+        """What listens for its end."""
         if login is not None:
             self._session.setClientAuthenticatorFactory(_Authenticators(login))
         try:
@@ -124,7 +126,7 @@ class Line:
 
     def when_gone(self, listener: Callable[[], None]) -> None:
         """Call it when the connection ends, in a thread of `qi`."""
-        self._session.disconnected.connect(lambda *_: listener())
+        self._gone = self._session.disconnected.connect(lambda *_: listener())
 
     def names(self) -> frozenset[str]:
         """The services that the robot has."""
@@ -189,6 +191,10 @@ class Line:
         """Whoever waits for an answer gets `LostConnection`."""
         self._services.clear()
         with suppress(RuntimeError):
+            # Nobody needs to hear of an end of our own; and a thread of `qi` that calls a Python
+            # which is just ending takes it down.
+            if self._gone is not None:
+                self._session.disconnected.disconnect(self._gone)
             finished(self._session.close(_async=True), _CLOSES_WITHIN)
 
     def _begun(self, what: str, begin: Callable[[], Any]) -> Any:

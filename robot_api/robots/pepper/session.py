@@ -190,8 +190,12 @@ class Wire:
         try:
             yield
         except BaseException as error:
-            # What it holds of `qi` comes back with the call, not with whoever handles the error.
-            clear_frames(error.__traceback__)
+            # What they hold of `qi` comes back with the call, not with whoever handles the error:
+            # that may be a thread which Python has given up by then.
+            each: BaseException | None = error
+            while each is not None:
+                clear_frames(each.__traceback__)
+                each = each.__context__
             raise
         finally:
             with self._came_back:

@@ -101,6 +101,7 @@ class StandIn:
 
     def freeze(self) -> None:
         os.kill(self.process.pid, signal.SIGSTOP)
+        os.waitpid(self.process.pid, os.WUNTRACED)  # until it really stands still
 
     def thaw(self) -> None:
         os.kill(self.process.pid, signal.SIGCONT)

@@ -92,13 +92,22 @@ export function bodyForm({words, reader, ask, of, sentence, program, naming = fa
     save.disabled = !found.works || (naming && (!name.value.trim() || Boolean(found.name)));
   }
 
+  /** Who goes on as a program begins with what the words would do, also before that was found. */
+  async function beginWritten() {
+    const wanted = () => kind() === 'program' && !written.value.trim();
+    if (!wanted() || !said.value.trim()) return;
+    const found = does?.written ? does : await ask('check', {...of, ...(naming ? {name: name.value, language: language.value} : {}), sentence: said.value}, () => {});
+    if (!found?.written || !wanted()) return;
+    written.value = found.written;
+    check();
+  }
+
   function changed(event) {
     trouble.hidden = true;
     save.disabled = true; // until this text is checked
     number += 1;
     if (event.target.name === group) {
-      // Who goes on as a program begins with what the words would do.
-      if (kind() === 'program' && !written.value.trim() && does?.written) written.value = does.written;
+      beginWritten();
       show();
     }
     clearTimeout(typing);
