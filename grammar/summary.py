@@ -233,6 +233,11 @@ class _Brief(Teller):
                 return
             case p.Call(method="say", arguments={"text": text}) if self._tells(text):
                 yield _Deed(fill(brief["tell"], {"values": self._values(text)}))
+            case p.Call(
+                method="say",
+                arguments={"text": p.Sentence(parts=(p.Choice(among=p.Items(items=those)),))},
+            ):
+                yield _Deed(fill(brief["say one of"], {"number": str(len(those))}))
             case p.Call(method="find"):
                 arguments = dict(call.arguments)
                 pattern = brief["search there" if "place" in arguments else "search"]

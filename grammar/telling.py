@@ -268,8 +268,14 @@ class Teller(ValueTeller):
         self.forget((whole,))
 
     def each_of(self, step: p.ForEach) -> str:
-        """What a loop goes over; places and people by the names that speakers have for them."""
+        """What a loop goes over; places and people by the names that speakers have for them, and
+        numbers that are counted as that."""
         items = step.items.items if isinstance(step.items, p.Items) else ()
+        counted = [item.value for item in items if isinstance(item, p.Number)]
+        if len(counted) == len(items) > 3:
+            first, last = counted[0], counted[-1]
+            if counted == [first + step for step in range(len(counted))]:
+                return self.value(p.Range(p.Number(last + 1), p.Number(first)))
         names = [item.value for item in items if isinstance(item, p.Text)]
         if len(names) < len(items) or all(self.called(name) == name for name in names):
             return self.value(step.items)

@@ -321,3 +321,19 @@ def test_a_search_of_several_places_is_one_deed(language: str, words: str) -> No
         called = naming(lexicon, pack).called
         said = summary(parse_program(program, language), language, called)
         assert words in said, said
+
+
+@pytest.mark.parametrize(
+    ("language", "words", "told_as"),
+    [
+        ("en", "tell me a joke", "I will say one of 3 texts, picked at random."),
+        ("de", "erzähl mir einen Witz", "Ich werde einen von 3 Texten sagen, zufällig gewählt."),
+        ("fr", "raconte-moi une blague", "Je vais dire l'un de 3 textes, choisi au hasard."),
+        ("en", "count to ten", "For each of the numbers from 1 to 10 I will say this number."),
+        ("en", "count from three to nine", "the numbers from 3 to 9"),
+    ],
+)
+def test_what_is_long_in_a_program_is_short_in_words(
+    language: str, words: str, told_as: str
+) -> None:
+    assert told_as in told(words, language)
