@@ -597,3 +597,46 @@ def test_a_round_and_a_search_end_where_what_is_looked_for_is_found(language: st
         assert end == "done" and not any("ward c" in each for each in found), (words, found, end)
         assert round_ends(language, words, {})[1] == "done", words
     assert sum(said(language, words).program is not None for words in orders) > len(orders) / 2
+
+
+@pytest.mark.parametrize(
+    ("language", "order", "to", "words"),
+    [
+        (
+            "en",
+            ["tell {} {}", "say {1} to {0}"],
+            ["everyone in ward b", "all patients in ward b", "the people in ward b"],
+            ["good night", "good morning"],
+        ),
+        (
+            "de",
+            ["sag {} {}", "sag bitte {} {}"],
+            [
+                "jedem auf Station B",
+                "allen auf Station B",
+                "allen Patienten auf Station B",
+                "den Leuten auf Station B",
+                "den Patienten auf Station B",
+            ],
+            ["gute Nacht", "guten Morgen", "danke"],
+        ),
+        (
+            "fr",
+            ["dis {1} à {0}"],
+            ["tout le monde dans le service B", "tous les patients du service B"],
+            ["bonne nuit", "merci"],
+        ),
+    ],
+)
+def test_whom_kind_words_are_for_is_no_part_of_them(
+    language: str, order: list[str], to: list[str], words: list[str]
+) -> None:
+    for each in order:
+        for whom in to:
+            for said_to_them in words:
+                found = said(language, each.format(whom, said_to_them)).program
+                if found is None:
+                    continue
+                text = found.split("robot.say(")[1]
+                assert 'robot.goto("ward b")' in found, (each, whom, found)
+                assert "tation" not in text and "ward" not in text and "service" not in text, found
