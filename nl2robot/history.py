@@ -172,16 +172,19 @@ class Witness:
     # --- what was heard
 
     def answers(self) -> list[tuple[str, str, str]]:
-        """Everything somebody answered: who, the question, the answer."""
-        return [
-            (
-                str(call.arguments.get("person") or ""),
-                str(call.arguments.get("question") or call.arguments.get("prompt") or ""),
-                str(call.result),
-            )
-            for call in self.record.calls
-            if call.method in ASKING and call.error is None and call.result
-        ]
+        """Everything somebody answered: who, the question, the answer. Who has no name goes by
+        where they are, as far as that is known."""
+        found, place = [], ""
+        for call in self.record.calls:
+            if call.method in ASKING and call.error is None and call.result:
+                who = str(call.arguments.get("person") or "")
+                question = call.arguments.get("question") or call.arguments.get("prompt") or ""
+                unnamed = who in ("", "person")
+                found.append((place if unnamed else who, str(question), str(call.result)))
+            elif call.error is None and call.method in ("goto", "find", "guide", "dock"):
+                where = call.arguments.get("place")
+                place = where if isinstance(where, str) and call.result is not False else ""
+        return found
 
     def said(self, name: str) -> str:
         if not any(call.method in ASKING for call in self.record.calls):

@@ -20,8 +20,7 @@ class SpokenLanguage:
 
     def heard_of(self, code: str) -> None:
         """The robot speaks it from now on (the data of the event `language`)."""
-        if code != self._adopted:
-            self._chosen = True
+        self._chosen = code != self._adopted
 
     def adopt(self, robot: Robot, code: str | None, spoken: Collection[str]) -> None:
         """Have the robot speak to people as whoever approved the program speaks, unless another

@@ -12,6 +12,7 @@ from datetime import datetime
 from nl2robot.accounts import INVITED_FOR, Accounts
 from nl2robot.entrance import PAGES_AT
 from nl2robot.errors import ExitStatus, UserError
+from nl2robot.passwords import SHORTEST
 from nl2robot.paths import authority_file, data_folder
 from robot_api.roles import PAIRED, ROLES
 
@@ -107,9 +108,10 @@ def _pair(accounts: Accounts, options: argparse.Namespace) -> None:
 def _password(name: str) -> str:
     if not sys.stdin.isatty():
         return sys.stdin.readline().rstrip("\n")
+    print(f"At least {SHORTEST} characters: three words that do not belong together, say.")
     given = getpass.getpass(f"Password for {name}: ")
     if getpass.getpass("The same again: ") != given:
-        raise UserError("The two passwords are not the same. Try again.")
+        raise UserError("The two passwords are not the same. Give the command again.")
     return given
 
 

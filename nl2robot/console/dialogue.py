@@ -35,7 +35,7 @@ from nl2robot.translation import Translation, translate
 from nl2robot.trouble import told
 from nl2robot.words import words_in
 from robot_api.driver import StopFlag
-from robot_api.errors import AccessDenied, NotPossible, RobotError
+from robot_api.errors import AccessDenied, NotPossible, RobotError, Stopped
 
 LINES_KEPT: Final = 200
 
@@ -519,7 +519,8 @@ class Dialogue:
             status = self._backstage.runner.state()
             error = status.error if status and status.run == run else None
             lexicon = self._backstage.runner.knowledge.lexicon(language)
-            why = told(error, message, language, lexicon) if message else None
+            plain = state == "stopped" and message == Stopped().because  # that says no more
+            why = told(error, message, language, lexicon) if message and not plain else None
             end = " ".join(filter(None, (_said(f"ended_{state}", language), why)))
             runner = self._backstage.runner
             came = [each.text for each in answer(runner.log, runner.knowledge, run, language)]

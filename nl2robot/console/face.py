@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from string import Template
 from typing import Any, Final
@@ -25,11 +26,12 @@ from nl2robot.console.forgetting import Forgetting
 from nl2robot.console.part import Backstage, Part
 from nl2robot.console.tablet import FaceTablet
 from nl2robot.console.visitor import LANGUAGES, texts, visitor_of
+from nl2robot.console.visitor_language import VisitorLanguage
 from nl2robot.runlog import LogError
 from nl2robot.wire import an_object
-from robot_api.driver import Event
+from robot_api.driver import Event, StopFlag
 from robot_api.drivers import ComposedDriver
-from robot_api.errors import NotPossible
+from robot_api.errors import NotPossible, RobotError, Stopped
 from robot_api.methods import MAX_TEXT
 from robot_api.server import Context, Service
 
@@ -142,6 +144,12 @@ def part(backstage: Backstage) -> Part:
         face.change("speech", None)
         face.change("chosen", False)
 
+    def set_language(code: str) -> None:
+        with suppress(RobotError, Stopped):  # one without a voice is read
+            backstage.driver.call("set_language", {"code": code}, StopFlag())
+
+    theirs = VisitorLanguage(set_language, gone=lambda: face.change("chosen", False))
+
     forgetting = Forgetting(
         backstage.driver,
         hush=hush,
@@ -156,6 +164,7 @@ def part(backstage: Backstage) -> Part:
             face.on_event(kind, data)
         if kind == "program":
             forgetting.on_event(data)
+            theirs.on_event(data)
 
     def left(connection: str) -> None:
         calls.left(connection)
@@ -168,6 +177,7 @@ def part(backstage: Backstage) -> Part:
     def close() -> None:
         unsubscribe()
         forgetting.close()
+        theirs.close()
         calls.close()
 
     async def page(request: Request) -> HTMLResponse:
@@ -175,7 +185,7 @@ def part(backstage: Backstage) -> Part:
         return HTMLResponse(_page(face.state, seat, languages), headers=HEADERS)
 
     return Part(
-        services={**_services(backstage, face, tablet, forgetting), **calls.services()},
+        services={**_services(backstage, face, tablet, forgetting, theirs), **calls.services()},
         events={**EVENTS, **video.EVENTS},
         routes=[Route("/face", page)],
         left=left,
@@ -184,7 +194,11 @@ def part(backstage: Backstage) -> Part:
 
 
 def _services(
-    backstage: Backstage, face: Face, tablet: FaceTablet, forgetting: Forgetting
+    backstage: Backstage,
+    face: Face,
+    tablet: FaceTablet,
+    forgetting: Forgetting,
+    theirs: VisitorLanguage,
 ) -> dict[str, Service]:
     number = {"type": "integer", "minimum": 1}
     html = {"type": ["string", "null"], "maxLength": LONGEST_PAGE}
@@ -202,7 +216,7 @@ def _services(
         tablet.told(context.connection, p["page"], p["html"])
 
     def language(p: Mapping[str, Any], context: Context) -> None:
-        backstage.driver.call("set_language", {"code": p["code"]}, context.stop)
+        theirs.choose(p["code"], before=face.state["language"])
         face.change("chosen", True)
 
     return {

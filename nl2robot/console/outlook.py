@@ -78,6 +78,7 @@ def outlook(
         (words["closed"], tuple(map(_called(knowledge, language), dry_run.closed))),
         (words["says"], tuple(text for text in dict.fromkeys(dry_run.says) if text not in asks)),
         (words["asks"], asks),
+        (words["answers"], (words["made_up"],) if asks else ()),
         (words["shows"], tuple(dict.fromkeys(dry_run.shows))),
     ]
     return Outlook(

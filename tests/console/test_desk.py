@@ -297,7 +297,7 @@ def test_what_goes_wrong_and_where_it_goes_is_told_in_german_too(look: Look) -> 
     expect(page.locator("#run-panel li.current")).to_contain_text("pharmacy")
     page.get_by_role("button", name="STOPP").click()
     expect(page.locator(".run-message")).to_have_text("Der Roboter wurde angehalten.")
-    expect(page.locator(".said").last).to_contain_text("Der Roboter wurde angehalten.")
+    expect(page.locator(".said").last).to_contain_text("Ich habe angehalten.")
 
 
 def test_what_is_said_of_a_line_is_said_once(look: Look) -> None:

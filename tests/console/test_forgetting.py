@@ -12,6 +12,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from nl2robot.console.forgetting import IDLE, READ_FOR, Forgetting
+from nl2robot.console.visitor_language import VisitorLanguage
 from robot_api.capabilities.sound import Sound
 from robot_api.driver import StopFlag
 from robot_api.drivers import simulated
@@ -247,3 +248,71 @@ def test_a_page_that_was_filled_in_is_gone_with_its_program(look: Look, served: 
         assert NAME not in everything(page)
         assert NAME not in json.dumps(robot.request("face.state"))
         assert NAME not in source(served)
+
+
+# --- the language of a visitor
+
+
+def goes(run: int, state: str) -> dict[str, Any]:
+    return {"what": "state", "run": run, "state": state}
+
+
+@pytest.fixture
+def clock() -> Clock:
+    return Clock()
+
+
+@pytest.fixture
+def spoken() -> list[str]:
+    return ["en"]
+
+
+@pytest.fixture
+def theirs(spoken: list[str], clock: Clock) -> VisitorLanguage:
+    return VisitorLanguage(spoken.append, lambda: None, clock.later)
+
+
+def test_a_language_goes_with_whoever_chose_it(
+    theirs: VisitorLanguage, spoken: list[str], clock: Clock
+) -> None:
+    theirs.on_event(goes(1, "running"))
+    theirs.choose("de", before="en")
+    theirs.choose("fr", before="de")
+    theirs.on_event(goes(1, "paused"))
+    theirs.on_event(goes(1, "done"))
+    clock.passes(READ_FOR - 1)
+    assert spoken == ["en", "de", "fr"]
+    clock.passes(2)
+    assert spoken == ["en", "de", "fr", "en"]
+    clock.passes(IDLE)
+    assert spoken[-1] == "en" and len(spoken) == 4
+
+
+def test_the_next_program_finds_the_language_of_the_house(
+    theirs: VisitorLanguage, spoken: list[str], clock: Clock
+) -> None:
+    theirs.on_event(goes(1, "running"))
+    theirs.choose("fr", before="en")
+    theirs.on_event(goes(1, "done"))
+    theirs.on_event(goes(2, "running"))
+    assert spoken == ["en", "fr", "en"]
+
+
+def test_who_chooses_before_a_program_has_it_in_that(
+    theirs: VisitorLanguage, spoken: list[str], clock: Clock
+) -> None:
+    theirs.choose("fr", before="en")
+    theirs.on_event(goes(1, "running"))
+    clock.passes(IDLE + 1)
+    assert spoken == ["en", "fr"]
+    theirs.on_event(goes(1, "done"))
+    clock.passes(READ_FOR + 1)
+    assert spoken == ["en", "fr", "en"]
+
+
+def test_who_chooses_and_walks_away_leaves_nothing(
+    theirs: VisitorLanguage, spoken: list[str], clock: Clock
+) -> None:
+    theirs.choose("fr", before="en")
+    clock.passes(IDLE + 1)
+    assert spoken == ["en", "fr", "en"]

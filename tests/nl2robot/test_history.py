@@ -103,3 +103,18 @@ def test_a_thing_is_put_back_where_it_was_taken_from(operator) -> None:
     back = nurse.says("put it back").program
     assert back == 'robot.grab("red cup")\nrobot.goto("ward a")\nrobot.put("red cup")\n'
     assert nurse.has_done("put it back") == "done"
+
+
+def test_who_has_no_name_goes_by_where_they_are(operator) -> None:
+    """Whoever was asked on a round is found again by their ward."""
+    nurse = Nurse(operator)
+    program = (
+        'for place in ["ward a", "ward b"]:\n'
+        "    robot.goto(place)\n"
+        '    robot.ask("Do you need water?", ["yes", "no"])\n'
+    )
+    review = operator.check(program)
+    operator.wait(operator.run(operator.approve(review, insists=not review.came_through)))
+    said = " ".join(nurse.hears(f"who said {answer}?") for answer in ("yes", "no"))
+    assert "Ward a" in said or "Ward b" in said, said
+    assert "Somebody" not in said
