@@ -300,6 +300,11 @@ class RunLog:
         rows = self._read(f"SELECT {_COLUMNS} FROM runs WHERE id = ?", number)
         return Run(**rows[0]) if rows else None
 
+    def continued_by(self, run: int) -> int | None:
+        """The number of the last run that went on with that one."""
+        rows = self._read("SELECT MAX(id) AS id FROM runs WHERE continues = ?", run)
+        return rows[0]["id"] if rows else None
+
     def calls(self, run: int) -> list[LoggedCall]:
         rows = self._read(
             "SELECT number, line, method, arguments, started, seconds, result, error, made"

@@ -127,6 +127,9 @@ class Desk:
                 perform = self.dialogue.perform_routine
                 act = partial(self._do, perform, routine, said_in, visit.language)
                 ui.timer(0, act, once=True)
+            elif (rest := request.query_params.get("go_on", "")[:9]).isdecimal():
+                go_on = self.dialogue.go_on
+                ui.timer(0, lambda: self._do(go_on, int(rest), visit.language), once=True)
             elif program:
                 propose = self.dialogue.propose
                 ui.timer(0, lambda: self._do(propose, program, visit.language), once=True)

@@ -19,6 +19,7 @@ from nl2robot.console.highlight import highlighted
 from nl2robot.console.rendering import rendered
 from nl2robot.console.runs_asked import Asked
 from nl2robot.console.visitor import texts, visitor_of
+from nl2robot.going_on import unfinished
 from nl2robot.knowledge import Knowledge
 from nl2robot.pausing import PAUSED
 from nl2robot.runlog import LoggedCall, Run, RunLog
@@ -107,6 +108,7 @@ def run_page(
         lines=lines,
         changes=changes(run.proposed, run.program) if run.proposed is not None else (),
         role=role,
+        goes_on=log.continued_by(run.id) is None and unfinished(log, run.id) is not None,
         older=neighbours[0],
         newer=neighbours[1],
     )
@@ -135,6 +137,7 @@ def _standing(run: Run, log: RunLog, reader: Reader) -> dict[str, Any]:
         "printed": "".join(log.output(run.id)),
         "moved": log.movement(run.id) is not None,
         "pictured": run.picture is not None,
+        "continued_by": log.continued_by(run.id),
         "words": words,
     }
 

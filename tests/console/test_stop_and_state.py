@@ -213,6 +213,27 @@ def test_after_a_stop_one_looks_at_what_is_left_and_goes_on(
         expect(rows).to_have_text(['goto(place="ward a")', 'say(text="Three.")'])
 
 
+def test_what_is_left_is_found_again_on_the_page_of_the_run(
+    look: Look, page: Page, served: Served
+) -> None:
+    """Also when the desk has long gone on to something else."""
+    with served.robot() as robot:
+        run = runs(robot, 'robot.say("One.")\nrobot.goto("ward b")\nrobot.say("Three.")\n')
+        expect(page.locator(".calls li")).to_have_count(2)
+        page.keyboard.press("Escape")
+        expect(page.locator("#run-panel .chip[role=status]")).to_have_text("Stopped")
+        page.goto(f"{served.url}/runs/{run}")
+        page.get_by_role("link", name="Go on from there").click()
+        expect(page.get_by_role("heading", name=f"What is left of run {run}")).to_be_visible()
+        approve(page)
+        expect(page.locator("#run-panel .chip[role=status]")).to_have_text("Done")
+        page.goto(f"{served.url}/runs/{run}")
+        expect(page.locator(".run-facts")).to_contain_text(f"Continued byRun {run + 1}")
+        expect(page.get_by_role("link", name="Go on from there")).to_have_count(0)
+        page.get_by_role("link", name=f"Run {run + 1}").click()
+        expect(page.locator(".run-facts")).to_contain_text(f"Goes on withRun {run}")
+
+
 def test_of_a_move_the_rest_is_left_and_that_the_robot_was_moved_is_told(
     look: Look, page: Page, served: Served, picture: Picture
 ) -> None:

@@ -187,7 +187,8 @@ function openDecisions() {
     const change = event.target.closest('#change');
     if (change) changeIt(change.dataset.words);
   });
-  if (new URLSearchParams(location.search).has('program')) history.replaceState(null, '', '/');
+  const asked = new URLSearchParams(location.search);
+  if (asked.has('program') || asked.has('go_on')) history.replaceState(null, '', '/');
 }
 
 /** The newest words are in view; whoever reads further up is left there. */
