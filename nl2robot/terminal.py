@@ -221,7 +221,8 @@ class Terminal:
                     return decision, answer
             if means == approving and review.acceptable:
                 return "approve", answer
-            if said and not (insisting and means == "approve"):  # a "yes" is not enough
+            # A key beside the right one is no command, and a "yes" may not be enough.
+            if len(said) > 1 and not (insisting and means == "approve"):
                 if self.editor is not None:
                     self.editor.remember(answer)  # a correction is a command
                 return None, answer

@@ -229,6 +229,8 @@ def test_a_correction_instead_of_a_decision_is_reviewed_in_its_place(start, log_
     assert 'robot.gesture("wave")' in chat.until("eject? ")
     chat.type("what will you do?\n")
     assert "wave" in chat.until("eject? ")
+    chat.type("x\n")  # the key beside: asked again, and nothing else
+    assert len(chat.until("eject? ")) < 60
     chat.type("oh yes, please\n")  # no decision, and no command either
     chat.until("eject? ")
     chat.type("Yes.\n")
