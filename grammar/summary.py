@@ -11,10 +11,9 @@ not, or where it would not be shorter, the full reading is given instead.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Final, TypeGuard
+from typing import Final
 
 from grammar import plan as p
 from grammar.explain import explain
@@ -22,7 +21,8 @@ from grammar.inference import truth
 from grammar.language import load_language
 from grammar.pauses import may_end
 from grammar.reading import CodeStep, Function
-from grammar.speech import Speech, fill, forms, speech
+from grammar.speech import fill, forms, speech
+from grammar.summary_sentences import Clause, Deed, Item, sentences
 from grammar.telling import Teller
 from grammar.told_values import as_call
 from grammar.traversal import nodes
@@ -56,37 +56,16 @@ def summary(plan: p.Plan, language: str = "en", called: Callable[[str], str] | N
         return full
     if not items or teller.untold():
         return full
-    sentences = list(_sentences(items, words))
-    told = words.joined_up(" ".join(sentences))
+    told_in = list(sentences(items, words))
+    told = words.joined_up(" ".join(told_in))
     if plan.background:
         said = "; ".join(plan.background)
         told = f"{told} {load_language(language).phrase('background', said=said)}"
-    return told if len(told) < len(full) and len(sentences) <= LONGEST else full
+    return told if len(told) < len(full) and len(told_in) <= LONGEST else full
 
 
 class _TooMuch(Exception):
     """It cannot be said in a breath."""
-
-
-# --- what is told --------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class _Deed:
-    text: str
-
-
-@dataclass(frozen=True)
-class _Clause:
-    """Something done under a condition, or several times."""
-
-    text: str
-    items: tuple[_Item, ...]
-    adverb: bool = False
-    """Whether it stands in its sentence without a comma: "in every office"."""
-
-
-_Item = _Deed | _Clause
 
 
 @dataclass
@@ -114,14 +93,14 @@ class _Brief(Teller):
 
     # --- steps
 
-    def items(self, steps: Sequence[p.Step]) -> Iterator[_Item]:
+    def items(self, steps: Sequence[p.Step]) -> Iterator[Item]:
         at = 0
         while at < len(steps):
             step, later = steps[at], steps[at + 1 :]
             folded = self._fetched(step, later)
             if folded is not None:
                 text, number = folded
-                yield _Deed(text)
+                yield Deed(text)
                 at += number
                 continue
             yield from self._item(step)
@@ -170,7 +149,7 @@ class _Brief(Teller):
             case _:
                 return None
 
-    def _item(self, step: p.Step) -> Iterator[_Item]:
+    def _item(self, step: p.Step) -> Iterator[Item]:
         if isinstance(step, p.Remember) and isinstance(step.value, p.Ask):
             self._told.add(id(step.value))  # told as the call that it is
         told = as_call(step)
@@ -193,7 +172,7 @@ class _Brief(Teller):
                 yield from self._loop("repeat", steps, known, times=self.times(times))
             case p.While(steps=(p.Call(method="wait"),) | ()):
                 until = self.condition(told.condition, holds=False)
-                yield _Deed(fill(self.words.steps["wait until"], {"condition": until}))
+                yield Deed(fill(self.words.steps["wait until"], {"condition": until}))
             case p.While():
                 yield from self._loop("while", told.steps, condition=self.condition(told.condition))
             case p.RepeatUntil():
@@ -206,15 +185,15 @@ class _Brief(Teller):
                 yield from self.items(told.steps)
                 otherwise = tuple(self.items(told.otherwise))
                 if otherwise:
-                    yield _Clause(self.words.clauses["failed"], otherwise)
+                    yield Clause(self.words.clauses["failed"], otherwise)
             case p.End():
-                yield _Deed(self.words.steps["end"])
+                yield Deed(self.words.steps["end"])
             case p.Continue():
-                yield _Deed(self.words.steps["continue"])
+                yield Deed(self.words.steps["continue"])
 
     # --- single calls
 
-    def _call(self, call: p.Call) -> Iterator[_Item]:
+    def _call(self, call: p.Call) -> Iterator[Item]:
         brief = self.words.brief
         match call:
             case p.Call(method="location", save_as=str() as name):
@@ -222,33 +201,33 @@ class _Brief(Teller):
                     self._starts.add(name)
             case p.Call(method="wait"):
                 if call.arguments.get("seconds") != p.Number(1):
-                    yield _Deed(self.call(call))
+                    yield Deed(self.call(call))
             case p.Call(method=method, save_as=str()) if method in QUIET and self._is_used(call):
                 pass
             case p.Call(method="goto", arguments={"place": p.Recall(name=name)}) if (
                 name in self._starts
             ):
                 self.back = True
-                yield _Deed(brief["back"])
+                yield Deed(brief["back"])
                 return
             case p.Call(method="say", arguments={"text": text}) if self._tells(text):
-                yield _Deed(fill(brief["tell"], {"values": self._values(text)}))
+                yield Deed(fill(brief["tell"], {"values": self._values(text)}))
             case p.Call(
                 method="say",
                 arguments={"text": p.Sentence(parts=(p.Choice(among=p.Items(items=those)),))},
             ):
-                yield _Deed(fill(brief["say one of"], {"number": str(len(those))}))
+                yield Deed(fill(brief["say one of"], {"number": str(len(those))}))
             case p.Call(method="find"):
                 arguments = dict(call.arguments)
                 pattern = brief["search there" if "place" in arguments else "search"]
-                yield _Deed(self.filled(pattern, arguments))
+                yield Deed(self.filled(pattern, arguments))
             case p.Call(method="ask"):
                 wanted = {"question": call.arguments["question"]}
                 if "person" in call.arguments and call.arguments["person"] != self._found:
                     wanted["person"] = call.arguments["person"]
-                yield _Deed(self.call(replace_arguments(call, wanted)))
+                yield Deed(self.call(replace_arguments(call, wanted)))
             case _:
-                yield _Deed(self.call(replace_arguments(call, call.arguments)))
+                yield Deed(self.call(replace_arguments(call, call.arguments)))
         self._found = call.arguments.get("thing") if call.method == "find" else None
         if METHODS[call.method].moves:
             self.left, self.back = True, False
@@ -287,7 +266,7 @@ class _Brief(Teller):
                     return self.recall(name)
         return self.words.brief["result"]
 
-    def _asked_in(self, step: p.Step) -> Iterator[_Item]:
+    def _asked_in(self, step: p.Step) -> Iterator[Item]:
         """What the robot does to know a value that it notes."""
         for node in nodes(step):
             if isinstance(node, p.Ask) and node.method not in QUIET - LOOKS:
@@ -296,7 +275,7 @@ class _Brief(Teller):
 
     # --- branches
 
-    def _branches(self, step: p.If) -> Iterator[_Item]:
+    def _branches(self, step: p.If) -> Iterator[Item]:
         report = self._report(step)
         if report is not None:
             yield from report
@@ -317,25 +296,25 @@ class _Brief(Teller):
         otherwise = tuple(self.items(step.otherwise))
         self.left, self.back = after[0] or self.left, after[1] and self.back
         if then:
-            yield _Clause(self.condition_clause(step.condition), then)
+            yield Clause(self.condition_clause(step.condition), then)
         elif otherwise:
-            yield _Clause(self.condition_clause(step.condition, holds=False), otherwise)
+            yield Clause(self.condition_clause(step.condition, holds=False), otherwise)
             return
         else:
             yield from self._asked_in(p.Remember("", step.condition))
             return
         match otherwise:
-            case (_Clause(adverb=False) as inner, *rest):  # "otherwise, if ..."
+            case (Clause(adverb=False) as inner, *rest):  # "otherwise, if ..."
                 outer = {"outer": self.words.clauses["otherwise"], "inner": inner.text}
                 yield replace(inner, text=fill(self.words.joining["clauses"], outer))
                 yield from rest
             case (_, *_):
-                yield _Clause(self.words.clauses["otherwise"], otherwise, adverb=True)
+                yield Clause(self.words.clauses["otherwise"], otherwise, adverb=True)
 
     def condition_clause(self, condition: p.Condition, holds: bool = True) -> str:
         return fill(self.words.clauses["if"], {"condition": self.condition(condition, holds)})
 
-    def _searched(self, searches: Sequence[p.Ask], step: p.If) -> Iterator[_Item]:
+    def _searched(self, searches: Sequence[p.Ask], step: p.If) -> Iterator[Item]:
         """Looking for something at one or several places, and what is done when it is found; "...,
         come back and tell you" where that is what is done either way."""
         self._told.update(map(id, searches))
@@ -348,22 +327,22 @@ class _Brief(Teller):
         then, otherwise = self._reported(step.then), self._reported(step.otherwise)
         if then and otherwise and then[0] and otherwise[0]:
             self._tick(*nodes(step.then), *nodes(step.otherwise))
-            yield _Deed(self.words.brief["back"])
+            yield Deed(self.words.brief["back"])
             self.back = True
-            yield _Deed(fill(self.words.brief["tell"], {"values": self.words.brief["result"]}))
+            yield Deed(fill(self.words.brief["tell"], {"values": self.words.brief["result"]}))
             return
         yield from self.items(step.then)
         missed = p.Holds(find)
         if otherwise:
             self._tick(*nodes(step.otherwise))
-            so: list[_Item] = [_Deed(self.words.brief["back"])] if otherwise[0] else []
-            failed: tuple[_Item, ...] = (*so, _Deed(self.words.brief["so"]))
+            so: list[Item] = [Deed(self.words.brief["back"])] if otherwise[0] else []
+            failed: tuple[Item, ...] = (*so, Deed(self.words.brief["so"]))
         else:
             failed = tuple(self.items(step.otherwise))
         if failed:
-            yield _Clause(self.condition_clause(missed, holds=False), failed)
+            yield Clause(self.condition_clause(missed, holds=False), failed)
 
-    def _search_among(self, searches: Sequence[p.Ask]) -> _Deed:
+    def _search_among(self, searches: Sequence[p.Ask]) -> Deed:
         """ "look for a book at Alice's office, at Bob's office and at Clara's office"."""
         brief, thing = self.words.brief, searches[0].arguments["thing"]
         places = ({"place": each.arguments["place"]} for each in searches)
@@ -371,9 +350,9 @@ class _Brief(Teller):
         self.left, self.back, self._found = True, False, thing
         pattern = brief["search among"]
         told = self.argument("thing", thing, forms(pattern)["thing"])
-        return _Deed(fill(pattern, {"thing": told, "places": there}))
+        return Deed(fill(pattern, {"thing": told, "places": there}))
 
-    def _report(self, step: p.If) -> list[_Item] | None:
+    def _report(self, step: p.If) -> list[Item] | None:
         """Both branches of it only tell whoever asked: "tell you whether ..."."""
         then, otherwise = self._reported(step.then), self._reported(step.otherwise)
         if not (then and otherwise) or then[0] or otherwise[0]:
@@ -384,11 +363,11 @@ class _Brief(Teller):
         self._tick(*nodes(step))
         for inserted in (then[1], otherwise[1]):
             if inserted:
-                return [_Deed(fill(brief["tell"], {"values": self._values(inserted[0])}))]
+                return [Deed(fill(brief["tell"], {"values": self._values(inserted[0])}))]
         if not _is_plain(step.condition, self):
-            return [_Deed(fill(brief["tell"], {"values": brief["result"]}))]
+            return [Deed(fill(brief["tell"], {"values": brief["result"]}))]
         condition = self.condition(step.condition)
-        return [_Deed(fill(brief["whether"], {"condition": condition}))]
+        return [Deed(fill(brief["whether"], {"condition": condition}))]
 
     def _reported(self, steps: Sequence[p.Step]) -> tuple[bool, list[p.Sentence]] | None:
         """Whether the robot comes back before it tells something, and what it tells of what it has
@@ -417,14 +396,14 @@ class _Brief(Teller):
 
     def _loop(
         self, kind: str, steps: Sequence[p.Step], adverb: bool = False, **values: str
-    ) -> Iterator[_Item]:
+    ) -> Iterator[Item]:
         items = tuple(self.items(steps))
         if items:
-            yield _Clause(fill(self.words.clauses[kind], values), items, adverb)
+            yield Clause(fill(self.words.clauses[kind], values), items, adverb)
         elif kind in ENDLESS:  # what it waits for would go untold
             raise _TooMuch
 
-    def _each(self, step: p.ForEach) -> Iterator[_Item]:
+    def _each(self, step: p.ForEach) -> Iterator[Item]:
         if any(isinstance(node, p.Ask) and node.method not in QUIET for node in nodes(step.items)):
             raise _TooMuch
         match step:
@@ -446,12 +425,12 @@ class _Brief(Teller):
                     form = f"go to {form}"
                 noun = self.words.nouns.the(self.called(kind.value))
                 text = fill(self.words.brief[form], {"kind": noun, "noun": self.called(kind.value)})
-                yield _Clause(text, items, adverb=True) if items else _Deed(text)
+                yield Clause(text, items, adverb=True) if items else Deed(text)
             case p.ForEach(items=p.Ask(method="people") | p.Recall()) if self._is_somebody(step):
                 self._met[step.variable] = False
                 items = tuple(self.items(step.steps))
-                if any(isinstance(item, _Clause) for item in items) or not self._met[step.variable]:
-                    yield _Clause(self.words.brief["for everybody"], items, adverb=True)
+                if any(isinstance(item, Clause) for item in items) or not self._met[step.variable]:
+                    yield Clause(self.words.brief["for everybody"], items, adverb=True)
                 else:
                     yield from items
             case p.ForEach(items=p.Range(stop=stop, start=p.Number(value=0))):
@@ -517,83 +496,6 @@ def _is_plain(condition: p.Condition, teller: Teller) -> bool:
             return _is_plain(inner, teller)
         case _:
             return False
-
-
-# --- sentences -----------------------------------------------------------------------------------
-
-
-def _sentences(items: Iterable[_Item], words: Speech) -> Iterator[str]:
-    brief = words.brief
-    simple: list[_Item] = []
-    closing = re.escape(words.values["quoted"][-1])
-
-    def sentence(pattern: str, **values: str) -> str:
-        text = fill(brief[pattern], values)
-        text = re.sub(rf"([.!?…]\s?{closing})\.$", r"\1", text)
-        return text[:1].upper() + text[1:]
-
-    said = False
-    for item in items:
-        if _is_deed(item):
-            simple.append(item)
-            continue
-        assert isinstance(item, _Clause)
-        if simple:
-            yield sentence("next" if said else "first", steps=_joined(simple, words))
-            simple, said = [], True
-        clause, pattern = item.text, "adverb" if item.adverb else "clause"
-        match item:
-            case _Clause(adverb=True, items=(_Clause(adverb=False) as inner,)):
-                # "In every ward, if I see a person, I will ..."
-                clause, pattern, item = f"{clause}{brief['comma']}{inner.text}", "clause", inner
-        yield sentence(pattern, clause=clause, steps=_joined(item.items, words))
-        said = True
-    if simple:
-        yield sentence("next" if said else "first", steps=_joined(simple, words))
-
-
-def _is_deed(item: _Item) -> TypeGuard[_Deed]:
-    return isinstance(item, _Deed)
-
-
-def _joined(items: Sequence[_Item], words: Speech) -> str:
-    """Items within a sentence: "a, b and, if so, c; otherwise d"."""
-    brief = words.brief
-    parts: list[list[str]] = [[]]
-    for number, item in enumerate(items):
-        if isinstance(item, _Deed):
-            if number and isinstance(items[number - 1], _Clause):
-                parts.append([])
-            parts[-1].append(item.text)
-            continue
-        steps = _joined(item.items, words)
-        pattern = brief["inner adverb" if item.adverb else "inner clause"]
-        if number and isinstance(items[number - 1], _Clause):
-            parts.append([])
-        parts[-1].append(fill(pattern, {"clause": item.text, "steps": steps}))
-    told = [_listed(part, items_of, brief) for part, items_of in _with_items(parts, items)]
-    return brief["semicolon"].join(told)
-
-
-def _with_items(
-    parts: Sequence[list[str]], items: Sequence[_Item]
-) -> Iterator[tuple[list[str], _Item]]:
-    """Each part with the item that it ends with."""
-    at = -1
-    for part in parts:
-        at += len(part)
-        yield part, items[at]
-
-
-def _listed(texts: list[str], last: _Item, brief: dict[str, str]) -> str:
-    if len(texts) == 1:
-        return texts[0]
-    comma = isinstance(last, _Clause) and not last.adverb
-    joint = brief["and clause" if comma else "and"]
-    return brief["comma"].join(texts[:-1]) + joint + texts[-1]
-
-
-__all__ = ["summary"]
 
 
 def _searches(condition: p.Condition) -> tuple[p.Ask, ...] | None:

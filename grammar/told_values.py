@@ -348,21 +348,29 @@ class ValueTeller:
         match value:
             case p.Truth():
                 return say["always" if value.value is holds else "never"]
-            case p.Ask(method=method, field=None):
-                words = self.words.methods[method]
-                patterns = words.holds if holds else words.fails
-                if patterns:
-                    return self.patterned(patterns, value.arguments)
-            case p.Recall(name=name) if isinstance(call := self.makers.get(name), p.Call):
-                words = self.words.methods[call.method]
-                patterns = words.held if holds else words.missed
-                if patterns and name not in self.told_apart:
-                    return self.patterned(patterns, call.arguments)
+            case p.Ask() | p.Recall() if (so := self.came_to(value, holds)) is not None:
+                return so
             case p.Recall(name=name) if (so := self.finding(name, holds)) is not None:
                 return so
             case _:
                 pass
         return fill(say["holds" if holds else "fails"], {"value": self.value(value)})
+
+    def came_to(self, value: p.Value, holds: bool) -> str | None:
+        """How it is said that a call gave something, or nothing: "I saw somebody"."""
+        match value:
+            case p.Ask(method=method, arguments=arguments, field=None):
+                words = self.words.methods[method]
+                patterns = words.holds if holds else words.fails
+            case p.Recall(name=name) if name not in self.told_apart:
+                call = self.makers.get(name)
+                if not isinstance(call, p.Call):
+                    return None
+                words, arguments = self.words.methods[call.method], call.arguments
+                patterns = words.held if holds else words.missed
+            case _:
+                return None
+        return self.patterned(patterns, arguments) if patterns else None
 
     def comparison(self, compare: p.Compare, holds: bool) -> str:
         say = self.words.conditions
@@ -389,9 +397,14 @@ class ValueTeller:
                 patterns = self.words.methods[method].compared.get(part, {})
                 if operator in patterns:
                     return fill(patterns[operator], {"right": text})
-            case p.Compare(left=p.Length(of=p.Recall() as names), right=p.Number(value=0)):
+            case p.Compare(
+                left=p.Length(of=p.Recall() | p.Ask() as names), right=p.Number(value=0)
+            ):
                 known = {"==": "empty", "<=": "empty", "!=": "not empty", ">": "not empty"}
                 if operator in known and self.types.of(names) != "int":
+                    so = self.came_to(names, known[operator] == "not empty")
+                    if so is not None:
+                        return so
                     values = {"value": self.value(names)}
                     return fill(self.words.conditions[known[operator]], values)
         values = {"left": self.value(compare.left), "right": self.value(compare.right)}

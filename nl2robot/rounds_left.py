@@ -66,8 +66,10 @@ def _round(loop: ast.For, tree: ast.AST, made: Sequence[Made], at: int) -> Round
     return Round(lines, tuple(names[:come]), tuple(names[come:]) if within else ())
 
 
-def _names(items: ast.expr, tree: ast.AST, made: Sequence[Made]) -> list[str] | None:
-    """What it goes through."""
+def _names(
+    items: ast.expr, tree: ast.AST, made: Sequence[Made], through: frozenset[str] = frozenset()
+) -> list[str] | None:
+    """What it goes through; `through` are the variables that led there."""
     match items:
         case ast.List(elts=elements) | ast.Tuple(elts=elements):
             names = [each.value for each in elements if isinstance(each, ast.Constant)]
@@ -77,14 +79,14 @@ def _names(items: ast.expr, tree: ast.AST, made: Sequence[Made]) -> list[str] | 
             results = [c.result for c in made if (c.line, c.method) == (items.lineno, method)]
             known = results[-1] if results else None
             return known if isinstance(known, list) and _texts(known) else None
-        case ast.Name(id=name):
+        case ast.Name(id=name) if name not in through:
             given = [
                 node.value
                 for node in ast.walk(tree)
                 if isinstance(node, ast.Assign)
                 and any(isinstance(each, ast.Name) and each.id == name for each in node.targets)
             ]
-            return _names(given[0], tree, made) if len(given) == 1 else None
+            return _names(given[0], tree, made, through | {name}) if len(given) == 1 else None
         case _:
             return None
 

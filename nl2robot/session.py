@@ -254,7 +254,14 @@ class Session:
         insists = not review.came_through
         try:
             return self.operator.approve(
-                review, translation, heard, continues, by, proposed, insists, self.language
+                review,
+                translation,
+                heard,
+                continues,
+                by,
+                proposed,
+                insists=insists,
+                language=self.language,
             )
         except NotPossible:
             if self.approve_all:

@@ -8,7 +8,7 @@ and again, and nobody waits at the first place for what may be at the next.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final
+from typing import Final, TypeGuard
 
 from msgspec.structs import replace
 
@@ -54,9 +54,8 @@ def ended_there(d: Discourse, looking: Steps, condition: Condition) -> Steps | N
     return None
 
 
-def round_until(loop: Step, looking: Sequence[Step], condition: Condition) -> Steps:
+def round_until(loop: ForEach, looking: Sequence[Step], condition: Condition) -> Steps:
     """A round that ends at the first place where something is so."""
-    assert isinstance(loop, ForEach)
     return [replace(loop, steps=(*loop.steps, *looking, _ending(condition)))]
 
 
@@ -68,7 +67,7 @@ def _ending(condition: Condition) -> If:
     return If(condition, (End(),))
 
 
-def goes_round(step: Step) -> bool:
+def goes_round(step: Step) -> TypeGuard[ForEach]:
     """Whether a step goes from place to place."""
     if not isinstance(step, ForEach):
         return False

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Mapping
-from contextlib import suppress
 from pathlib import Path
 from string import Template
 from typing import Any, Final
@@ -31,7 +30,7 @@ from nl2robot.runlog import LogError
 from nl2robot.wire import an_object
 from robot_api.driver import Event, StopFlag
 from robot_api.drivers import ComposedDriver
-from robot_api.errors import NotPossible, RobotError, Stopped
+from robot_api.errors import NotPossible
 from robot_api.methods import MAX_TEXT
 from robot_api.server import Context, Service
 
@@ -140,19 +139,14 @@ def part(backstage: Backstage) -> Part:
     if isinstance(backstage.driver, ComposedDriver):
         backstage.driver.attach(tablet)
 
-    def hush() -> None:
-        face.change("speech", None)
-        face.change("chosen", False)
+    def set_language(code: str, theirs: bool) -> None:
+        backstage.driver.call("set_language", {"code": code}, StopFlag())
+        face.change("chosen", theirs)
 
-    def set_language(code: str) -> None:
-        with suppress(RobotError, Stopped):  # one without a voice is read
-            backstage.driver.call("set_language", {"code": code}, StopFlag())
-
-    theirs = VisitorLanguage(set_language, gone=lambda: face.change("chosen", False))
-
+    theirs = VisitorLanguage(set_language)
     forgetting = Forgetting(
         backstage.driver,
-        hush=hush,
+        hush=lambda: face.change("speech", None),
         typed=lambda: tablet.typed,
         fresh=lambda: tablet.fresh,
     )
@@ -217,7 +211,6 @@ def _services(
 
     def language(p: Mapping[str, Any], context: Context) -> None:
         theirs.choose(p["code"], before=face.state["language"])
-        face.change("chosen", True)
 
     return {
         "face.state": Service(

@@ -68,9 +68,8 @@ def part(backstage: Backstage) -> Part:
                 ui.add_head_html(_HEAD)
                 ui.html(html, sanitize=False)
 
-        @slow_pages.page(
-            "/routines", show
-        )  # all sentences are understood, when nobody has looked before
+        # All sentences are understood, when nobody has looked before.
+        @slow_pages.page("/routines", show)
         def routines(request: Request) -> str:
             visitor = visitor_of(request)
             return shelf.page(visitor.language, visitor.operates)

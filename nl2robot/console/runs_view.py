@@ -102,13 +102,14 @@ def run_page(
         }
         for number, code in enumerate(highlighted(run.program), 1)
     ]
+    about = _standing(run, log, reader)
     return rendered(
         "run.html",
-        **_standing(run, log, reader),
+        **about,
         lines=lines,
         changes=changes(run.proposed, run.program) if run.proposed is not None else (),
         role=role,
-        goes_on=log.continued_by(run.id) is None and unfinished(log, run.id) is not None,
+        goes_on=about["continued_by"] is None and unfinished(log, run.id) is not None,
         older=neighbours[0],
         newer=neighbours[1],
     )

@@ -6,26 +6,22 @@ another begins, the robot speaks as it did before, for somebody else stands ther
 
 from __future__ import annotations
 
+import contextlib
 import threading
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from nl2robot.console.forgetting import IDLE, READ_FOR, Later, later
 from nl2robot.state import GOING
+from robot_api.errors import RobotError, Stopped
 
 
 class VisitorLanguage:
-    """`set_language(code)` has the robot speak it; `gone` is told when it is no longer theirs. Any
-    thread may call any of it."""
+    """`set_language(code, theirs)` has the robot speak it, a visitor's or again the one from
+    before. Any thread may call any of it."""
 
-    def __init__(
-        self,
-        set_language: Callable[[str], None],
-        gone: Callable[[], None],
-        later: Later = later,
-    ) -> None:
+    def __init__(self, set_language: Callable[[str, bool], None], later: Later = later) -> None:
         self._set_language = set_language
-        self._gone = gone
         self._later = later
         self._lock = threading.Lock()  # for what follows
         self._before: str | None = None
@@ -37,13 +33,13 @@ class VisitorLanguage:
         self._call_off: Callable[[], None] | None = None
 
     def choose(self, code: str, before: str) -> None:
-        """A visitor wants it, instead of the one from `before`."""
+        """A visitor wants it, instead of the one from `before`. Raises what the robot does."""
+        self._set_language(code, True)
         with self._lock:
             if self._before is None:
                 self._before = before
             self._had_theirs = False
             self._wait(IDLE if self._run is None else None)
-        self._set_language(code)
 
     def on_event(self, data: Mapping[str, Any]) -> None:
         """What a program does (the data of the event "program")."""
@@ -70,8 +66,8 @@ class VisitorLanguage:
         with self._lock:
             before, self._before, self._had_theirs = self._before, None, False
         if before is not None:
-            self._set_language(before)
-            self._gone()
+            with contextlib.suppress(RobotError, Stopped):  # it is lost, and speaks none
+                self._set_language(before, False)
 
     def _wait(self, seconds: float | None) -> None:
         if self._call_off is not None:

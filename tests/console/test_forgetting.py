@@ -269,7 +269,7 @@ def spoken() -> list[str]:
 
 @pytest.fixture
 def theirs(spoken: list[str], clock: Clock) -> VisitorLanguage:
-    return VisitorLanguage(spoken.append, lambda: None, clock.later)
+    return VisitorLanguage(lambda code, theirs: spoken.append(code), clock.later)
 
 
 def test_a_language_goes_with_whoever_chose_it(

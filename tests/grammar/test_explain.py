@@ -501,3 +501,22 @@ def test_people_and_things_are_told_so_as_well() -> None:
         "chercher cette personne de lieu en lieu",
         "prendre cet objet",
     ]
+
+
+@pytest.mark.parametrize("condition", ["seen", "len(seen) > 0", "robot.people()"])
+@pytest.mark.parametrize(
+    ("language", "some", "none"),
+    [
+        ("en", "somebody", "nobody"),
+        ("de", "jemanden", "niemanden"),
+        ("fr", "quelqu'un", "ne vois personne|n'ai vu personne"),
+    ],
+)
+def test_what_a_look_came_to_is_told_as_people_would(
+    language: str, some: str, none: str, condition: str
+) -> None:
+    """And not that "the people I saw is empty"."""
+    for test, words in ((condition, some), (f"not ({condition})", none)):
+        program = f'seen = robot.people()\nif {test}:\n    robot.say("x")\n'
+        told = explain_steps(parse_program(program, language), language)[1][1]
+        assert re.search(words, told), told

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from nl2robot.sightings import GOOD_FOR, Sightings
-from nl2robot.translation import Translation
+from tests.nl2robot.test_history import Nurse
 
 
 class Clock:
@@ -16,22 +16,6 @@ class Clock:
 
     def __call__(self) -> float:
         return self.now
-
-
-class Nurse:
-    def __init__(self, operator, language: str = "en") -> None:
-        self.operator = operator
-        self.language = language
-
-    def says(self, words: str) -> Translation:
-        return self.operator.translate(words, self.language, "auto", "a talk")
-
-    def has_done(self, words: str) -> None:
-        translation = self.says(words)
-        assert translation.program is not None, translation.message
-        review = self.operator.check(translation.program)
-        status = self.operator.wait(self.operator.run(self.operator.approve(review, translation)))
-        assert status.state == "done"
 
 
 @pytest.fixture
@@ -46,7 +30,7 @@ def test_where_she_was_seen_just_now_needs_no_looking(clock, operator) -> None:
     nurse = Nurse(operator)
     first = nurse.says("where is Alice?")
     assert first.program is not None and "find" in first.program
-    nurse.has_done("go to ward a and ask Alice if she wants tea")
+    assert nurse.has_done("go to ward a and ask Alice if she wants tea") == "done"
     answer = nurse.says("where is Alice?")
     assert answer.program is None and answer.status == "ok"
     assert answer.message == "I saw Alice in ward a just now. Ask again, and I will go and look."
@@ -58,7 +42,7 @@ def test_where_she_was_seen_just_now_needs_no_looking(clock, operator) -> None:
 
 def test_who_asks_again_wants_it_looked_for(clock, operator) -> None:
     nurse = Nurse(operator)
-    nurse.has_done("go to ward a and ask Alice if she wants tea")
+    assert nurse.has_done("go to ward a and ask Alice if she wants tea") == "done"
     assert nurse.says("where is Alice?").program is None
     assert nurse.says("where is Alice?").program is not None
 
@@ -69,13 +53,13 @@ def test_who_asks_again_wants_it_looked_for(clock, operator) -> None:
 )
 def test_who_is_sent_to_look_looks(clock, operator, words: str) -> None:
     nurse = Nurse(operator)
-    nurse.has_done("go to ward a and ask Alice if she wants tea")
+    assert nurse.has_done("go to ward a and ask Alice if she wants tea") == "done"
     assert nurse.says(words).program is not None
 
 
 def test_the_conversation_goes_on_about_her(clock, operator) -> None:
     nurse = Nurse(operator)
-    nurse.has_done("go to ward a and ask Alice if she wants tea")
+    assert nurse.has_done("go to ward a and ask Alice if she wants tea") == "done"
     assert nurse.says("where is Alice?").program is None
     program = nurse.says("bring her the red cup").program
     assert program is not None and '"Alice"' in program
@@ -83,7 +67,7 @@ def test_the_conversation_goes_on_about_her(clock, operator) -> None:
 
 def test_people_go_on(clock, operator) -> None:
     nurse = Nurse(operator)
-    nurse.has_done("go to ward a and ask Alice if she wants tea")
+    assert nurse.has_done("go to ward a and ask Alice if she wants tea") == "done"
     clock.now += GOOD_FOR + 1
     assert nurse.says("where is Alice?").program is not None
 
@@ -108,7 +92,7 @@ def test_people_go_on(clock, operator) -> None:
 )
 def test_in_other_languages(clock, operator, language, ask, where, told) -> None:
     nurse = Nurse(operator, language)
-    nurse.has_done(ask)
+    assert nurse.has_done(ask) == "done"
     assert nurse.says(where).message == told
 
 

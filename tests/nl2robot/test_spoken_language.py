@@ -42,3 +42,11 @@ def test_a_program_of_nobodys_language_changes_none(operator, heard) -> None:
     runs(operator, 'robot.say("Hallo.")\n', None)
     runs(operator, 'robot.say("Hallo.")\n', "en")
     assert [heard.get(timeout=30) for _ in range(2)] == ["de", "de"]
+
+
+def test_who_gives_it_back_has_not_chosen_for_others(operator, heard) -> None:
+    """A visitor's language ends when they leave; the next program has its own again."""
+    operator.robot.set_language("fr")
+    operator.robot.set_language("en")
+    runs(operator, 'robot.say("Guten Morgen.")\n', "de")
+    assert heard.get(timeout=30) == "de"
