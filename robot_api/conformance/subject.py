@@ -10,7 +10,7 @@ from typing import Any
 from robot_api.composed import INTERFACES
 from robot_api.conformance.report import PARTS, Problem, Report, Row, State
 from robot_api.driver import Driver, Event, StopFlag
-from robot_api.errors import RobotError, StopNotConfirmed
+from robot_api.errors import LostConnection, RobotError, StopNotConfirmed
 from robot_api.methods import CAPABILITIES, METHODS
 
 ON_THE_WAY = 0.05
@@ -25,6 +25,8 @@ _WATCHED = 0.2
 """Seconds for which a robot that should stand is watched."""
 _MOVED = (0.03, 3.0)
 """Metres and degrees that a robot that stands may differ by, as its map and its odometry do."""
+_LOSES, _FOUND_AGAIN = 2, 1.0
+"""How often it may be lost in a call that is to be refused, and for how many seconds."""
 _CREEPS = 0.02
 """Metres per second at which a robot counts as moving."""
 
@@ -185,6 +187,15 @@ class Subject:
         except BaseException as error:  # noqa: BLE001 - looked at by who asked for it
             return error
 
+    def _call_when_found(self, name: str, arguments: Mapping[str, Any]) -> Any:
+        """As `call`, of a robot that a busy machine may just have lost: it is found again."""
+        for _ in range(_LOSES):
+            try:
+                return self.call(name, arguments, GIVE_UP)
+            except LostConnection:
+                time.sleep(_FOUND_AGAIN)
+        return self.call(name, arguments, GIVE_UP)
+
     def places(self) -> list[str]:
         known = self.try_to("places")
         return known if isinstance(known, list) else []
@@ -194,7 +205,7 @@ class Subject:
     ) -> None:
         """The call raises that error, with a sentence."""
         try:
-            result = self.call(name, arguments, GIVE_UP)
+            result = self._call_when_found(name, arguments)
         except kind as error:
             self.findings.check_sentence(part, name, error)
         except BaseException as error:  # noqa: BLE001 - whatever it is, it is reported
