@@ -10,6 +10,7 @@ would be.
 from __future__ import annotations
 
 import logging
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -283,7 +284,7 @@ class Reader:
             message = f"{message} {self.language.phrase('ask_for_names')}"
         if reason.nearest:
             names = [place_called(name, self.lexicon, self.language) for name in reason.nearest]
-            choices = self.language.phrase("did_you_mean", choices=self._listed(names))
+            choices = self.language.phrase("did_you_mean", choices=self.alternatives(names))
             message = f"{message} {choices}"
             first, last = reason.span
             suggestions = [self.with_words(first, last, name, noun=True) for name in names]
@@ -332,7 +333,8 @@ class Reader:
             context=self.context,
         )
 
-    def _listed(self, names: list[str]) -> str:
+    def alternatives(self, names: Sequence[str]) -> str:
+        """ "ward a, ward b or ward c"."""
         if len(names) < 2:
             return "".join(names)
         return f"{', '.join(names[:-1])} {self.language.phrase('or')} {names[-1]}"
@@ -374,7 +376,7 @@ class Reader:
         )
         if suggestions:
             quoted = speech(self.language.code).values["quoted"]
-            examples = self._listed([quoted.format(text=each) for each in suggestions])
+            examples = self.alternatives([quoted.format(text=each) for each in suggestions])
             message = f"{message} {self.language.phrase('try_this', examples=examples)}"
         return Understanding(
             self.text,

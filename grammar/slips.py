@@ -59,10 +59,18 @@ def swapped_back(text: str, language: Language, known: Collection[str]) -> tuple
             for each in swaps(word)
             if is_known(each, language, language.closed if len(word) == SHORTEST_SWAPPED else known)
         }
-        if len(meant) == 1:
+        longer = any(_letter_left_out(word, each) for each in language.closed)  # "evry"
+        if len(meant) == 1 and not longer:
             text = f"{text[: token.start]}{meant.pop()}{text[token.end :]}"
             slips += 1
     return text, slips
+
+
+def _letter_left_out(word: str, whole: str) -> bool:
+    """Whether it is another word without one of its letters, but for the first."""
+    return len(whole) == len(word) + 1 and any(
+        whole[:at] + whole[at + 1 :] == word for at in range(1, len(whole))
+    )
 
 
 def swaps(word: str) -> set[str]:
@@ -84,7 +92,9 @@ def mended(
 ) -> tuple[Token, ...]:
     """The tokens with joined words parted and verbs in the form that commands begin with."""
     parted = [
-        part for token in _apart(tokens, language) for part in _parted(token, language, known)
+        part
+        for token in _apart(tokens, language)
+        for part in _parted(token, language, known, verbs)
     ]
     return tuple(_in_plain_form(_opened(parted, language), language, verbs))
 
@@ -118,8 +128,12 @@ def _apart(tokens: tuple[Token, ...], language: Language) -> Iterator[Token]:
             yield from (replace(token, norm=str(word)) for word in two["words"])
 
 
-def _parted(token: Token, language: Language, known: Collection[str]) -> list[Token]:
-    """ "tothe" as "to the": two words of which one is a little word of the language."""
+def _parted(
+    token: Token, language: Language, known: Collection[str], verbs: Collection[str]
+) -> list[Token]:
+    """ "andtell", "tothe" and "givethem" as two words: a little word before any other, and one that
+    stands behind others, behind a preposition or a verb. Many a noun only looks so: "carton",
+    "invoice"."""
     word = token.norm
     if token.kind != "word" or word in known:
         return [token]
@@ -129,10 +143,13 @@ def _parted(token: Token, language: Language, known: Collection[str]) -> list[To
             return _cut(token, cut)
     if token.capital or len(word) < SHORTEST_JOINED:
         return [token]
-    little = language.speech.get("joined_to", ())
+    joined = language.speech.get("joined", {"before": (), "behind": (), "prepositions": ()})
     for cut in range(2, len(word) - 1):
         first, second = word[:cut], word[cut:]
-        if first in known and second in known and (first in little or second in little):
+        behind = first in joined["prepositions"] or first in verbs
+        if first in joined["before"] and second in known:
+            return _cut(token, cut)
+        if second in joined["behind"] and behind:
             return _cut(token, cut)
     return [token]
 
@@ -302,9 +319,7 @@ def misspelt_little(word: str, language: Language, lexicon: Lexicon) -> tuple[st
         near += [
             each
             for each in sorted(language.closed | names_of(language, lexicon).words)
-            if len(each) == len(word) + 1
-            and each[0] == word[0]
-            and any(each[:at] + each[at + 1 :] == word for at in range(1, len(each)))
+            if _letter_left_out(word, each)
         ]
     return tuple(near[:3])
 

@@ -42,6 +42,7 @@ from nl2robot.present import Present
 from nl2robot.runlog import LogError, RunLog
 from nl2robot.runs import Approval, State, Status
 from nl2robot.sightings import Sightings
+from nl2robot.sought import Sought
 from nl2robot.spoken_language import SpokenLanguage
 from nl2robot.state import HELD
 from nl2robot.trouble import told
@@ -255,6 +256,7 @@ class Performance:
         recall = self._recall
         closed: list[tuple[str, str]] = []
         """The places of its rounds that could not be reached, each with the robot's sentence."""
+        sought = Sought()
 
         def on_line(line: int) -> None:
             self.line = line
@@ -265,7 +267,7 @@ class Performance:
             if recall is not None and recall.goes_on:
                 return recall.answer(method, arguments)
             left = arguments if recall is None else recall.left_of(method, arguments)
-            return self._call(robot, method, left, line)
+            return sought.call(method, arguments, lambda: self._call(robot, method, left, line))
 
         def on_print(text: str) -> None:
             if recall is None or not recall.goes_on:  # else it was printed before

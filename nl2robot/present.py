@@ -16,8 +16,8 @@ EVENTS: Final[Mapping[str, str]] = {
     KIND: "sequence (rises with every change; what has a lower one is old), state (idle, reviewing,"
     " running, pausing, paused, stopping, stopped, lost, charging), since (seconds since the"
     " epoch), because, run and line of the program that goes on, unconfirmed (whether the robot has"
-    " not confirmed the last stop), lost_since, charging: how the robot and its program stand. On"
-    " subscribing the present one is sent",
+    " not confirmed the last stop), lost_since, charging, driven_by (who drives it by hand, or"
+    " null): how the robot and its program stand. On subscribing the present one is sent",
 }
 MOVES_FROM: Final = 0.02
 """Metres a second from which on a pose says that the robot drives."""

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 import msgspec
 
 from nl2robot.endless import went_on
+from nl2robot.sought import Sought
 from robot_api.driver import StopFlag
 from robot_api.errors import Stopped
 from sandbox.limits import Limits
@@ -186,6 +187,7 @@ def watched(
     asks: list[tuple[float, Event]] = []
     calls: list[Call] = []
     counts: Counter[str] = Counter()
+    sought = Sought()
 
     def call(method: str, arguments: dict[str, Any], line: int) -> Any:
         if recall is not None and recall.goes_on:
@@ -193,7 +195,7 @@ def watched(
         left = arguments if recall is None else recall.left_of(method, arguments)
         at = simulation.time
         try:
-            return do(method, left)
+            return sought.call(method, arguments, lambda: do(method, left))
         finally:
             counts[method] += 1
             calls.append(Call(line, method, left, at, simulation.time))

@@ -22,7 +22,7 @@ error, it only may change nothing. `present` keeps the state of a station and te
 A stop wins: from every state it leads to `stopping`, and only the robot's own confirmation leads
 from there to `stopped`. A stop that was not confirmed stays `stopping`, with `unconfirmed`, until
 one is; no program can begin before. What is true at the same time is told beside the state:
-`lost_since`, `unconfirmed`, `charging`.
+`lost_since`, `unconfirmed`, `charging`, `driven_by`.
 """
 
 from __future__ import annotations
@@ -87,6 +87,8 @@ class State(msgspec.Struct, frozen=True, kw_only=True):
     lost_since: float | None = None
     """Seconds since the epoch; None while the robot can be reached."""
     charging: bool = False
+    driven_by: str | None = None
+    """Who has the helm, if somebody drives it by hand."""
 
     pause: Literal["pausing", "paused"] | None = None
     stops: int = 0
@@ -101,7 +103,7 @@ class State(msgspec.Struct, frozen=True, kw_only=True):
 
 ON_WIRE: Final = (
     *("sequence", "state", "since", "because", "run", "line"),
-    *("unconfirmed", "lost_since", "charging"),
+    *("unconfirmed", "lost_since", "charging", "driven_by"),
 )
 """The fields that others are told."""
 
@@ -194,6 +196,12 @@ class Charging(msgspec.Struct, frozen=True):
     charges: bool
 
 
+class Driven(msgspec.Struct, frozen=True):
+    """Somebody drives the robot by hand from now on, or nobody does any more."""
+
+    by: str | None
+
+
 Happening = (
     Reviewing
     | Began
@@ -210,6 +218,7 @@ Happening = (
     | Lost
     | Found
     | Charging
+    | Driven
 )
 
 
@@ -291,6 +300,8 @@ def _changes(state: State, happening: Happening) -> dict[str, Any]:
             return {"lost_since": None}
         case Charging(charges):
             return {"charging": charges}
+        case Driven(by):
+            return {"driven_by": by}
         case Moving():
             return {"stands": False} if state.run is None else {}
         case Reviewing(who, lies):

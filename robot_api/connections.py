@@ -85,7 +85,7 @@ class Client:
                     self._server.dispatcher.start(job)
 
     def _stop(self, call: protocol.Call) -> None:
-        because = "The robot was stopped."
+        because = _stopped_by(self.guest, call.arguments.get("who"))
 
         def done(result: Any, error: RobotError | Stopped | None) -> None:
             reply = (
@@ -132,3 +132,12 @@ class Client:
             while self._waiting:
                 _, frame = self._waiting.popleft()
                 await socket.send_text(frame)
+
+
+def _stopped_by(guest: Guest, named: str | None) -> str:
+    """Who stopped the robot, in a sentence, as far as that is known: who has signed in cannot call
+    themselves otherwise."""
+    if guest.role == "face":
+        return "Somebody stopped the robot at its face."
+    who = guest.name or named
+    return f"{who} stopped the robot." if who else "The robot was stopped."

@@ -64,9 +64,9 @@ its parameters go by name or by position.
 | `rpc.unsubscribe {"events": ["pose"]}` | no more of these |
 
 Calls run side by side, those of a batch too. `robot.stop` overtakes them all: every call in flight,
-of every connection, ends with `Stopped`. It is answered when the robot has confirmed that it
-stands, and with `StopNotConfirmed` if it has not in time. The robot calls of a connection that is
-lost are stopped too.
+of every connection, ends with `Stopped`. With `{"who": "Ruth"}` it says in whose name. It is
+answered when the robot has confirmed that it stands, and with `StopNotConfirmed` if it has not in
+time. The robot calls of a connection that is lost are stopped too.
 
 A robot that cannot be reached any more is lost, as the event `link` says: every call in flight ends
 with `LostConnection`, and so do new ones until it is found again. Nothing is taken up again by

@@ -53,6 +53,8 @@ from robot_api.two_way_port import TwoWayServer
 CALLER: Final = ("who", "by", "changed_by")
 """Parameters of services in which callers say who they are. Who has signed in need not be believed:
 the name of their account stands there."""
+LONGEST_NAME: Final = 60
+"""Characters of the name of whoever stops the robot."""
 DEFAULT_PORT: Final = 9090
 PING_SECONDS: Final = 1.25
 """How often a client is asked for a sign of life, and how long it has to answer."""
@@ -325,8 +327,7 @@ class Server:
         readers: dict[str, protocol.Reader] = {
             f"robot.{name}": _robot_reader(name) for name in METHODS
         }
-        # Whatever else comes with it, a stop is a stop.
-        readers[protocol.STOP] = lambda params: {}
+        readers[protocol.STOP] = _read_stop
         for name in ("robot.capabilities", "rpc.discover"):
             readers[name] = _service_reader(name, {})
         for name, service in self.services.items():
@@ -438,6 +439,13 @@ class Server:
             self.clients.discard(client)
             self.dispatcher.drop(client)
             self._on_left(client.name)
+
+
+def _read_stop(params: protocol.Params) -> dict[str, Any]:
+    """In whose name the stop is, if that is told. Whatever else comes with it, a stop is a stop."""
+    who = params.get("who") if isinstance(params, dict) else None
+    named = isinstance(who, str) and who.isprintable() and who.strip()
+    return {"who": who.strip()[:LONGEST_NAME]} if isinstance(who, str) and named else {}
 
 
 def _robot_reader(name: str) -> protocol.Reader:

@@ -21,9 +21,11 @@ from grammar.checking.deeds import (
     said_anyhow,
 )
 from grammar.checking.evidence import Evidence, evidence_of
+from grammar.checking.misnamed import Misnamed, misnamed
 from grammar.checking.names import idle_names, misplaced, unbound
 from grammar.checking.sources import Source, Sources, content_left, sort_of
 from grammar.checking.words import Weighty, content, weighty, words_of
+from grammar.naming import place_called
 from grammar.plan import Ask, Call, Items, Plan
 from grammar.planning.mentions import Mention
 from grammar.planning.turn import Turn
@@ -82,6 +84,8 @@ class Objection:
     """The words, or the literal."""
     message: str = ""
     """What a person is told, where it is theirs to know."""
+    suggestions: tuple[str, ...] = ()
+    """Sentences that may have been meant."""
 
 
 @dataclass(frozen=True)
@@ -189,12 +193,27 @@ class _Check:
             phrase, thing = impossible
             message = self.language.phrase(phrase, thing=thing, name=thing)
             yield Objection("refused", thing, message)
+        wrong = misnamed(self.turn, self.plan)
+        if wrong is not None:
+            yield self.near(wrong)
         hurtful = not_said(self.plan, lexicon, self.language)
         if hurtful is not None:
             yield Objection("refused", "", self.language.phrase(hurtful))
         beyond = out_of_range(self.plan, self.language)
         if beyond is not None:
             yield Objection("range", "", beyond)
+
+    def near(self, wrong: Misnamed) -> Objection:
+        """A name that nobody has, with those that may be meant."""
+        message = self.language.phrase(wrong.phrase, name=wrong.words)
+        names = [place_called(each, self.turn.lexicon, self.language) for each in wrong.near]
+        if names:
+            choices = self.turn.reader.alternatives(names)
+            message = f"{message} {self.language.phrase('did_you_mean', choices=choices)}"
+        suggestions = tuple(
+            self.turn.reader.with_words(wrong.start, wrong.end, each, noun=True) for each in names
+        )
+        return Objection("refused", wrong.words, message, suggestions)
 
     # --- what nobody asked for
 

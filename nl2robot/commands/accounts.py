@@ -81,7 +81,8 @@ def _list(accounts: Accounts) -> None:
     )
     for device in accounts.sessions():
         whose = device.account or (f"paired by {device.made_by}" if device.made_by else "")
-        devices.add_row(str(device.id), device.label, whose, device.role, _when(device.used))
+        used = "not yet" if device.link and device.used == device.made else _when(device.used)
+        devices.add_row(str(device.id), device.label, whose, device.role, used)
     if devices.rows:
         console.print(devices)
     for failure in accounts.failures(10):

@@ -170,7 +170,7 @@ class Dialogue:
                 with self._turn:
                     self._take(translation, None, language, who, harmless)
                 return
-        self._stop(language)
+        self._stop(language, who)
 
     def _spoken_in(self, words: str, page: str) -> tuple[str, str]:
         """What is to be understood, and in which language: the page's, or the one that was offered
@@ -237,7 +237,7 @@ class Dialogue:
             self.cancel(language)
             self._tell(Line("you", words))
         if translation.program == STOP:
-            self._stop(language)
+            self._stop(language, who)
             return
         with self._turn:
             self._take(translation, words, language, who, harmless)
@@ -318,13 +318,16 @@ class Dialogue:
                 near = (_said("what_can_i_say", language),)
             self._tell(Line("robot", text, tone, near))
 
-    def _stop(self, language: str) -> None:
+    def _stop(self, language: str, who: str) -> None:
         """Nobody need approve that the robot stands still. Whoever says it again is not kept
         waiting until the robot has confirmed the first."""
         self.draft = None
         self._changed()
         try:
-            self._backstage.stop(_said("told_to_stop", language))
+            named = who != texts("frame", language)["somebody"]
+            self._backstage.stop(
+                f"{who} told the robot to stop." if named else "The robot was told to stop."
+            )
         except RobotError as error:
             lexicon = self._backstage.runner.knowledge.lexicon(language)
             why = told(type(error).__name__, str(error), language, lexicon)

@@ -95,6 +95,7 @@ def _head(visitor: Visitor, words: Mapping[str, str]) -> str:
         "words": words,
         "role": visitor.seat,
         "who": visitor.name or words["somebody"],
+        "name": visitor.name,
         "call": texts("call", visitor.language),
         "microphone": texts("microphone", visitor.language),
     }

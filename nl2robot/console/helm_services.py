@@ -18,9 +18,10 @@ import msgspec
 from nl2robot.console.helm import HOLDS, Helm, State
 from nl2robot.console.localising import localise
 from nl2robot.console.part import Backstage, Part
+from nl2robot.state import Driven
 from nl2robot.wire import an_object
 from robot_api.driver import Event, StopFlag
-from robot_api.errors import InvalidCall, NotPossible, RobotError
+from robot_api.errors import InvalidCall, NotPossible, RobotError, Stopped
 from robot_api.methods import SPEED, TURN_RATE
 from robot_api.server import Context, Service
 
@@ -44,6 +45,7 @@ class Controls:
         self._simulation = backstage.simulation
         self._has_camera = backstage.camera is not None
         self.helm = Helm(lambda state: backstage.publish("helm", _plain(state)))
+        self._telling = threading.Lock()
         self._seen: dict[str, Any] = {}
         self._log: deque[Event] = deque(maxlen=LINES_KEPT)
         self.forget = backstage.subscribe(self._on_event)
@@ -64,16 +66,21 @@ class Controls:
 
     def left(self, connection: str) -> None:
         """A connection is gone. To stop a robot may take a moment, for which nobody waits."""
-        threading.Thread(
-            target=self.helm.left, args=(connection,), name="helm left", daemon=True
-        ).start()
+
+        def let_go() -> None:
+            self.helm.left(connection)
+            self._note_driver()
+
+        threading.Thread(target=let_go, name="helm left", daemon=True).start()
 
     # --- what the robot does
 
     def call(self, parameters: Mapping[str, Any], context: Context) -> Any:
         name, arguments = parameters["name"], dict(parameters.get("arguments", {}))
         if name == "stop":  # any operator's, at any time
-            return self._stop("The robot was stopped.")
+            return self._stop(
+                f"{context.who} stopped the robot." if context.who else Stopped().because
+            )
         if name == "drive":
             raise InvalidCall("Drive with helm.drive, which stops by itself.")
         with self.helm.calling(context.connection, context.stop):
@@ -115,8 +122,15 @@ class Controls:
 
     # --- inside
 
+    def _note_driver(self) -> None:
+        """Let the state say who drives: not by the helm itself, which nobody may wait for who is
+        telling of a state."""
+        with self._telling:  # so that the newest is told last
+            self._runner.present.happened(Driven(self.helm.state().who))
+
     def _told(self, state: State, context: Context) -> dict[str, Any]:
         """The state, and which of the connections is the asker's own."""
+        self._note_driver()
         return {**_plain(state), "me": context.connection}
 
     def _check_no_program(self) -> None:

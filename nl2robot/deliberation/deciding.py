@@ -120,9 +120,10 @@ def _refused(turn: Turn, dropped: Sequence[Considered]) -> Refusal:
     objections: list[Objection] = [
         each for considered in dropped for each in considered.checked.objections
     ]
-    told = next((each.message for each in objections if each.message), "")
-    if told:
-        return Refusal(told, final=any(each.kind in MUST_NOT for each in objections))
+    told = next((each for each in objections if each.message), None)
+    if told is not None:
+        final = any(each.kind in MUST_NOT for each in objections)
+        return Refusal(told.message, told.suggestions, final=final)
     return Refusal(turn.language.phrase("not_sure_enough"))
 
 

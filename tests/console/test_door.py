@@ -143,6 +143,9 @@ def test_a_tablet_is_paired_by_a_code_and_withdrawn_at_once(
     tablet.get_by_role("button", name="Pair").click()
     expect(tablet.locator("#stop")).to_be_visible()
     assert tablet.url.endswith("/face")
+    expect(desk.get_by_text("“Tablet at the reception” is paired.")).to_be_visible()
+    expect(code).to_have_count(0)
+    expect(desk.locator("li", has_text="The observers' link")).to_contain_text("Last used: not yet")
     tablet.wait_for_function("document.body.dataset.view === 'face'")
     for elsewhere in ("/drive", "/", "/runs", "/devices"):
         tablet.goto(f"https://{house.address}{elsewhere}")

@@ -152,8 +152,12 @@ def test_two_operators_hand_over_and_an_observer_looks_on(look: Look, served: An
     expect(karim.get_by_text("You drive the robot.")).to_be_visible()
     expect(ruth.locator(".helm .who")).to_contain_text("Karim drives")
     expect(ruth.get_by_role("button", name="Say it")).to_be_disabled()
+    badge = ruth.locator("#robot-badge")
+    expect(badge).to_have_text("By hand")
+    expect(badge).to_have_attribute("title", "Karim drives the robot.")
     karim.close()
     expect(ruth.get_by_text("Nobody drives the robot by hand.")).to_be_visible()
+    expect(badge).to_have_text(re.compile("Idle|Charging"))
 
     token = served.observer_url.partition("?")[2]
     observer = look(f"/drive?{token}")

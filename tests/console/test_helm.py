@@ -388,6 +388,20 @@ def test_after_stop_a_stick_that_is_still_held_moves_nothing(ward: Ward) -> None
         assert ward.speed() == 0
 
 
+def test_the_state_says_who_drives(ward: Ward) -> None:
+    def driven_by() -> str | None:
+        return ward.present.state.driven_by
+
+    with ward.operator("Ruth") as ruth:
+        assert driven_by() == "Ruth"
+        with Robot(ward.server.address) as karim:
+            karim.request("helm.take", {"who": "Karim"})
+            assert driven_by() == "Ruth"  # he only asks
+            ruth.request("helm.give", {})
+            assert driven_by() == "Karim"
+        ward.until(lambda: driven_by() is None)
+
+
 def test_calls_are_the_drivers_and_no_programs(ward: Ward) -> None:
     with ward.operator("Ruth") as ruth, ward.operator("Karim") as karim:
         with pytest.raises(AccessDenied, match="Ruth drives"):

@@ -297,6 +297,9 @@ def test_a_call_between_two_browsers(
     robot.close()
 
 
+LEFT_OF_PANEL = "document.querySelector('.video-call').getBoundingClientRect().left"
+
+
 @pytest.mark.parametrize("size", [{}, {"width": 390, "height": 844}])
 def test_a_call_survives_going_from_page_to_page(
     look: Look, served: Served, size: dict[str, int]
@@ -321,6 +324,12 @@ def test_a_call_survives_going_from_page_to_page(
             expect(each.get_by_text("In a call with")).to_be_visible()
             each.wait_for_function(MOVES)
         expect(page.locator("[data-call=microphone]")).to_have_attribute("aria-pressed", "false")
+        aside = page.locator("[data-call=aside]")
+        right = page.evaluate(LEFT_OF_PANEL)
+        aside.click()  # it lay upon what is to be read
+        assert page.evaluate(LEFT_OF_PANEL) <= min(16, right)
+        aside.click()
+        assert page.evaluate(LEFT_OF_PANEL) == right
     page.evaluate(WATCH_TRACKS)
     page.get_by_role("button", name="Hang up").click()
     expect(face.get_by_text("The call is over.")).to_be_visible()

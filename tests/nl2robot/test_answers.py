@@ -228,3 +228,16 @@ def test_the_voice_says_what_the_robot_has_not_said(operator) -> None:
     terminal.aloud = True
     session.perform("good morning")
     assert heard.get(timeout=30).startswith("Good morning")
+
+
+def test_what_was_found_nowhere_is_not_only_missing_where_the_robot_stands(nurse) -> None:
+    def ends(program: str) -> list[str | None]:
+        review = nurse.operator.check(program)
+        approval = nurse.operator.approve(review, insists=True)
+        tried = review.dry_run.message if review.dry_run else None
+        return [tried, nurse.operator.wait(nurse.operator.run(approval)).message]
+
+    nowhere = 'The robot could not find "blanket", so it did not go on.'
+    assert ends('robot.find("blanket")\nrobot.grab("blanket")\n') == [nowhere, nowhere]
+    for message in ends('robot.find("blanket")\nrobot.grab("umbrella")\n'):  # another thing
+        assert message is not None and message.startswith('The robot does not see "umbrella" here')

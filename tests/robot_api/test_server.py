@@ -122,6 +122,27 @@ def test_a_stop_ends_the_calls_of_every_connection(driver: EmulatedDriver, serve
         student.say("I can go on.")
 
 
+@pytest.mark.parametrize(
+    ("params", "because"),
+    [
+        ({"who": " Ruth "}, "Ruth stopped the robot."),
+        ({"who": "R" * 100}, f"{'R' * 60} stopped the robot."),
+        *(({"who": who}, "The robot was stopped.") for who in ("", "  ", 7, None, "a\nb", ["x"])),
+        (None, "The robot was stopped."),
+    ],
+)
+def test_whose_call_is_stopped_learns_by_whom(
+    driver: EmulatedDriver, server: Server, params: Any, because: str
+) -> None:
+    with Robot(server.address) as nurse, logged(driver, "wait(", 1) as waiting:
+        end = in_thread(lambda: nurse.wait(60))
+        assert waiting.wait(SOON)
+        wire = Wire(server.address)
+        wire.send("robot.stop", params, id="stop")
+        assert wire.receive()["id"] == "stop"
+        assert str(end()) == because
+
+
 def test_a_stop_overtakes_64_calls_that_wait(driver: EmulatedDriver, server: Server) -> None:
     wires = [Wire(server.address) for _ in range(3)]
     with logged(driver, "wait(", 64) as all_at_it:

@@ -6,7 +6,7 @@ import {present} from '/static/state.js';
 import {mountStop} from '/static/stop.js';
 import {wire} from '/static/wire.js';
 
-const {words, role, who, language, call, microphone} = JSON.parse(document.getElementById('frame-data').textContent);
+const {words, role, who, name, language, call, microphone} = JSON.parse(document.getElementById('frame-data').textContent);
 const NOTICE_FOR = 6000;
 const SLOW_STOP = 300;
 const TONES = {
@@ -35,7 +35,7 @@ export function notice(sentence, {alarm = false, action = null} = {}) {
 export async function stop() {
   const waiting = setTimeout(() => notice(words.stopping), SLOW_STOP);
   try {
-    await wire.request('robot.stop');
+    await wire.request('robot.stop', name ? {who: name} : {});
     notice(words.stopped);
   } catch (error) {
     // What is not confirmed is said to everybody, by `showState`.
@@ -61,10 +61,12 @@ function showState(now, before) {
   told.hidden = !alarms.length;
   if (before.lost_since && !lost) notice(words.robot_found);
   const badge = document.getElementById('robot-badge');
+  const byHand = now.driven_by && ['idle', 'charging'].includes(state);
   badge.hidden = false;
   badge.dataset.state = state;
-  badge.className = `chip ${TONES[state] ?? ''}`;
-  const text = words[`state_${state}`];
+  badge.className = `chip ${byHand ? TONES.running : (TONES[state] ?? '')}`;
+  badge.title = byHand ? filled(words.driven_by, {who: now.driven_by}) : '';
+  const text = words[`state_${byHand ? 'driven' : state}`];
   if (badge.textContent !== text) badge.textContent = text; // or it would be read out again
   document.documentElement.dataset.robot = state;
   showSign();

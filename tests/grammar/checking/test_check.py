@@ -218,3 +218,37 @@ def test_what_only_looks_like_a_time_is_compared_as_words(time: str) -> None:
     does = f'answer = ask("When?", [])\nif answer == "{time}":\n    say("Hello")'
     order = Order("en", "ask when, and say hello if it is later", does)
     assert not any(each.kind == "unbound" for each in order.checked().objections)
+
+
+@pytest.mark.parametrize(
+    ("code", "said", "does", "told"),
+    [
+        ("en", "where is alicee?", 'find("alicee")', "Did you mean Alice?"),
+        ("en", "where is ward dd?", 'find("ward dd")', "a place called “ward dd”"),
+        ("en", "wait for bobb", 'wait_for("bobb")', "Did you mean Bob?"),
+        ("de", "wo ist bobb?", 'find("bobb")', "Ist Bob gemeint?"),
+        ("fr", "où est bobb ?", 'find("bobb")', "Vouliez-vous dire Bob ?"),
+    ],
+)
+def test_a_name_that_nearly_is_one_is_asked_about(
+    code: str, said: str, does: str, told: str
+) -> None:
+    checked = Order(code, said, does).checked()
+    [wrong] = [each for each in checked.objections if each.kind == "refused"]
+    assert told in wrong.message
+    assert all(each.rstrip("? ") != said.rstrip("? ") for each in wrong.suggestions)
+
+
+@pytest.mark.parametrize(
+    ("code", "said", "does"),
+    [
+        ("en", "find the bobb", 'find("bobb")'),
+        ("en", "where is the ward nurse?", 'find("ward nurse")'),
+        ("en", "find water", 'find("water")'),
+        ("de", "finde Saft", 'find("Saft")'),
+        ("fr", "trouve du jus", 'find("jus")'),
+    ],
+)
+def test_a_thing_that_nobody_listed_is_looked_for(code: str, said: str, does: str) -> None:
+    objections = Order(code, said, does).checked().objections
+    assert not [each for each in objections if each.kind == "refused"]

@@ -36,8 +36,11 @@ function pairing(hereOnly) {
   form.addEventListener('submit', async (event) => {
     event.preventDefault();
     const at = HERE.test(location.hostname) ? {} : {at: location.origin};
+    const {devices} = await wire.request('devices.list');
+    const known = new Set(devices.map(({id}) => id));
     try {
       const made = await wire.request('devices.pair', {role: role.value, label: label.value, ...at});
+      waiting = {...made, role: role.value, label: label.value.trim(), code, known};
       code.replaceChildren(
         element('img', {src: made.picture, alt: words.code_alt}),
         element('p', {}, filled(words.code_told, {time: moment(made.ends)})),
@@ -52,9 +55,27 @@ function pairing(hereOnly) {
   return card;
 }
 
+/** The code that is shown; it goes when a tablet has come in by it, or it is good for nothing any more. */
+let waiting = null;
+
+function lookAfterCode(devices) {
+  if (!waiting) return;
+  const came = devices.some(({id, role, label}) =>
+    !waiting.known.has(id) && role === waiting.role && label === waiting.label);
+  if (!came && Date.now() < waiting.ends * 1000) return;
+  const told = came ? filled(words.came_in, waiting) : words.code_over;
+  waiting.code.replaceChildren(element('p', {}, told));
+  waiting = null;
+}
+
 function named(device) {
   if (device.link) return words[`${device.role}s_link`];
   return device.account ? filled(words.of, device) : device.label;
+}
+
+/** A link is made before anybody comes in by it. */
+function lastUsed({made, used, link}) {
+  return link && used === made ? words.not_yet : moment(used);
 }
 
 function row(device) {
@@ -83,7 +104,7 @@ function row(device) {
     element(
       'span', {},
       element('strong', {}, named(device)),
-      element('span', {class: 'muted'}, `${words[`is_${device.role}`]}${paired} · ${words.used}: ${moment(device.used)}`),
+      element('span', {class: 'muted'}, `${words[`is_${device.role}`]}${paired} · ${words.used}: ${lastUsed(device)}`),
     ),
     button,
   );
@@ -97,6 +118,7 @@ function list(title, rows, ...more) {
 async function show() {
   const root = await appears('#devices');
   const {here_only: hereOnly, devices, failures, accounts} = await wire.request('devices.list');
+  lookAfterCode(devices);
   const pair = root.querySelector('[aria-labelledby=pair]') ?? pairing(hereOnly);
   const cards = [pair, list(words.devices, devices.map(row))];
   if (accounts) {

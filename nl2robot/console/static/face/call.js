@@ -17,6 +17,7 @@ const MENDS_WITHIN = 5000;
 const CONNECTS_WITHIN = 15000;
 const RETURNS_WITHIN = 10000;
 const NOTICE_FOR = 5000;
+const SIDE = 'call-side';
 const RINGS_EVERY = 2200;
 const RING_GAIN = 0.15;
 
@@ -36,6 +37,7 @@ class CallView {
       document.head.append(element('link', {rel: 'stylesheet', href: STYLE}));
     }
     root.classList.add('video-call', this._side);
+    root.dataset.side = sessionStorage.getItem(SIDE) ?? 'right';
     root.setAttribute('aria-live', 'assertive');
     wire.subscribe('call.state', (told) => this._told(told));
     wire.subscribe('call.signal', ({call, signal}) => {
@@ -221,6 +223,7 @@ class CallView {
       button.disabled = !link.has(kind);
       return button;
     });
+    if (this._side === 'operator') buttons.push(this._button('aside', 'plain aside', () => this._moveAside()));
     buttons.push(this._button('hang_up', 'bad', () => this._end('hung_up')));
     this._draw(
       'talking',
@@ -231,6 +234,12 @@ class CallView {
     );
     // A video that was taken out of the page and put back stands still.
     for (const video of [theirs, own]) if (video.srcObject) video.play().catch(() => {});
+  }
+
+  /** To the page's other side, since it lies above the page; it stays there on other pages. */
+  _moveAside() {
+    sessionStorage.setItem(SIDE, this._root.dataset.side === 'left' ? 'right' : 'left');
+    this._root.dataset.side = sessionStorage.getItem(SIDE);
   }
 
   _end(because) {
