@@ -44,9 +44,10 @@ def station(log):
 
 
 @pytest.fixture
-def slow_station(log):
-    """The same at ten times real time: slow enough to break into what it does."""
-    with simulated_station(load_world("ward"), log, seed=1, speed=10) as station:
+def slow_station(log, request):
+    """The same at ten times real time, or as the test says: slow enough to break into what it does."""
+    speed = getattr(request, "param", 10)
+    with simulated_station(load_world("ward"), log, seed=1, speed=speed) as station:
         yield station
 
 
