@@ -45,7 +45,7 @@ def station(log):
 
 @pytest.fixture
 def slow_station(log, request):
-    """The same at ten times real time, or as the test says: slow enough to break into what it does."""
+    """The same at ten times real time, or as the test says: slow enough to break into it."""
     speed = getattr(request, "param", 10)
     with simulated_station(load_world("ward"), log, seed=1, speed=speed) as station:
         yield station
