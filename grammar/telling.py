@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import chain
@@ -42,11 +43,14 @@ class Teller(ValueTeller):
                 choices[name] = [wish for wish in known if wish in wishes] or [
                     self.named(name.replace("_", " "))
                 ]
+        wished = Counter(wish for wishes in choices.values() for wish in {*wishes})
         for name, wishes in choices.items():
             self.short[name] = wishes[0]
-            rivals = choices.keys() - {name} - self._apart_from(name)
-            taken = {wish for other in rivals for wish in choices[other]}
-            free = [wish for wish in wishes if wish not in taken]
+            no_rivals = [choices[each] for each in self._apart_from(name) - {name}]
+            allowed = [1 + sum(wish in other for other in no_rivals) for wish in wishes]
+            free = [
+                wish for wish, most in zip(wishes, allowed, strict=True) if wished[wish] == most
+            ]
             if free:
                 self.results[name] = free[0]
             else:

@@ -49,6 +49,7 @@ from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.rehearsal import Budget, EventKind, rehearse
 from nl2robot.translation import Translation, translate
 from robot_api.errors import cause
+from sim.files import read_text
 from sim.world import World, load_world
 
 PATIENCE = Budget(seconds=7200.0, real_seconds=1800.0)
@@ -107,7 +108,7 @@ class Result(msgspec.Struct, frozen=True):
 def load(file: Path) -> Suite:
     """Read a file of canned utterances. Raises `UserError` with the line of the first mistake."""
     try:
-        text = file.read_text(encoding="utf-8")
+        text = read_text(file)
     except (OSError, UnicodeDecodeError) as error:
         raise UserError(
             f"{file}: cannot be read ({cause(error)})."

@@ -23,6 +23,7 @@ from nl2robot.frames import UNKNOWN, Frame, frames_of_form, frames_of_plan, pars
 from nl2robot.knowledge import Knowledge
 from nl2robot.translation import translate
 from robot_api.errors import cause
+from sim.files import read_text
 
 DEFAULT_WORLD: Final = "household"
 FILLED: Final = {
@@ -71,7 +72,7 @@ class Score:
 def load(file: Path) -> list[Row]:
     """The rows of a file; a first line with the names of the columns is passed over."""
     try:
-        lines = file.read_text(encoding="utf-8").splitlines()
+        lines = read_text(file).splitlines()
     except (OSError, UnicodeDecodeError) as problem:
         raise UserError(f"{file} cannot be read: {cause(problem)}.") from None
     rows: list[Row] = []

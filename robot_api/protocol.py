@@ -43,12 +43,10 @@ from robot_api.errors import (
     Stopped,
     error_named,
 )
+from robot_api.frame import MAX_FRAME as MAX_FRAME
+from robot_api.frame import NoJson, TooMuch, read_frame
 from robot_api.schema import did_you_mean, no_such_method
 
-MAX_FRAME: Final = 256 * 1024
-"""Longest frame, in bytes, that a server accepts."""
-MAX_DEPTH: Final = 32
-"""Deepest nesting of arrays and objects in a frame."""
 MAX_CALLS: Final = 64
 """Most calls in flight on one connection, and most messages in a batch."""
 MAX_ID: Final = 200
@@ -291,39 +289,13 @@ class Connection:
 
 
 def _parse(frame: str | bytes) -> Any:
-    if not isinstance(frame, str):
-        raise _Refused(PARSE_ERROR, "Frames must be text, not binary.")
-    if len(frame) > MAX_FRAME:
-        raise _Refused(INVALID_REQUEST, f"A frame holds {MAX_FRAME} bytes at most.")
-    # Counting brackets is fast, and what has few of them cannot be deep.
-    if frame.count("[") + frame.count("{") > MAX_DEPTH and _depth(frame) > MAX_DEPTH:
-        raise _Refused(INVALID_REQUEST, f"A message may be {MAX_DEPTH} levels deep at most.")
     try:
-        return msgspec.json.decode(frame)
-    except (msgspec.MsgspecError, ValueError):
-        raise _Refused(PARSE_ERROR, "The message is not JSON.") from None
-
-
-def _depth(frame: str) -> int:
-    """The deepest nesting of brackets outside of texts."""
-    deepest = depth = 0
-    in_text = escaped = False
-    for character in frame:
-        if in_text:
-            if escaped:
-                escaped = False
-            elif character == "\\":
-                escaped = True
-            elif character == '"':
-                in_text = False
-        elif character == '"':
-            in_text = True
-        elif character in "[{":
-            depth += 1
-            deepest = max(deepest, depth)
-        elif character in "]}":
-            depth -= 1
-    return deepest
+        return read_frame(frame)
+    except TooMuch as much:
+        raise _Refused(INVALID_REQUEST, str(much)) from None
+    except NoJson as none:
+        id = none.message.get("id") if isinstance(none.message, dict) else None
+        raise _Refused(PARSE_ERROR, str(none), id if _is_id(id) else None) from None
 
 
 def _is_id(id: Any) -> bool:

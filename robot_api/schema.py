@@ -11,7 +11,7 @@ from __future__ import annotations
 import difflib
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
@@ -148,7 +148,54 @@ def _read_location(method: Method, parameter: Parameter, value: Any) -> Location
 
 
 def _accepts(kind: Kind, value: Any) -> bool:
-    return _validator(kind)(value)
+    return not is_oversize(kind.schema, value) and _validator(kind)(value)
+
+
+MOST: Final = 1000
+"""Items of a list, and fields of an object, where a schema does not say how many it may have."""
+
+
+def is_oversize(schema: Mapping[str, Any], value: Any) -> bool:
+    """Whether something is longer than its JSON Schema allows, wherever within: what is in it is
+    looked at only if not. A validator looks at each item before it counts them."""
+    forms = [schema, *schema.get("anyOf", ())]
+
+    def within(name: str, otherwise: int) -> bool:
+        most = [form[name] for form in forms if name in form]
+        return len(value) <= max(most, default=otherwise)
+
+    match value:
+        case str():
+            return not within("maxLength", len(value))
+        case list():
+            if not within("maxItems", MOST):
+                return True
+            inner: Mapping[str, Any] = next(
+                (form["items"] for form in forms if "items" in form), {}
+            )
+            return any(is_oversize(inner, each) for each in value)
+        case dict():
+            if not within("maxProperties", MOST):
+                return True
+            fields = {k: v for form in forms for k, v in form.get("properties", {}).items()}
+            return any(is_oversize(fields.get(name, {}), each) for name, each in value.items())
+        case _:
+            return False
+
+
+def with_whole_numbers(schema: Mapping[str, Any], value: Any) -> Any:
+    """A value that was checked, with whole numbers where its JSON Schema asks for them: in JSON 5
+    and 5.0 are the same."""
+    match value:
+        case float() if "integer" in schema.get("type", ()) and value.is_integer():
+            return int(value)
+        case list() if "items" in schema:
+            return [with_whole_numbers(schema["items"], each) for each in value]
+        case dict():
+            fields = schema.get("properties", {})
+            return {k: with_whole_numbers(fields.get(k, {}), each) for k, each in value.items()}
+        case _:
+            return value
 
 
 _validators: dict[int, Callable[[Any], bool]] = {}

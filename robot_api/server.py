@@ -46,7 +46,7 @@ from robot_api.methods import METHODS
 from robot_api.openrpc import openrpc
 from robot_api.port import CannotListen as CannotListen
 from robot_api.port import listen, on_signals
-from robot_api.schema import read_arguments
+from robot_api.schema import is_oversize, read_arguments, with_whole_numbers
 from robot_api.status import HEADERS, Status, status_page
 from robot_api.two_way_port import TwoWayServer
 
@@ -468,11 +468,13 @@ def _service_reader(name: str, schema: Mapping[str, Any]) -> protocol.Reader:
                 raise InvalidCall(f"{name} takes {len(names)} params at most.")
             params = dict(zip(names, params, strict=False))
         given = dict(params or {})
+        if is_oversize(schema, given):
+            raise InvalidCall(f"{name} is given more than it can take. Send less.")
         error = jsonschema.exceptions.best_match(validator.iter_errors(given))
         if error is not None:
             at = f"{'.'.join(map(str, error.absolute_path))} of " if error.absolute_path else ""
             raise InvalidCall(f"{at}{name} is not as it should be: {error.message[:300]}.")
-        return given
+        return dict(with_whole_numbers(schema, given))
 
     return read
 

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 from robot_api.methods import METHODS
+from sandbox.disguise import at_definition, hidden_signs, strange_letters, without_comments
 from sandbox.interpreter import Unavailable, diagnose
 from sandbox.limits import MAX_PROGRAM
 from sandbox.sentences import UNAVAILABLE, near, problem, type_problem
@@ -50,7 +51,7 @@ def check(program: str, stub: str) -> list[Finding]:
     if first is not None:
         return [first]
     tree = _parsed(program)
-    findings = list(_Reader(program, tree).findings())
+    findings = [*_Reader(program, tree).findings(), *_disguises(program)]
     wrong = {finding.line for finding in findings if finding.severity == "error"}
     # What has been explained in our own words is not said again in the type checker's.
     findings += [each for each in _type_findings(program, stub) if each.line not in wrong]
@@ -105,9 +106,14 @@ def _depth(tree: ast.AST) -> tuple[int, int]:
     return deepest, line
 
 
+def _disguises(program: str) -> Iterator[Finding]:
+    for line, column, code, message in (*hidden_signs(program), *strange_letters(program)):
+        yield Finding(line, column, "error", code, message)
+
+
 def _type_findings(program: str, stub: str) -> Iterator[Finding]:
     try:
-        diagnostics = diagnose(program, stub)
+        diagnostics = diagnose(without_comments(program), stub)
     except Unavailable:
         yield Finding(1, 1, "error", "unavailable", UNAVAILABLE)
         return
@@ -284,7 +290,7 @@ class _Reader:
                 if any(map(self.calls_the_robot, inside)):
                     message = "All robot calls in here would be made at once, needed or not."
                     yield self.finding(node, "generator", f"{message} Write a for loop instead.")
-            case ast.Lambda(body=body) if self.calls_the_robot(body):
+            case ast.Lambda() if self.calls_the_robot(node):
                 message = "A robot call cannot stand in a lambda. Write a for loop instead."
                 yield self.finding(node, "callback", message)
             case ast.FunctionDef(name=name) if (
@@ -293,7 +299,8 @@ class _Reader:
                 message = f"A robot call cannot stand in {name}. Give the method another name."
                 yield self.finding(node, "callback", message)
             case _:
-                pass
+                for where, message in at_definition(node, self.calls_the_robot):
+                    yield self.finding(where, "callback", message)
 
     def calls_the_robot(self, node: ast.AST) -> bool:
         return any(

@@ -14,6 +14,7 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.routines import as_data, open_routines
 from nl2robot.teaching import Reply, Teacher, settle
 from nl2robot.terminal import Terminal
+from sim.files import read_text
 
 ACTIONS = (
     *("list", "explain", "learn", "change", "rename", "forget", "export", "import", "review"),
@@ -105,7 +106,7 @@ def _import(knowledge: Knowledge, options: argparse.Namespace) -> int:
         raise UserError("Write it so: nl2robot routines import routines.yaml.")
     file = Path(options.name)
     try:
-        text = file.read_text(encoding="utf-8-sig")
+        text = read_text(file)
     except (OSError, UnicodeDecodeError) as error:
         why = getattr(error, "strerror", None) or "it is no text in UTF-8"
         raise UserError(f"The file {file} cannot be read ({why}). Check its name.") from error

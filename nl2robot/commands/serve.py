@@ -30,7 +30,7 @@ from nl2robot.errors import ExitStatus, UserError
 from nl2robot.paths import authority_file, data_folder, pictures_folder
 from nl2robot.robots import places_of, reached, zones_of
 from nl2robot.station import robot_station, simulated_station
-from robot_api.access import is_loopback
+from robot_api.access import LONGEST_SECRET, is_loopback
 from robot_api.capabilities.sound import SILENT
 from robot_api.server import Server
 
@@ -41,6 +41,20 @@ FIRST_ACCOUNT_WITHIN: Final = 24 * 3600.0
 """Seconds in which the first administrator's link is to be opened; the next start gives another."""
 
 
+SHORTEST_TOKEN: Final = 16
+"""Letters and digits that nobody guesses."""
+
+
+def _token(given: str) -> str:
+    long = SHORTEST_TOKEN <= len(given) <= LONGEST_SECRET
+    if not (long and given.isascii() and given.isprintable() and " " not in given):
+        raise argparse.ArgumentTypeError(
+            f"the token is to be {SHORTEST_TOKEN} letters and digits or more, which nobody guesses;"
+            " leave it out to be given one"
+        )
+    return given
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--host",
@@ -49,7 +63,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="the address to listen at; 0.0.0.0 for everybody, encrypted, who signs in",
     )
     parser.add_argument("--port", type=whole(0, 65_535), default=9090, help="(default: 9090)")
-    parser.add_argument("--token", help="what programs may show instead of signing in")
+    parser.add_argument(
+        "--token",
+        type=_token,
+        help=f"what programs may show instead of signing in: {SHORTEST_TOKEN} letters or more",
+    )
     encryption = parser.add_argument_group("encryption, where others are served")
     encryption.add_argument(
         "--certificate",

@@ -6,30 +6,49 @@ elements here finds them on a robot's tablet too.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import functools
+import re
+from typing import TYPE_CHECKING, Final
 
 from robot_api.errors import InvalidCall, NotFound
 from robot_api.methods import MAX_TEXT
 
 if TYPE_CHECKING:
-    from bs4 import Tag
+    from bs4 import BeautifulSoup, Tag
+
+_COMMENT: Final = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
 
 _NO_TEXT = ("button", "submit", "checkbox", "radio", "reset", "image", "hidden", "file")
 """Kinds of `input` that cannot be typed into."""
 
 
 class Page:
-    """The page that the screen shows."""
+    """The page that the screen shows. It is read only when something is done on it: to show it, a
+    browser need not understand it."""
 
     def __init__(self, html: str) -> None:
-        from bs4 import BeautifulSoup
+        self._shown = html
 
-        self._soup = BeautifulSoup(html, "html.parser")
+    @functools.cached_property
+    def _soup(self) -> BeautifulSoup:
+        """Raises `InvalidCall` for what is no HTML."""
+        from bs4 import BeautifulSoup
+        from bs4.exceptions import ParserRejectedMarkup
+
+        # Python's parser takes quadratic time for comments that do not end.
+        seen = _COMMENT.sub("", self._shown)
+        try:
+            return BeautifulSoup(seen, "html.parser")
+        except (ParserRejectedMarkup, ValueError, AssertionError):
+            raise InvalidCall(
+                "The page on the screen is no HTML that can be read. Show another one."
+            ) from None
 
     @property
     def html(self) -> str:
         """The page as it is now."""
-        return str(self._soup)
+        read = "_soup" in self.__dict__
+        return str(self._soup) if read else self._shown
 
     def click(self, selector: str) -> None:
         """Click on the first such element: ticks boxes, picks options, opens details."""

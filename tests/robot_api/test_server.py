@@ -143,6 +143,26 @@ def test_whose_call_is_stopped_learns_by_whom(
         assert str(end()) == because
 
 
+@pytest.mark.parametrize(
+    ("method", "params"),
+    [
+        ("robot.ask", {"question": "?", "options": ["a"] * 2000}),
+        ("robot.ask", {"question": "?", "options": [["a"]] * 2000}),
+        ("robot.say", {"text": "a" * 200_000}),
+        ("robot.wait", {f"a{i}": i for i in range(2000)}),
+    ],
+)
+def test_too_much_is_refused_before_it_is_looked_at(
+    server: Server, method: str, params: Any, monkeypatch: Any
+) -> None:
+    def looked_at(*_: Any) -> bool:
+        raise AssertionError("each item was looked at")
+
+    monkeypatch.setattr("jsonschema.Draft202012Validator.is_valid", looked_at)
+    refused = Wire(server.address).ask(method, params, id=1)
+    assert refused["error"]["data"]["error"] == "InvalidCall"
+
+
 def test_a_stop_overtakes_64_calls_that_wait(driver: EmulatedDriver, server: Server) -> None:
     wires = [Wire(server.address) for _ in range(3)]
     with logged(driver, "wait(", 64) as all_at_it:
