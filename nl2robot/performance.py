@@ -281,6 +281,7 @@ class Performance:
             on_print=on_print,
             on_hold=self._holds,
             on_closed=lambda place, why: closed.append((place, why)),
+            on_death=self._stand,
         )
         self._execution = execution
         self._tell("state")
@@ -290,6 +291,13 @@ class Performance:
         for place, why in closed:
             self.report("was_closed", place=[place], reason=why)
         return recall.judged(outcome) if recall is not None else outcome
+
+    def _stand(self) -> None:
+        """Nobody is left to see to what the robot does: it stands."""
+        robot = self._robot
+        if robot is not None:
+            with contextlib.suppress(RobotError, Stopped):  # it is stopped once more at the end
+                robot.stop()
 
     def _as_lost(self, outcome: Outcome) -> Outcome:
         """How a run ended whose robot was lost meanwhile: not by somebody's stop."""
@@ -313,6 +321,8 @@ class Performance:
             self._means.log.end(self.run, outcome.status, message)
         except LogError as error:
             message = str(error)
+            if outcome.status == "done":  # of which nobody will ever read
+                outcome = dataclasses.replace(outcome, status="failed")
         try:
             # Those who watch hear of the end before those who wait are told.
             self._tell("state", state=outcome.status, message=message)

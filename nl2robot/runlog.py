@@ -2,8 +2,8 @@
 
 Each fact is committed as it happens (write-ahead log), so a crash or a kill loses nothing that was
 done. A run that was never finished, and whose process is gone, reads as "interrupted". When a line
-cannot be written (a full disk), `LogError` is raised: the caller stops the robot, because what is
-not logged is not done.
+cannot be written (a full disk, a log that somebody deleted), `LogError` is raised: the caller stops
+the robot, because what is not logged is not done.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from typing import Any
 import msgspec
 
 from nl2robot.errors import UserError
+from nl2robot.log_file import LogFile, Tampered
 from robot_api.errors import cause
 
 _SCHEMA = """
@@ -176,6 +177,9 @@ class RunLog:
             self._db.execute("PRAGMA journal_mode=WAL")
             self._db.execute("PRAGMA busy_timeout=5000")
             self._bring_up_to_date()
+            self._file = LogFile(self.path) if str(path) != ":memory:" else None
+            if self._file is not None:
+                self._file.note()
 
     def close(self) -> None:
         with self._lock:
@@ -354,7 +358,12 @@ class RunLog:
 
     def _write(self, sql: str, *values: Any) -> sqlite3.Cursor:
         with self._lock, self._trouble():
-            return self._db.execute(sql, values)
+            if self._file is not None:
+                self._file.check()
+            cursor = self._db.execute(sql, values)
+            if self._file is not None:
+                self._file.note()
+            return cursor
 
     def _read(self, sql: str, *values: Any) -> list[dict[str, Any]]:
         with self._lock, self._trouble():
@@ -366,6 +375,8 @@ class RunLog:
     def _trouble(self) -> Iterator[None]:
         try:
             yield
+        except Tampered as error:
+            raise LogError(str(error)) from None
         except (sqlite3.Error, OSError) as error:
             raise LogError(
                 f"The run log {self.path} cannot be used ({cause(error)})."

@@ -84,6 +84,9 @@ _LIMITS: Final = {
 }
 
 
+DIED: Final = "The program's process was ended by something else. Run it once more."
+
+
 class Execution:
     """One run of one program. `run` can be called once; all else from any thread, at any time."""
 
@@ -100,11 +103,14 @@ class Execution:
         on_call: Callable[[CallRecord], None] | None = None,
         on_hold: Callable[[], None] | None = None,
         on_closed: Callable[[str, str], None] | None = None,
+        on_death: Callable[[], None] | None = None,
     ) -> None:
         """`on_line(line)` is called before each robot call and before a pause at it, `on_call`
         after it, `on_hold()` when the program waits again after a step, `on_print` with what the
         program prints, `on_closed(place, why)` when a place of a round is left out (see
-        `sandbox.visits`); all on the thread of `run`. With a `stub`, a program that does not pass
+        `sandbox.visits`); all on the thread of `run`. `on_death()` is called on a thread of its own
+        when something else ends the program's process: whoever makes a robot call for it then has
+        to break that off, and `run` ends with "failed". With a `stub`, a program that does not pass
         `sandbox.check` against it fails before it begins.
         With a `seed`, `random` gives the same numbers in every run.
         """
@@ -119,7 +125,9 @@ class Execution:
         self._visits: frozenset[int] = frozenset()
         self._closed: tuple[str, str, int] | None = None
         self._visited = False
-        self._interpreter = Interpreter(self._limits, on_print or _ignore, seed)
+        self._on_death = on_death
+        self._dead = False
+        self._interpreter = Interpreter(self._limits, on_print or _ignore, seed, self._died)
         self._changed = threading.Condition()
         self._started = False
         self._paused = False
@@ -167,6 +175,11 @@ class Execution:
             self._changed.notify_all()
         self._interpreter.kill()
 
+    def _died(self, interrupted: bool) -> None:
+        self._dead = not interrupted  # somebody pressed Ctrl-C, and is heard elsewhere too
+        if self._stopped is None and self._on_death is not None:
+            self._on_death()
+
     # --- running ---------------------------------------------------------------------------------
 
     def run(self) -> Outcome:
@@ -185,13 +198,14 @@ class Execution:
                 while not isinstance(event, Ended):
                     event = self._handle(interpreter, event)
         except Stopped as error:
+            if self._dead:  # what stopped it came of that
+                return self._ended("failed", DIED, self._line, "killed")
             return self._ended("stopped", self._stopped or error.because, self._line)
         except Killed as error:
-            if self._stopped is not None or error.interrupted:
+            if error.interrupted or (self._stopped is not None and not self._dead):
                 because = self._stopped or "The program was interrupted."
                 return self._ended("stopped", because, self._line)
-            message = "The program's process was ended by something else. Run it once more."
-            return self._ended("failed", message, self._line, "killed")
+            return self._ended("failed", DIED, self._line, "killed")
         except Unavailable:
             return self._ended("failed", UNAVAILABLE, None, "unavailable")
         except LimitReached as error:

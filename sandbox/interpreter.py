@@ -18,6 +18,7 @@ import bisect
 import json
 import os
 import re
+import select
 import signal
 import threading
 from collections.abc import Callable, Mapping
@@ -208,10 +209,17 @@ class Interpreter:
     """A process for one program. A context manager; on leaving, the process is gone."""
 
     def __init__(
-        self, limits: Limits, on_print: Callable[[str], None], seed: int | None = None
+        self,
+        limits: Limits,
+        on_print: Callable[[str], None],
+        seed: int | None = None,
+        on_death: Callable[[bool], None] | None = None,
     ) -> None:
+        """`on_death(interrupted)` is called, on a thread of its own, when something else ends the
+        process; `interrupted` if that was a signal such as that of Ctrl-C."""
         self._limits = limits
         self._on_print = on_print
+        self._on_death = on_death
         self._printed = 0
         self._fault: BaseException | None = None
         self._seed = seed
@@ -257,7 +265,7 @@ class Interpreter:
         pid = self._session.worker_pid
         assert pid is not None
         with self._lock:
-            self._process = _Process(pid)
+            self._process = _Process(pid, self._died)
             if self._killed:
                 self._process.kill()
 
@@ -270,9 +278,9 @@ class Interpreter:
         # A program that was left in the middle must not go on: no leaving before it is dead.
         self.kill()
         with self._lock:
-            if self._process is not None:
-                self._process.close()
-                self._process = None
+            process, self._process = self._process, None
+        if process is not None:
+            process.close()  # which waits for whoever is told of its end
         self._snapshot = None
         if self._session is not None:
             self._session.__exit__(None, None, None)
@@ -284,6 +292,12 @@ class Interpreter:
             self._killed = True
             if self._process is not None:
                 self._process.kill()
+
+    def _died(self, interrupted: bool) -> None:
+        with self._lock:
+            unasked = not self._killed
+        if unasked and self._on_death is not None:
+            self._on_death(interrupted)
 
     def start(self, program: str) -> Event:
         """Run the program to its first event. Raises as `answer` does, and `SyntaxError`."""
@@ -408,12 +422,23 @@ class Interpreter:
         return lines[-1] if lines else None
 
 
+_INTERRUPTING: Final = (signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", None))
+
+
 class _Process:
     """The process of a program, held so that no other process can be hit when it is gone."""
 
-    def __init__(self, pid: int) -> None:
+    def __init__(self, pid: int, died: Callable[[bool], None]) -> None:
+        """`died(interrupted)` is called when it has ended, where the system tells of that (on
+        Linux)."""
         self._pid = pid
         self._handle = os.pidfd_open(pid) if hasattr(os, "pidfd_open") else None
+        self._watch: threading.Thread | None = None
+        if self._handle is not None:
+            self._watch = threading.Thread(
+                target=_when_readable, args=(self._handle, died), name="program", daemon=True
+            )
+            self._watch.start()
 
     def kill(self) -> None:
         try:
@@ -425,9 +450,24 @@ class _Process:
             pass  # it is gone already
 
     def close(self) -> None:
+        """After `kill`."""
         if self._handle is not None:
+            if self._watch is not None and self._watch is not threading.current_thread():
+                self._watch.join()
             os.close(self._handle)
             self._handle = None
+
+
+def _when_readable(handle: int, died: Callable[[bool], None]) -> None:
+    """A process is gone when its handle can be read."""
+    waiting = select.poll()
+    waiting.register(handle, select.POLLIN)
+    waiting.poll()
+    try:
+        how = os.waitid(os.P_PIDFD, handle, os.WEXITED | os.WNOWAIT | os.WNOHANG)
+    except ChildProcessError:  # somebody has asked before
+        how = None
+    died(how is not None and how.si_code == os.CLD_KILLED and how.si_status in _INTERRUPTING)
 
 
 # --- checking ------------------------------------------------------------------------------------

@@ -1,15 +1,22 @@
 """Nothing runs that was not approved; what runs is in view, and stops at once."""
 
+import os
 import queue
+import signal
 import sqlite3
 import time
 from contextlib import closing
+from pathlib import Path
 
 import pytest
 
 from nl2robot.runlog import LogError
 from robot_api.errors import AccessDenied, NotPossible
+from sandbox.execution import DIED
 from sim.world import Zone
+from tests.sandbox.ward import children
+
+linux = pytest.mark.skipif(not Path("/proc").exists(), reason="looks at processes in /proc")
 
 ROUND = 'robot.goto("ward a")\nrobot.say("Good night.")\nrobot.goto("ward b")\n'
 ENDLESS = 'while True:\n    robot.goto("ward a")\n    robot.goto("ward b")\n'
@@ -231,6 +238,54 @@ def test_what_cannot_be_logged_is_not_done(operator, station, log, monkeypatch) 
     assert status.state == "stopped"
     assert "disk is full" in status.message
     assert station.simulation.robot.x == before.x
+
+
+def deleted(path: Path) -> None:
+    path.unlink()
+
+
+def without_what_was_just_written(path: Path) -> None:
+    Path(f"{path}-wal").unlink()
+
+
+def cut(path: Path) -> None:
+    with path.open("r+b") as file:
+        file.truncate(0)
+
+
+def replaced(path: Path) -> None:
+    other = path.with_name("other")
+    other.write_bytes(path.read_bytes())
+    other.replace(path)
+
+
+@pytest.mark.parametrize("tampered", [deleted, without_what_was_just_written, cut, replaced])
+def test_what_goes_into_a_log_that_nobody_will_read_is_not_done(
+    slow_operator, slow_station, log, tampered
+) -> None:
+    watch = Watch(slow_operator)
+    run = start(slow_operator, 'robot.goto("ward b")\nrobot.say("There.")\n')
+    watch.until(what("call", method="goto"))
+    tampered(log.path)
+    status = slow_operator.wait(run)
+    assert status.state == "stopped" and "deleted, replaced or cut" in status.message
+    assert not [data for kind, data in watch.seen if kind == "speech"]
+    with pytest.raises(NotPossible, match="deleted, replaced or cut"):  # and no other run
+        start(slow_operator, 'robot.say("Once more.")\n')
+
+
+@linux
+def test_a_robot_stands_when_its_program_is_killed(slow_operator, slow_station) -> None:
+    before = children()
+    watch = Watch(slow_operator)
+    run = start(slow_operator, 'robot.goto("ward b")\n')
+    watch.until(what("call", method="goto"))
+    for each in children() - before:
+        os.kill(each, signal.SIGKILL)
+    status = slow_operator.wait(run)
+    assert (status.state, status.message) == ("failed", DIED)
+    assert slow_station.simulation.robot.place != "ward b"
+    assert slow_station.simulation.robot.speed == 0
 
 
 def test_two_operators_see_the_same_run(slow_station, sit_down) -> None:

@@ -1,0 +1,60 @@
+"""Whether the file of the log is still the one that is written to.
+
+On Linux a file that is deleted or replaced can be written on and on by whoever has it open, and
+nobody will ever read that. SQLite notices none of this, so it is looked at before each line.
+"""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+from pathlib import Path
+
+from nl2robot.errors import UserError
+
+
+class Tampered(UserError):
+    """Somebody has deleted, replaced or cut the log while it was written."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(
+            f"The run log {path} was deleted, replaced or cut while it was in use, so nothing more"
+            " is done. Put it back or move it away, then start nl2robot again."
+        )
+
+
+class LogFile:
+    """The files of an SQLite database with a write-ahead log, which never get shorter while it is
+    open."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._files = (path, Path(f"{path}-wal"))
+        self._known: dict[Path, os.stat_result] = {}
+        self._touched = False
+
+    def check(self) -> None:
+        """Raises `Tampered`, once that has happened always."""
+        self._look()
+        if self._touched:
+            raise Tampered(self._path)
+
+    def note(self) -> None:
+        """Something was written: so long they are now. Raises as `check` does."""
+        self.check()
+        for file in self._files:
+            # Without a write-ahead log (of a file system that has none) there is one file.
+            with suppress(FileNotFoundError):
+                self._known.setdefault(file, file.stat())
+        self._look()
+
+    def _look(self) -> None:
+        for file, known in self._known.items():
+            try:
+                now = file.stat()
+            except OSError:
+                self._touched = True
+                return
+            same = (now.st_dev, now.st_ino) == (known.st_dev, known.st_ino)
+            self._touched = self._touched or not same or now.st_size < known.st_size
+            self._known[file] = now if same else known
