@@ -21,7 +21,8 @@ from urllib.parse import quote
 
 import msgspec
 
-from nl2robot.runlog import LogError, lives
+from nl2robot.process import lives
+from nl2robot.runlog import LogError
 
 State = Literal["running", "done", "failed", "stopped", "limit", "interrupted"]
 STATES: Final[tuple[State, ...]] = get_args(State)

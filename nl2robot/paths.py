@@ -53,7 +53,8 @@ def _data_folder() -> Path:
 def made(folder: Path) -> Path:
     """The folder, made if missing. Raises `UserError`."""
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(mode=0o700, exist_ok=True)  # what is in it is nobody else's
     except OSError as error:
         raise UserError(
             f"The folder {folder} cannot be made ({error.strerror})."

@@ -22,6 +22,7 @@ import msgspec
 
 from nl2robot.errors import UserError
 from nl2robot.log_file import LogFile, Tampered
+from nl2robot.process import lives, own_process
 from robot_api.errors import cause
 
 _SCHEMA = """
@@ -44,7 +45,7 @@ CREATE TABLE IF NOT EXISTS runs (
     message TEXT,
     picture TEXT,                    -- path of the picture of the run
     start TEXT,                      -- JSON: x, y (metres), theta (degrees) of a simulated robot
-    process INTEGER,                 -- that runs it
+    process INTEGER,                 -- that runs it, see nl2robot/process.py
     continues INTEGER,               -- the run with which this one goes on
     proposed TEXT,                   -- the program that was proposed, if somebody changed it
     changed_by TEXT,                 -- who did
@@ -136,17 +137,6 @@ class Run(msgspec.Struct, frozen=True, kw_only=True):
         return self.status is None and self.process is not None and lives(self.process)
 
 
-def lives(process: int) -> bool:
-    """Whether the process of this number is there."""
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except OSError:  # it is somebody else's
-        return True
-    return True
-
-
 _COLUMNS = ", ".join(Run.__struct_fields__)
 
 
@@ -164,6 +154,12 @@ class LoggedCall(msgspec.Struct, frozen=True, kw_only=True):
     made: str | None = None
 
 
+def _private(path: Path) -> None:
+    """The file, made if missing, for nobody else: it tells of patients."""
+    os.close(os.open(path, os.O_RDWR | os.O_CREAT, 0o600))
+    path.chmod(0o600)
+
+
 class RunLog:
     """The log in one file; safe to use from several threads and processes."""
 
@@ -173,6 +169,7 @@ class RunLog:
         with self._trouble():
             if str(path) != ":memory:":
                 self.path.parent.mkdir(parents=True, exist_ok=True)
+                _private(self.path)
             self._db = sqlite3.connect(path, check_same_thread=False, isolation_level=None)
             self._db.execute("PRAGMA journal_mode=WAL")
             self._db.execute("PRAGMA busy_timeout=5000")
@@ -208,7 +205,7 @@ class RunLog:
         """Note that an approved program starts; returns the run's number."""
         values = {
             "started": time.time(),
-            "process": os.getpid(),
+            "process": own_process(),
             "program": program,
             "sha256": sha256,
             "approved_by": approved_by,

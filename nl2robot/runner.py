@@ -12,6 +12,7 @@ An approval is bound to the hash of exactly one program and is used up by one ru
 from __future__ import annotations
 
 import contextlib
+import math
 import secrets
 import threading
 import time
@@ -43,6 +44,8 @@ from sim.world import World, builtin_worlds
 SECONDS_TO_END: Final = 3.0
 """How long a stopped run may take to be over, beside what the robot takes to stand."""
 APPROVALS_KEPT: Final = 100
+APPROVAL_HOLDS: Final = 600.0
+"""Seconds in which an approved program has to begin: later the ward may look another way."""
 """An approval that was not used is forgotten when so many newer ones were given."""
 
 BUSY: Final = "Another program is running. Wait until it is over, or stop it first."
@@ -84,6 +87,9 @@ class Runner:
         self._lock = threading.Lock()
         self._reviews = Reviews()
         self._approvals: OrderedDict[str, Approval] = OrderedDict()
+        self._given: dict[str, tuple[float, str | None]] = {}
+        """Of each approval: when it was given, by a clock that nobody sets, and over which
+        connection."""
         self._performance: Performance | None = None
         """The run that goes on, or the last that did."""
         self._lost_since: float | None = None
@@ -132,8 +138,10 @@ class Runner:
         proposed: str | None = None,
         changed_by: str | None = None,
         insists: bool = False,
+        connection: str | None = None,
     ) -> Approval:
-        """Approve exactly this program. `proposed` is what lay before them first, where somebody
+        """Approve exactly this program, for ten minutes; if it was over a `connection`, only as
+        long as that lasts. `proposed` is what lay before them first, where somebody
         has changed it (`changed_by`; else who approves it); kept with the run. `insists`: though it
         does not come to its end in the dry run, which is made now unless it was lately. Raises
         `AccessDenied` if the hash is that of another text, if the review finds an error in it, or
@@ -174,9 +182,18 @@ class Runner:
         )
         with self._lock:
             self._approvals[approval.id] = approval
+            self._given[approval.id] = (time.monotonic(), connection)
             while len(self._approvals) > APPROVALS_KEPT:
-                self._approvals.popitem(last=False)
+                gone, _ = self._approvals.popitem(last=False)
+                del self._given[gone]
         return approval
+
+    def left(self, connection: str) -> None:
+        """Whoever has this connection has left: what they approved there and has not begun is
+        approved no more."""
+        with self._lock:
+            for each in [each for each, (_, by) in self._given.items() if by == connection]:
+                del self._approvals[each], self._given[each]
 
     # --- while it runs
 
@@ -189,12 +206,13 @@ class Runner:
         self._check_stands()
         with self._lock:
             approval = self._approvals.get(approval_id)
-            if approval is None:
+            given, _ = self._given.get(approval_id, (-math.inf, None))
+            if approval is None or time.monotonic() - given > APPROVAL_HOLDS:
                 raise AccessDenied(
                     "This program has no approval that is still good. Review and approve it first."
                 )
             self._check_free()
-            del self._approvals[approval_id]
+            del self._approvals[approval_id], self._given[approval_id]
             recall = self._recall(approval.continues, approval.program)
             run = self._begin(approval)
             performance = Performance(run, approval, self._means, recall, self._pose)

@@ -81,8 +81,11 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
     def reviewed(p: Mapping[str, Any], context: Context) -> None:
         runner.present.happened(Reviewing(reviewer(context.connection), p["lies"]))
 
-    def approved(p: Mapping[str, Any]) -> Any:
-        return runner.approve(p["program"], p["sha256"], p["by"], **_rest(p, "program sha256 by"))
+    def approved(p: Mapping[str, Any], context: Context) -> Any:
+        rest = _rest(p, "program sha256 by")
+        return runner.approve(
+            p["program"], p["sha256"], p["by"], **rest, connection=context.connection
+        )
 
     def waited(p: Mapping[str, Any], stop: StopFlag) -> Any:
         """Until the run is over, the time is up or the call is cancelled. A stop of the robot sets
@@ -152,9 +155,10 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             {"lies": {"type": "boolean"}},
             "lies",
         ),
-        "program.approve": service(
+        "program.approve": service_of_call(
             approved,
-            "Approve exactly the program with this SHA-256 for one run. With `continues`, the"
+            "Approve exactly the program with this SHA-256 for one run, within ten minutes and as"
+            " long as the connection lasts. With `continues`, the"
             " number of a run that was broken off, what was done there is not done again. Where it"
             " was changed by hand, `proposed` is the program from before; the log keeps both, and"
             " who did. One that does not come to its end in the dry run, which is made now unless"

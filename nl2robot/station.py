@@ -383,6 +383,7 @@ def _open(
 
     def on_left(connection: str) -> None:
         microphones.give_up(connection)
+        runner.left(connection)
         runner.present.happened(Reviewing(reviewer(connection), False))
         attention.left(connection)
         if added:

@@ -10,6 +10,7 @@ import time
 
 import pytest
 
+from nl2robot.process import lives, own_process
 from nl2robot.runlog import LogError, RunLog
 
 ROUND = {
@@ -148,4 +149,21 @@ def test_a_log_from_before_movements_were_measured_is_read_and_goes_on(tmp_path)
     log.stands_at(run, '{"x":1.0,"y":0.0,"theta":0.0}')
     assert log.whole(log.run(run))["calls"][0]["made"] == '{"metres":1.0,"degrees":0.0}'
     assert log.run(run).stood is not None
+    log.close()
+
+
+def test_a_run_of_a_process_whose_number_somebody_else_has_now_is_interrupted(tmp_path) -> None:
+    """A container begins again: its new server has the number of the dead one."""
+    own = own_process()
+    assert lives(own) and lives(os.getpid())  # as an older log says it
+    born = own >> 22
+    if born:  # the system tells
+        assert not lives((born + 1) << 22 | os.getpid())
+
+
+def test_nobody_else_reads_what_patients_said(tmp_path) -> None:
+    path = tmp_path / "kept" / "runs.sqlite"
+    log = RunLog(path)
+    log.begin(program="", sha256="", approved_by="Kim", approved_at=0.0)
+    assert {each.stat().st_mode & 0o077 for each in path.parent.iterdir()} == {0}
     log.close()

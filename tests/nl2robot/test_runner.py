@@ -4,12 +4,14 @@ import os
 import queue
 import signal
 import sqlite3
+import threading
 import time
 from contextlib import closing
 from pathlib import Path
 
 import pytest
 
+from nl2robot.operator import Operator
 from nl2robot.runlog import LogError
 from robot_api.errors import AccessDenied, NotPossible
 from sandbox.execution import DIED
@@ -83,6 +85,31 @@ def test_an_edit_voids_the_approval(operator) -> None:
             "program.approve",
             {"program": ROUND + "robot.dock()\n", "sha256": review.sha256, "by": "Nurse Kim"},
         )
+
+
+def test_an_approval_is_good_for_ten_minutes(operator, monkeypatch) -> None:
+    approval = operator.approve(operator.check('robot.say("Good morning.")\n'))
+    later = time.monotonic() + 601
+    monkeypatch.setattr("nl2robot.runner.time.monotonic", lambda: later)
+    with pytest.raises(AccessDenied, match="no approval that is still good"):
+        operator.run(approval)
+
+
+def test_an_approval_ends_with_the_connection_over_which_it_was_given(
+    station, monkeypatch
+) -> None:
+    noticed, left = threading.Event(), station.server._on_left
+    monkeypatch.setattr(
+        station.server, "_on_left", lambda connection: (left(connection), noticed.set())
+    )
+    with station.connect() as robot:
+        first = Operator(robot, "Nurse Kim")
+        approval = first.approve(first.check('robot.say("Good morning.")\n'))
+    with station.connect() as robot:
+        second = Operator(robot, "Somebody")
+        assert noticed.wait(20)
+        with pytest.raises(AccessDenied, match="no approval that is still good"):
+            second.run(approval)
 
 
 def test_an_approval_is_good_for_one_run(operator) -> None:
