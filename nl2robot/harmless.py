@@ -15,6 +15,8 @@ from nl2robot.translation import Translation
 from robot_api.methods import METHODS
 
 HARMLESS: Final = frozenset(method.name for method in METHODS.values() if method.looks_or_tells)
+ONLY_LOOKS: Final = HARMLESS - {"say", "answer", "log"} | {"wait"}
+"""What leaves no trace in the world."""
 TOLD: Final = "answer"
 """It listens to people, unless it is given what to answer."""
 

@@ -19,6 +19,7 @@ from nl2robot import present
 from nl2robot.attention import Attention
 from nl2robot.console.part import STOP, Backstage
 from nl2robot.errors import ExitStatus, UserError
+from nl2robot.harmless import ONLY_LOOKS
 from nl2robot.knowledge import Knowledge
 from nl2robot.routines import open_routines
 from nl2robot.runlog import LogError, RunLog
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from nl2robot.entrance import Entrance
     from nl2robot.speech.aloud import SoundFor
 
+_BUSY = "A program is running, and drives the robot. Wait for its end, or stop it first."
 ANSWERS_WITHIN = 5.0
 """Seconds that a server has to say what it can do."""
 
@@ -340,13 +342,18 @@ def _open(
 
     runner = Runner(
         knowledge=Knowledge(world, driver.capabilities(), open_routines()),
-        connect=lambda: Robot(server.address, token=server.token),
+        connect=lambda: Robot(server.address, token=server.own_token),
         log=log,
         publish=publish,
         stage=(lambda: stage(runner.knowledge.world)) if world.has_geometry else None,
         seed=seed,
         present=present.Present(tell),
     )
+
+    def refuses(method: str) -> str | None:
+        """Nobody but its program has a robot act while one runs: that was approved, this was not."""
+        busy = runner.present.state.run is not None and method not in ONLY_LOOKS
+        return _BUSY if busy else None
 
     talks = Talks()
     attention = Attention()
@@ -405,6 +412,7 @@ def _open(
         on_left=on_left,
         encryption=entrance.certificate.context if entrance and entrance.certificate else None,
         doors=added.doors if added else None,
+        refuses=refuses,
     )
     if entrance:
         entrance.accounts.on_change(server.check_guests)

@@ -37,6 +37,8 @@ class Guest:
     """Who they are, if they signed in: a person, or a tablet that was paired."""
     session: int | None = None
     """The number of what they came in by, if it can be withdrawn."""
+    own: bool = False
+    """Whether it is the server's own program, and nobody from outside."""
 
 
 @dataclass(frozen=True)
@@ -79,6 +81,8 @@ class Tokens:
     observer: str
     cookie: str
     """The name of the cookie in which a browser keeps its token."""
+    own: str = ""
+    """What the server's own program shows."""
     known: Callable[[str], Guest | None] = field(default=_nobody)
     """Who else shows a secret of their own, such as who has signed in."""
 
@@ -99,6 +103,8 @@ def admitted(
     given = _token_given(headers, query, tokens.cookie)
     if not given and tokens.operator is None:
         return Guest("administrator")  # who sits at this machine
+    if given and _same(given, tokens.own):
+        return Guest("operator", own=True)
     if _same(given, tokens.observer):
         return Guest("observer")
     if tokens.operator is not None and _same(given, tokens.operator):

@@ -37,6 +37,7 @@ from robot_api.driver import EVENTS, Driver, Event, StopFlag
 from robot_api.errors import (
     InternalError,
     InvalidCall,
+    NotPossible,
     RobotError,
     StopNotConfirmed,
     Stopped,
@@ -146,6 +147,8 @@ class Server:
     are served beside the wire; without one, `status_page` makes the page at `/`. `on_left` is told
     the name of each connection that is gone, in the loop thread. `encryption`: the port also speaks
     TLS, with this context, and plainly with this machine alone. `doors` let in who has an account.
+    `refuses` says of a robot method why no client may call it now, if so; a stop is never asked
+    about.
     The driver stays the caller's: the server stops the robot when it ends, and does not close it.
     """
 
@@ -165,9 +168,12 @@ class Server:
         ping_seconds: float = PING_SECONDS,
         encryption: ssl.SSLContext | None = None,
         doors: Doors | None = None,
+        refuses: Callable[[str], str | None] | None = None,
     ) -> None:
         self.token = token if token or access.is_loopback(host) else access.new_token()
         """What a client must bring, or None."""
+        self.own_token = access.new_token()
+        """What a program of this server's own shows, whose robot calls nobody `refuses`."""
         self.observer_token = access.new_token()
         """With it in place of the other, a client looks on: it moves nothing."""
         self.driver = driver
@@ -183,6 +189,7 @@ class Server:
         self._status_page = status_page
         self._pages = pages
         self._on_left = on_left or _ignore
+        self._refuses = refuses
         self._encrypted = encryption is not None
         self._doors = doors
         self._pose: Event | None = None
@@ -356,6 +363,9 @@ class Server:
             return Job(call.method, run_service, done, client, robot=False, fleeting=fleeting)
 
         def run(stop: StopFlag) -> Any:
+            why = None if client.guest.own or self._refuses is None else self._refuses(name)
+            if why is not None:
+                raise NotPossible(why)
             return self.driver.call(name, call.arguments, stop)
 
         return Job(call.method, run, done, client, robot=True, moves=method.moves)
@@ -412,8 +422,9 @@ class Server:
         # Cookies know no ports: another robot's server on this machine has its own.
         cookie = f"robot-{self._port}"
         if self._doors is None:
-            return access.Tokens(self.token, self.observer_token, cookie)
-        return access.Tokens(self.token, self.observer_token, cookie, self._doors.known)
+            return access.Tokens(self.token, self.observer_token, cookie, self.own_token)
+        known = self._doors.known
+        return access.Tokens(self.token, self.observer_token, cookie, self.own_token, known)
 
     async def _health(self, request: Request) -> JSONResponse:
         return JSONResponse({"status": "ok"})

@@ -95,9 +95,7 @@ def test_an_approval_is_good_for_ten_minutes(operator, monkeypatch) -> None:
         operator.run(approval)
 
 
-def test_an_approval_ends_with_the_connection_over_which_it_was_given(
-    station, monkeypatch
-) -> None:
+def test_an_approval_ends_with_the_connection_over_which_it_was_given(station, monkeypatch) -> None:
     noticed, left = threading.Event(), station.server._on_left
     monkeypatch.setattr(
         station.server, "_on_left", lambda connection: (left(connection), noticed.set())
@@ -313,6 +311,20 @@ def test_a_robot_stands_when_its_program_is_killed(slow_operator, slow_station) 
     assert (status.state, status.message) == ("failed", DIED)
     assert slow_station.simulation.robot.place != "ward b"
     assert slow_station.simulation.robot.speed == 0
+
+
+def test_nobody_else_moves_the_robot_while_a_program_runs(slow_operator, slow_station) -> None:
+    watch = Watch(slow_operator)
+    run = start(slow_operator, ENDLESS)
+    watch.until(what("call", method="goto"))
+    with slow_station.connect() as script:
+        for call in (lambda: script.say("Hello."), lambda: script.goto("ward b"), script.dock):
+            with pytest.raises(NotPossible, match="A program is running"):
+                call()
+        assert script.battery() > 0  # to look is free
+        slow_operator.stop()
+        slow_operator.wait(run)
+        script.say("Hello.")
 
 
 def test_two_operators_see_the_same_run(slow_station, sit_down) -> None:
