@@ -351,7 +351,7 @@ def _open(
     )
 
     def refuses(method: str) -> str | None:
-        """Nobody but its program has a robot act while one runs: that was approved, this was not."""
+        """Only its program has a robot act while one runs: that was approved, this was not."""
         busy = runner.present.state.run is not None and method not in ONLY_LOOKS
         return _BUSY if busy else None
 
