@@ -189,6 +189,7 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             params=an_object({"run": _RUN, "timeout": {"type": "number", "minimum": 0}}, "run"),
             doc="Wait until a run is over and tell how it ended.",
             observes=True,
+            lane="wait",
         ),
         "program.answer": service(
             lambda p: answer(runner.log, runner.knowledge, p["run"], p.get("language", "en")),
@@ -202,6 +203,7 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             lambda p: runner.state(),
             "Tell how the present or last run stands.",
             observes=True,
+            lane="control",
         ),
         "sentence.told": service(
             lambda p: trouble.told(
@@ -217,19 +219,26 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             lambda p: runner.present.on_wire(),
             "Tell how the robot and its program stand, as the event `state` does.",
             observes=True,
+            lane="control",
         ),
         "program.pause": service(
             lambda p: runner.pause(),
             "Halt the robot and the program: pausing, and paused when it has come to rest.",
+            lane="control",
         ),
-        "program.step": service(lambda p: runner.step(), "Do one robot call, then hold again."),
+        "program.step": service(
+            lambda p: runner.step(), "Do one robot call, then hold again.", lane="control"
+        ),
         "program.resume": service(
-            lambda p: runner.resume(), "Go on after a pause; a movement goes on to its goal."
+            lambda p: runner.resume(),
+            "Go on after a pause; a movement goes on to its goal.",
+            lane="control",
         ),
         "program.stop": service(
             lambda p: runner.stop(),
             "Stop the program; `robot.stop` stops the robot as well.",
             right="know",
+            lane="control",
         ),
         "program.list": service(
             listed,

@@ -9,6 +9,7 @@ import msgspec
 
 from grammar.language import UnknownLanguage
 from nl2robot.errors import UserError
+from robot_api.dispatch import Lane
 from robot_api.errors import InvalidCall
 from robot_api.roles import Right
 from robot_api.server import Context as CallContext
@@ -22,11 +23,12 @@ def service(
     required: str = "",
     observes: bool = False,
     right: Right | None = None,
+    lane: Lane = "work",
 ) -> Service:
     """A method whose params are an object of these properties; a `UserError` is the caller's.
     One that `observes` only looks; it may need another `right`."""
     return service_of_call(
-        lambda p, context: handler(p), doc, properties, required, observes, right=right
+        lambda p, context: handler(p), doc, properties, required, observes, right=right, lane=lane
     )
 
 
@@ -38,6 +40,7 @@ def service_of_call(
     observes: bool = False,
     for_caller: bool = False,
     right: Right | None = None,
+    lane: Lane = "work",
 ) -> Service:
     """The same for a handler that wants to know who called, or whether they still wait: one
     `for_caller` ends with their connection."""
@@ -55,6 +58,7 @@ def service_of_call(
         observes=observes,
         for_caller=for_caller,
         right=right,
+        lane=lane,
     )
 
 

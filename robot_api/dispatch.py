@@ -8,18 +8,33 @@ from __future__ import annotations
 import logging
 import queue
 import threading
-from collections.abc import Callable, Iterable
+from collections import Counter, deque
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 from robot_api.driver import Driver, StopFlag
 from robot_api.errors import InternalError, RobotError, StopNotConfirmed, Stopped
 
-MAX_ROBOT_CALLS: Final = 64
-"""Most robot calls that run at the same time; more of them wait."""
-MAX_SERVICE_CALLS: Final = 32
-"""The same for services, which have threads of their own: a service that calls the robot would
-otherwise wait for itself."""
+Lane = Literal["robot", "control", "work", "look", "wait"]
+"""Where calls run, so that none has to wait for those of another sort: a service that calls the
+robot would otherwise wait for itself, and who ends a program for who waits for its end.
+
+- robot: what the robot does
+- control: services that answer at once, such as those that pause and end a program
+- work: those that take their time
+- look: the same for guests who may only look on
+- wait: those that last as long as something else does
+"""
+LANES: Final[Mapping[Lane, tuple[int, int]]] = {
+    "robot": (256, 64),
+    "control": (32, 8),
+    "work": (32, 8),
+    "look": (16, 4),
+    "wait": (128, 16),
+}
+"""Of each lane the most calls that run at the same time, and the most of one connection: more of
+them wait for the others of theirs."""
 
 MAX_STOPS: Final = 64
 """Most stops that wait for the robot's confirmation at the same time."""
@@ -43,14 +58,19 @@ class Job:
     done: Done
     owner: object
     """The connection it came from."""
-    robot: bool
-    """Whether it is a call of the robot, which ends with its connection, and not of a service."""
+    lane: Lane
     moves: bool = False
     """Whether it can set the body in motion."""
     fleeting: bool = False
     """Whether it ends with its connection though it is one of a service."""
     stop: StopFlag = field(default_factory=StopFlag)
     _claim: threading.Lock = field(default_factory=threading.Lock)
+
+    @property
+    def robot(self) -> bool:
+        """Whether it is a call of the robot, which ends with its connection, and not of a
+        service."""
+        return self.lane == "robot"
 
     def claim(self) -> bool:
         """True for the first who asks: the worker that runs it, or the stop that came before."""
@@ -64,8 +84,7 @@ class Dispatcher:
         self._driver = driver
         self._lock = threading.Lock()
         self._jobs: set[Job] = set()
-        self._robot_workers = Workers("robot call", MAX_ROBOT_CALLS)
-        self._service_workers = Workers("service", MAX_SERVICE_CALLS)
+        self._lanes = {lane: Workers(lane, most, each) for lane, (most, each) in LANES.items()}
         # Stops have threads of their own, so that they wait for nothing, and not for each other:
         # one whose robot does not confirm it must not hold up the next.
         self._stopper = Workers("stop", MAX_STOPS)
@@ -79,8 +98,7 @@ class Dispatcher:
             self._jobs.add(job)
         # A stop also ends those that still wait for a worker.
         job.stop.on_set(lambda: self._end_unstarted(job))
-        workers = self._robot_workers if job.robot else self._service_workers
-        workers.do(lambda: self._run(job))
+        self._lanes[job.lane].do(lambda: self._run(job), job.owner)
 
     def cancel(self, job: Job, because: str = "The call was cancelled.") -> None:
         """Set the job's stop flag."""
@@ -110,7 +128,7 @@ class Dispatcher:
 
     def close(self) -> None:
         """Let the threads end, each after the job it is at."""
-        for workers in (self._robot_workers, self._service_workers, self._stopper):
+        for workers in (*self._lanes.values(), self._stopper):
             workers.close()
 
     def _run(self, job: Job) -> None:
@@ -163,22 +181,43 @@ def _ignore(result: Result, error: Error | None) -> None:
 
 
 class Workers:
-    """Threads that do what they are given, at most so many at a time; started when needed.
+    """Threads that do what they are given, at most so many at a time, and of each owner at most
+    `each`; started when needed.
 
     They are daemons, unlike those of `concurrent.futures`: a driver that does not come back must
     not keep the process from ending.
     """
 
-    def __init__(self, name: str, most: int) -> None:
+    def __init__(self, name: str, most: int, each: int | None = None) -> None:
         self._name = name
         self._most = most
+        self._each = each
         self._count = 0
         self._lock = threading.Lock()
+        self._at_it: Counter[object] = Counter()
+        self._held: dict[object, deque[Callable[[], None]]] = {}
+        """What waits for another of the same owner's to end."""
         self._idle = threading.Semaphore(0)
         self._waiting: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
 
-    def do(self, task: Callable[[], None]) -> None:
-        """Do it as soon as a thread is free."""
+    def do(self, task: Callable[[], None], owner: object = None) -> None:
+        """Do it as soon as a thread is free, and its owner has not too much done already."""
+        if owner is None or self._each is None:
+            self._do(task)
+            return
+        with self._lock:
+            if self._at_it[owner] >= self._each:
+                self._held.setdefault(owner, deque()).append(task)
+                return
+            self._at_it[owner] += 1
+        self._do(lambda: self._in_turn(task, owner))
+
+    def close(self) -> None:
+        with self._lock:
+            for _ in range(self._count):
+                self._waiting.put(None)
+
+    def _do(self, task: Callable[[], None]) -> None:
         self._waiting.put(task)
         if self._idle.acquire(blocking=False):
             return
@@ -188,10 +227,21 @@ class Workers:
                 name = f"{self._name} {self._count}"
                 threading.Thread(target=self._work, name=name, daemon=True).start()
 
-    def close(self) -> None:
-        with self._lock:
-            for _ in range(self._count):
-                self._waiting.put(None)
+    def _in_turn(self, task: Callable[[], None], owner: object) -> None:
+        try:
+            task()
+        finally:
+            with self._lock:
+                held = self._held.get(owner)
+                after = held.popleft() if held else None
+                if not held:
+                    self._held.pop(owner, None)
+                if after is None:
+                    self._at_it[owner] -= 1
+                    if not self._at_it[owner]:
+                        del self._at_it[owner]
+            if after is not None:
+                self._do(lambda: self._in_turn(after, owner))
 
     def _work(self) -> None:
         while (task := self._waiting.get()) is not None:

@@ -32,7 +32,7 @@ from starlette.websockets import WebSocket
 
 from robot_api import access, protocol, roles
 from robot_api.connections import REMEMBERED, UNCONFIRMED, Client
-from robot_api.dispatch import Dispatcher, Job
+from robot_api.dispatch import Dispatcher, Job, Lane
 from robot_api.driver import EVENTS, Driver, Event, StopFlag
 from robot_api.errors import (
     InternalError,
@@ -59,6 +59,9 @@ LONGEST_NAME: Final = 60
 DEFAULT_PORT: Final = 9090
 PING_SECONDS: Final = 1.25
 """How often a client is asked for a sign of life, and how long it has to answer."""
+
+MAX_HEAD: Final = 8 * 1024
+"""Bytes of the head of a request, which is read before it is known who sends it."""
 
 PATIENCE: Final = 2.0
 """Seconds beyond those that a robot says it needs for it, after which a stop that nobody answers
@@ -127,6 +130,9 @@ class Service:
     """Whether it does nothing but make its result, and need not go on without the caller."""
     right: roles.Right | None = None
     """Another right that its callers need than to look or to operate."""
+    lane: Lane = "work"
+    """Beside which others it runs: "control" if it is done at once, "wait" if it lasts as long as
+    something else does."""
 
     @property
     def needs(self) -> roles.Right:
@@ -204,6 +210,8 @@ class Server:
             self._guard,
             log_config=None,
             access_log=False,
+            http="h11",  # the other parser takes heads of any length
+            h11_max_incomplete_event_size=MAX_HEAD,
             proxy_headers=False,
             timeout_graceful_shutdown=1,
             ws="websockets-sansio",
@@ -212,7 +220,7 @@ class Server:
             ws_ping_interval=ping_seconds,
             ws_ping_timeout=ping_seconds,
         )
-        self._uvicorn = TwoWayServer(config, encryption) if encryption else uvicorn.Server(config)
+        self._uvicorn = TwoWayServer(config, encryption)
         self._thread: threading.Thread | None = None
 
     @property
@@ -360,7 +368,10 @@ class Server:
             service = self.services.get(call.method)
             fleeting = service is not None and service.for_caller
             run_service = self._service(client, call)
-            return Job(call.method, run_service, done, client, robot=False, fleeting=fleeting)
+            lane = service.lane if service is not None else "control"
+            if lane == "work" and not roles.may(client.guest.role, "operate"):
+                lane = "look"
+            return Job(call.method, run_service, done, client, lane, fleeting=fleeting)
 
         def run(stop: StopFlag) -> Any:
             why = None if client.guest.own or self._refuses is None else self._refuses(name)
@@ -368,7 +379,7 @@ class Server:
                 raise NotPossible(why)
             return self.driver.call(name, call.arguments, stop)
 
-        return Job(call.method, run, done, client, robot=True, moves=method.moves)
+        return Job(call.method, run, done, client, "robot", moves=method.moves)
 
     def _service(self, client: Client, call: protocol.Call) -> Callable[[StopFlag], Any]:
         if call.method == "robot.capabilities":

@@ -1,4 +1,5 @@
 """A port that takes encrypted and plain connections: what a client sends first says which it is.
+It keeps room for those who have something to say.
 
 So programs on the robot's own computer go on without a certificate, and who comes from elsewhere
 without encryption is not met by silence: the application sees it (`scope["scheme"]`) and says what
@@ -9,6 +10,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import itertools
 import socket
 import ssl
 from collections.abc import Callable
@@ -19,9 +21,12 @@ import uvicorn
 TLS_RECORD: Final = b"\x16"
 """With this begins a TLS handshake, and no request of HTTP."""
 BEGINS_WITHIN: Final = 10.0
-"""Seconds that a client has to send its first byte, and as many again for the handshake."""
+"""Seconds that a client has to send its first byte, as many again for the handshake, and as many
+for the head of its first request."""
 MOST_UNDECIDED: Final = 200
-"""Connections that have said nothing yet; the oldest is let go for another."""
+"""Connections that have not said yet what they want; the oldest is let go for another."""
+LOOKS_AFTER: Final = (0.01, 0.02, 0.05, 0.1, 0.2)
+"""Seconds between two looks whether the head of a request is complete; the last goes on."""
 PAUSE: Final = 0.1
 """Seconds that are waited when this process can open no more connections."""
 
@@ -29,7 +34,8 @@ PAUSE: Final = 0.1
 class TwoWayServer(uvicorn.Server):
     """A uvicorn server whose sockets are such ports."""
 
-    def __init__(self, config: uvicorn.Config, encryption: ssl.SSLContext) -> None:
+    def __init__(self, config: uvicorn.Config, encryption: ssl.SSLContext | None) -> None:
+        """Without `encryption` all connections are plain."""
         super().__init__(config)
         self._encryption = encryption
 
@@ -53,7 +59,7 @@ class _Port:
         self,
         listening: socket.socket,
         protocol: Callable[[], asyncio.Protocol],
-        encryption: ssl.SSLContext,
+        encryption: ssl.SSLContext | None,
     ) -> None:
         listening.setblocking(False)
         self._listening = listening
@@ -87,24 +93,39 @@ class _Port:
             task.add_done_callback(lambda task: self._beginning.pop(task, None))
 
     async def _begin(self, connection: socket.socket) -> None:
+        close = connection.close
         try:
             async with asyncio.timeout(BEGINS_WITHIN):
                 first = await _peek(connection)
-            encrypted = first == TLS_RECORD
             if first:
-                await asyncio.get_running_loop().connect_accepted_socket(
+                encrypted = first == TLS_RECORD and self._encryption is not None
+                transport, protocol = await asyncio.get_running_loop().connect_accepted_socket(
                     self._protocol,
                     connection,
                     ssl=self._encryption if encrypted else None,
                     ssl_handshake_timeout=BEGINS_WITHIN if encrypted else None,
                 )
+                close = transport.abort
+                async with asyncio.timeout(BEGINS_WITHIN):
+                    await _asked(transport, protocol)
                 return
         except (OSError, TimeoutError):
             pass  # it left, is silent, or does not trust the certificate
         except asyncio.CancelledError:
-            connection.close()
+            close()
             raise
-        connection.close()
+        close()
+
+
+async def _asked(transport: asyncio.Transport, protocol: asyncio.BaseProtocol) -> None:
+    """Wait until the head of the first request has come, or the other side has left."""
+    pauses = itertools.chain(LOOKS_AFTER, itertools.repeat(LOOKS_AFTER[-1]))
+    while not (
+        transport.is_closing()
+        or transport.get_protocol() is not protocol  # that of a WebSocket from now on
+        or getattr(protocol, "cycle", None) is not None  # uvicorn answers a request
+    ):
+        await asyncio.sleep(next(pauses))
 
 
 async def _peek(connection: socket.socket) -> bytes:

@@ -20,6 +20,7 @@ from nl2robot.console.localising import localise
 from nl2robot.console.part import Backstage, Part
 from nl2robot.state import Driven
 from nl2robot.wire import an_object
+from robot_api.dispatch import Lane
 from robot_api.driver import Event, StopFlag
 from robot_api.errors import InvalidCall, NotPossible, RobotError, Stopped
 from robot_api.methods import SPEED, TURN_RATE
@@ -236,6 +237,7 @@ def _services(controls: Controls) -> dict[str, Service]:
                 "arguments": {"type": "object"},
             },
             "name",
+            lane="wait",
         ),
         "helm.drive": _service(
             controls.drive,
@@ -243,6 +245,7 @@ def _services(controls: Controls) -> dict[str, Service]:
             " takes over. With numbers that count up, a late one does not overtake.",
             {"linear": SPEED.schema, "angular": TURN_RATE.schema, "number": number},
             "linear angular",
+            lane="wait",
         ),
         "helm.release": _service(
             controls.release, "Let go of the joystick: the robot stands.", {"number": number}
@@ -267,8 +270,10 @@ def _service(
     properties: dict[str, Any] | None = None,
     required: str = "",
     observes: bool = False,
+    lane: Lane = "control",
 ) -> Service:
-    return Service(handler, an_object(properties or {}, required), doc, observes=observes)
+    parameters = an_object(properties or {}, required)
+    return Service(handler, parameters, doc, observes=observes, lane=lane)
 
 
 def _by_stick(line: Event) -> bool:
