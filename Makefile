@@ -36,6 +36,7 @@ tests: $(STAMP) browser systemd ros2
 # What takes too long for every change: whole samples of what people say.
 soak: $(STAMP)
 	$(BIN)/pytest -n auto --soak tests/errands
+	$(BIN)/python -m tests.attacks
 
 # The console is tested in a real browser: Debian's Chromium.
 browser:

@@ -58,6 +58,11 @@ BREAK_OFF_EVERY: Final = 0.02
 """Seconds between two attempts to break off a robot call of a program that was stopped."""
 
 _HALTED = "The movement was halted; what is left of it is made when the program goes on."
+LETTERS_LOGGED: Final = 20_000_000
+"""Of the arguments and results of a run: what fills a disk is ended before."""
+_TOO_MUCH_LOGGED = (
+    "The program has the robot say and show more than the log of one run holds. Let it do less."
+)
 _DOES_NOT_REST = "The robot did not come to rest when it was paused, so it was stopped."
 
 
@@ -107,6 +112,8 @@ class Performance:
         self._execution: Execution | None = None
         self._robot: Robot | None = None
         self._calls = 0
+        self._letters = 0
+        """Of arguments and results that are in the log."""
         self._outcome: Outcome | None = None
         """How the program ended; the run is over only when that is logged."""
         self._message: str | None = None
@@ -360,6 +367,9 @@ class Performance:
         self._calls += 1
         number, log = self._calls, self._means.log
         written = msgspec.json.encode(arguments).decode()
+        self._letters += len(written)
+        if self._letters > LETTERS_LOGGED:
+            raise Stopped(_TOO_MUCH_LOGGED)
         self._logged(log.call_begins, number, line, method, written)
         about = {"number": number, "method": method, "arguments": arguments}
         self._tell("call", **about)
@@ -383,6 +393,7 @@ class Performance:
             raise
         seconds = time.perf_counter() - began
         told = msgspec.json.encode(result).decode()
+        self._letters += len(told)
         self._logged(log.call_ends, number, seconds, result=told)
         self._tell("result", **about, result=msgspec.to_builtins(result), seconds=seconds)
         place = self._pose.get("place") if self._pose is not None else None

@@ -13,7 +13,7 @@ import os
 import sqlite3
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -154,6 +154,13 @@ class LoggedCall(msgspec.Struct, frozen=True, kw_only=True):
     made: str | None = None
 
 
+_TELLING = (
+    *("heard", "utterance", "plan", "message", "picture", "start", "proposed", "changed_by"),
+    "stood",
+)
+"""The columns of a run that may be empty and tell of people."""
+
+
 def _private(path: Path) -> None:
     """The file, made if missing, for nobody else: it tells of patients."""
     os.close(os.open(path, os.O_RDWR | os.O_CREAT, 0o600))
@@ -173,6 +180,7 @@ class RunLog:
             self._db = sqlite3.connect(path, check_same_thread=False, isolation_level=None)
             self._db.execute("PRAGMA journal_mode=WAL")
             self._db.execute("PRAGMA busy_timeout=5000")
+            self._db.execute("PRAGMA secure_delete=ON")  # what is deleted can be read nowhere
             self._bring_up_to_date()
             self._file = LogFile(self.path) if str(path) != ":memory:" else None
             if self._file is not None:
@@ -287,6 +295,37 @@ class RunLog:
             " (SELECT run FROM movements ORDER BY run DESC LIMIT 1 OFFSET ?)",
             kept,
         )
+
+    # --- deleting
+
+    def older_than(self, seconds: float) -> list[int]:
+        """The runs that began so long ago, but for one that is going on."""
+        rows = self._read(
+            "SELECT id, status, process FROM runs WHERE started < ?", time.time() - seconds
+        )
+        return [
+            row["id"]
+            for row in rows
+            if row["status"] is not None or row["process"] is None or not lives(row["process"])
+        ]
+
+    def delete(self, runs: Sequence[int]) -> None:
+        """Delete what was said, done and seen in these runs, and their pictures. Of the newest run
+        its number is left, which no later one is to have."""
+        newest = self._read("SELECT max(id) AS id FROM runs")[0]["id"]
+        for run in runs:
+            for row in self._read("SELECT picture FROM runs WHERE id = ?", run):
+                if row["picture"]:
+                    Path(row["picture"]).unlink(missing_ok=True)
+            for table in ("calls", "output", "states", "movements"):
+                self._write(f"DELETE FROM {table} WHERE run = ?", run)
+            if run == newest:
+                nothing = ", ".join(f"{name} = NULL" for name in _TELLING)
+                self._write(
+                    f"UPDATE runs SET program = '', approved_by = '', {nothing} WHERE id = ?", run
+                )
+            else:
+                self._write("DELETE FROM runs WHERE id = ?", run)
 
     # --- reading
 

@@ -93,6 +93,12 @@ class Dispatcher:
     def in_flight(self) -> int:
         return len(self._jobs)
 
+    @property
+    def moves(self) -> bool:
+        """Whether a call is in flight that may move the robot."""
+        with self._lock:
+            return any(job.moves for job in self._jobs)
+
     def start(self, job: Job) -> None:
         with self._lock:
             self._jobs.add(job)

@@ -50,6 +50,7 @@ from robot_api.port import listen, on_signals
 from robot_api.schema import is_oversize, read_arguments, with_whole_numbers
 from robot_api.status import HEADERS, Status, status_page
 from robot_api.two_way_port import TwoWayServer
+from robot_api.watchdog import Watchdog
 
 CALLER: Final = ("who", "by", "changed_by")
 """Parameters of services in which callers say who they are. Who has signed in need not be believed:
@@ -222,6 +223,7 @@ class Server:
         )
         self._uvicorn = TwoWayServer(config, encryption)
         self._thread: threading.Thread | None = None
+        self._watchdog: Watchdog | None = None
 
     @property
     def address(self) -> str:
@@ -243,6 +245,8 @@ class Server:
         )
         self._thread.start()
         self._started.wait()
+        if self._loop is not None:
+            self._watchdog = Watchdog(self._loop, lambda: self.dispatcher.moves, self._bark)
 
     def close(self, because: str = "The robot's server was ended.") -> None:
         """Stop the robot, leave it standing, and let every client go. Raises `StopNotConfirmed`, in
@@ -254,6 +258,8 @@ class Server:
                 self.stop(because)
         finally:
             self._unsubscribe()
+            if self._watchdog is not None:
+                self._watchdog.close()
             self._uvicorn.should_exit = True
             self._thread.join(5)
             self._thread = None
@@ -314,6 +320,9 @@ class Server:
             error = StopNotConfirmed()
         if error is not None:
             raise error
+
+    def _bark(self, because: str) -> None:
+        self.dispatcher.stop(because, lambda result, error: None)
 
     def check_guests(self) -> None:
         """Close the connections of those whom `doors` know no more. From any thread; returns at

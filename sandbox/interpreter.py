@@ -399,7 +399,7 @@ class Interpreter:
         if self._killed:
             return Killed("The program was ended.")
         inner = error.exception()
-        text = str(inner)
+        text = shortened(str(inner))
         if isinstance(error, monty.MontyCrashedError):
             if error.timed_out:
                 return LimitReached("computing")
@@ -420,6 +420,14 @@ class Interpreter:
     def _last_line(self, frames: list[monty.Frame]) -> int | None:
         lines = [frame.line for frame in frames if frame.filename == self._file]
         return lines[-1] if lines else None
+
+
+MOST_TOLD: Final = 2000
+"""Letters of what a program's error says: it is kept in the log, and people read it."""
+
+
+def shortened(text: str) -> str:
+    return text if len(text) <= MOST_TOLD else f"{text[:MOST_TOLD]} …"
 
 
 _INTERRUPTING: Final = (signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", None))

@@ -6,7 +6,7 @@ import argparse
 import json
 from datetime import datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from nl2robot.changes import difference
 from nl2robot.commands.options import open_log, whole
@@ -14,6 +14,8 @@ from nl2robot.errors import ExitStatus, UserError
 from nl2robot.plain import visible
 from nl2robot.runlog import Run, RunLog
 from nl2robot.terminal import Terminal
+
+DAY: Final = 24 * 3600.0
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -28,6 +30,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--picture", metavar="FILE", help="with --replay: save its picture (.svg, .png, .webp)"
     )
     parser.add_argument("--json", action="store_true", help="one JSON object a run")
+    parser.add_argument("--delete", action="store_true", help="delete what is known of that run")
+    parser.add_argument(
+        "--delete-older-than",
+        type=whole(0),
+        metavar="DAYS",
+        help="delete what is known of all runs that are older",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -35,20 +44,35 @@ def run(options: argparse.Namespace) -> int:
     terminal = Terminal()
     if options.picture is not None and not options.replay:
         raise UserError("A picture is made of a replay. Add --replay.")
+    if options.delete_older_than is not None:
+        return _delete(log, terminal, log.older_than(options.delete_older_than * DAY))
     if options.run is None:
         if options.replay:
             raise UserError("Say which run to replay: nl2robot log NUMBER --replay.")
+        if options.delete:
+            raise UserError("Say which run to delete: nl2robot log NUMBER --delete.")
         _list(log, terminal, options)
         return ExitStatus.OK
     row = log.run(options.run)
     if row is None:
         raise UserError(f"There is no run {options.run}. `nl2robot log` lists those there are.")
+    if options.delete:
+        if row.going_on:
+            raise UserError(f"Run {row.id} is going on. Stop it, or wait for its end.")
+        return _delete(log, terminal, [row.id])
     if options.json:
         print(json.dumps(log.whole(row), ensure_ascii=False))
     elif options.replay:
         return _replay(log, row, terminal, options.picture)
     else:
         _show(log, row, terminal)
+    return ExitStatus.OK
+
+
+def _delete(log: RunLog, terminal: Terminal, runs: list[int]) -> int:
+    log.delete(runs)
+    told = "One run was" if len(runs) == 1 else f"{len(runs)} runs were"
+    terminal.console.print(f"{told} deleted: what was said, done and seen, and the pictures.")
     return ExitStatus.OK
 
 

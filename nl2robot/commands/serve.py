@@ -28,6 +28,7 @@ from nl2robot.commands.options import (
 from nl2robot.entrance import PAGES_AT, Entrance
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.paths import authority_file, data_folder, pictures_folder
+from nl2robot.retention import kept_for
 from nl2robot.robots import places_of, reached, zones_of
 from nl2robot.station import robot_station, simulated_station
 from robot_api.access import LONGEST_SECRET, is_loopback
@@ -41,6 +42,8 @@ FIRST_ACCOUNT_WITHIN: Final = 24 * 3600.0
 """Seconds in which the first administrator's link is to be opened; the next start gives another."""
 
 
+LOG_DAYS: Final = 90
+DAY: Final = 24 * 3600.0
 SHORTEST_TOKEN: Final = 16
 """Letters and digits that nobody guesses."""
 
@@ -63,6 +66,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="the address to listen at; 0.0.0.0 for everybody, encrypted, who signs in",
     )
     parser.add_argument("--port", type=whole(0, 65_535), default=9090, help="(default: 9090)")
+    parser.add_argument(
+        "--log-days",
+        type=whole(1),
+        default=LOG_DAYS,
+        metavar="N",
+        help=f"after how many days what is known of a run is deleted (default: {LOG_DAYS})",
+    )
     parser.add_argument(
         "--token",
         type=_token,
@@ -104,6 +114,7 @@ def run(options: argparse.Namespace) -> int:
     robot = robot_of(options)
     world, log = world_of(options), open_log(options.debug)
     with ExitStack() as stack:
+        stack.enter_context(kept_for(log, options.log_days * DAY))
         entrance = stack.enter_context(_entrance(options))
         sound = stack.enter_context(sound_of(options, world, "en"))
         if robot.simulated:

@@ -131,7 +131,10 @@ class Desk:
                 go_on = self.dialogue.go_on
                 ui.timer(0, lambda: self._do(go_on, int(rest), visit.language), once=True)
             elif program:
-                propose = self.dialogue.propose
+                # Whoever wrote a link elsewhere may want it approved unread.
+                foreign = request.headers.get("sec-fetch-site", "same-origin") != "same-origin"
+                note = visit.words["by_a_link"] if foreign else ""
+                propose = partial(self.dialogue.propose, note=note)
                 ui.timer(0, lambda: self._do(propose, program, visit.language), once=True)
             elif self.dialogue.draft and self.dialogue.draft.review is None:
                 review = self.dialogue.review

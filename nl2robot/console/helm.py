@@ -67,10 +67,14 @@ class Helm:
     """`changed` is told each new state, in order, and must return at once."""
 
     def __init__(
-        self, changed: Callable[[State], None], now: Callable[[], float] = time.time
+        self,
+        changed: Callable[[State], None],
+        now: Callable[[], float] = time.time,
+        passed: Callable[[], float] = time.monotonic,
     ) -> None:
         self._changed = changed
         self._now = now
+        self._passed = passed  # which nobody sets, unlike the clock on the wall
         self._lock = threading.RLock()  # for all that follows
         self._driver: Operator | None = None
         self._since: float | None = None
@@ -127,7 +131,7 @@ class Helm:
         with self._lock:
             self._check(connection)
             self._asking.clear()
-            self._used = self._now()
+            self._used = self._passed()
             return self._tell()
 
     def left(self, connection: str) -> None:
@@ -211,7 +215,7 @@ class Helm:
         self._newest = number
 
     def _is_idle(self) -> bool:
-        return not self._flights and self._now() - self._used >= IDLE
+        return not self._flights and self._passed() - self._used >= IDLE
 
     def _next(self) -> Operator | None:
         return next(iter(self._asking.values()), None)
@@ -219,7 +223,7 @@ class Helm:
     def _hand_to(self, operator: Operator | None) -> list[StopFlag]:
         """Returns what of the joystick must end."""
         before, self._driver = self._driver, operator
-        self._used = self._now()
+        self._used = self._passed()
         if operator is not None:
             self._asking.pop(operator.connection, None)
         if before is not None and operator is not None and _same(before, operator):
@@ -252,7 +256,7 @@ class Helm:
         finally:
             with self._lock:
                 self._flights.pop(stop, None)
-                self._used = self._now()
+                self._used = self._passed()
 
     def _stick_stopped(self, stop: StopFlag) -> None:
         """The flag of a movement was set; by the helm itself, if it no longer knows it."""

@@ -255,6 +255,7 @@ def test_a_program_from_elsewhere_is_only_laid_before_the_operator(
     look: Look, served: Served
 ) -> None:
     page = look("/?program=robot.goto(%22pharmacy%22)%0A")
+    expect(page.get_by_text("This program came by a link")).to_be_visible()
     expect(page.get_by_role("button", name="Approve and run")).to_be_enabled()
     expect(page).to_have_url(served.url + "/")
 

@@ -46,7 +46,7 @@ def told() -> list[State]:
 
 @pytest.fixture
 def helm(clock: Clock, told: list[State]) -> Helm:
-    return Helm(told.append, clock)
+    return Helm(told.append, clock, clock)
 
 
 # --- who drives
@@ -183,7 +183,7 @@ class Operators(RuleBasedStateMachine):
         super().__init__()
         self.clock = Clock()
         self.told: list[State] = []
-        self.helm = Helm(self.told.append, self.clock)
+        self.helm = Helm(self.told.append, self.clock, self.clock)
         self.flights: list[tuple[StopFlag, str, float, ExitStack]] = []
         self.gone: set[str] = set()
         self.refused_until_release = False

@@ -1,5 +1,6 @@
 """The log tells afterwards what was heard, approved and done, whatever happened in between."""
 
+import json
 import os
 import signal
 import sqlite3
@@ -11,6 +12,7 @@ import time
 import pytest
 
 from nl2robot.process import lives, own_process
+from nl2robot.retention import kept_for
 from nl2robot.runlog import LogError, RunLog
 
 ROUND = {
@@ -167,3 +169,52 @@ def test_nobody_else_reads_what_patients_said(tmp_path) -> None:
     log.begin(program="", sha256="", approved_by="Kim", approved_at=0.0)
     assert {each.stat().st_mode & 0o077 for each in path.parent.iterdir()} == {0}
     log.close()
+
+
+def ran(log, text: str, started: float = 0.0) -> int:
+    run = log.begin(
+        program=f'robot.say("{text}")', sha256="", approved_by="Kim", approved_at=0.0, heard=text
+    )
+    log.call_begins(run, 1, 1, "say", json.dumps({"text": text}))
+    log.call_ends(run, 1, 0.1, result="null")
+    log.printed(run, text)
+    log.end(run, "done", text)
+    log._write("UPDATE runs SET started = ? WHERE id = ?", started, run)
+    return run
+
+
+def words_in(folder) -> bytes:
+    return b"".join(each.read_bytes() for each in folder.iterdir() if each.is_file())
+
+
+def test_what_is_deleted_can_be_read_nowhere(tmp_path, log) -> None:
+    kept, secret = ran(log, "lunch is ready"), ran(log, "the test was positive")
+    newest = ran(log, "her name is Grace")
+    picture = tmp_path / "run.svg"
+    picture.write_text("<svg/>", encoding="utf-8")
+    log.picture(secret, str(picture))
+    log.delete([secret, newest])
+    assert not picture.exists()
+    assert [each.id for each in log.runs()] == [newest, kept]
+    assert log.calls(newest) == [] and log.run(newest).heard is None
+    assert ran(log, "next") == newest + 1  # no number is given twice
+    folder = log.path.parent
+    log.close()
+    read = words_in(folder)
+    assert b"lunch is ready" in read
+    assert b"positive" not in read and b"Grace" not in read
+
+
+def test_runs_are_kept_as_long_as_the_hospital_says(log) -> None:
+    now = time.time()
+    old, going_on, new = (
+        ran(log, "old", now - 100),
+        ran(log, "runs", now - 100),
+        ran(log, "new", now),
+    )
+    log._write("UPDATE runs SET status = NULL WHERE id = ?", going_on)
+    with kept_for(log, 50):
+        ends = time.monotonic() + 20
+        while log.run(old) is not None and time.monotonic() < ends:
+            time.sleep(0.01)
+    assert [each.id for each in log.runs()] == [new, going_on]

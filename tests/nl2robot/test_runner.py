@@ -299,6 +299,14 @@ def test_what_goes_into_a_log_that_nobody_will_read_is_not_done(
         start(slow_operator, 'robot.say("Once more.")\n')
 
 
+def test_a_run_ends_before_it_fills_the_disk(operator, monkeypatch) -> None:
+    monkeypatch.setattr("nl2robot.performance.LETTERS_LOGGED", 100_000)
+    page = 'while True:\n    robot.show(html="a" * 30000)\n'
+    status = operator.wait(start(operator, page))
+    assert status.state == "stopped" and "more than the log of one run holds" in status.message
+    assert status.calls < 6
+
+
 @linux
 def test_a_robot_stands_when_its_program_is_killed(slow_operator, slow_station) -> None:
     before = children()
