@@ -352,7 +352,7 @@ def _open(
 
     def refuses(method: str) -> str | None:
         """Only its program has a robot act while one runs: that was approved, this was not."""
-        busy = runner.present.state.run is not None and method not in ONLY_LOOKS
+        busy = runner.present.state.state in GOING and method not in ONLY_LOOKS
         return _BUSY if busy else None
 
     talks = Talks()

@@ -8,7 +8,6 @@ values are counted. Knows nothing of worlds.
 
 from __future__ import annotations
 
-import errno
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -17,8 +16,6 @@ from typing import Any, ClassVar
 
 import msgspec
 import yaml
-
-from sim.files import read_text
 
 MAX_BYTES = 1_000_000
 MAX_ENTRIES = 1000
@@ -110,7 +107,14 @@ class Sort:
 def compose(path: Path, sort: Sort) -> Node:
     """The YAML of the file as nodes. Raises `Hopeless`, and `FileNotFoundError`."""
     try:
-        text = read_text(path, MAX_BYTES)
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)  # nobody knows the size of a device
+        if len(data) > MAX_BYTES:
+            raise Hopeless(
+                None,
+                f"The file is larger than {MAX_BYTES // 1000} kB. Is it really a {sort.name}?",
+            )
+        text = data.decode("utf-8-sig")
     except FileNotFoundError:
         raise
     except UnicodeDecodeError as error:
@@ -118,10 +122,6 @@ def compose(path: Path, sort: Sort) -> Node:
             None, f"The file is no text in UTF-8 (byte {error.start}). Save it as UTF-8."
         ) from None
     except (OSError, ValueError) as error:
-        if getattr(error, "errno", None) == errno.EFBIG:
-            most = MAX_BYTES // 1000
-            what = f"The file is larger than {most} kB. Is it really a {sort.name}?"
-            raise Hopeless(None, what) from None
         reason = getattr(error, "strerror", None) or str(error)
         raise Hopeless(None, f"The file cannot be read: {reason}. Give {sort.path}.") from None
     return compose_text(text, sort)
