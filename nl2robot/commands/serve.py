@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import logging
+import sys
 import time
 import webbrowser
 from collections.abc import Iterator
@@ -44,6 +45,8 @@ FIRST_ACCOUNT_WITHIN: Final = 24 * 3600.0
 
 LOG_DAYS: Final = 90
 DAY: Final = 24 * 3600.0
+SWITCHES_WITHIN: Final = 0.001
+"""Seconds that a thread which computes (a dry run) keeps others waiting: a stop takes several."""
 SHORTEST_TOKEN: Final = 16
 """Letters and digits that nobody guesses."""
 
@@ -111,6 +114,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     from nl2robot.console.app import Console
 
+    sys.setswitchinterval(SWITCHES_WITHIN)
     robot = robot_of(options)
     world, log = world_of(options), open_log(options.debug)
     with ExitStack() as stack:

@@ -9,6 +9,7 @@ from its request to the answer that the robot stands. It is asked then whether i
 from __future__ import annotations
 
 import contextlib
+import logging
 import os
 import re
 import statistics
@@ -125,6 +126,7 @@ def attacked(name: str, seconds: float) -> tuple[int, list[float], float]:
 
 
 def main() -> None:
+    logging.disable()  # of clients whose server is gone
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else SECONDS
     table = Table("attack", "tried", "stops", "median", "95 %", "worst", "memory", title="Stops")
     console = Terminal().console
