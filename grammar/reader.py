@@ -158,8 +158,7 @@ class Reader:
             return replace(rejected(self.text, message, self.context), unclear=words)
         impossible = no_thing(plan, self.lexicon, self.language)
         if impossible is not None:
-            phrase, thing = impossible
-            message = self.language.phrase(phrase, thing=thing, name=thing)
+            message, thing = impossible
             return replace(rejected(self.text, message, self.context), unclear=thing)
         hurtful = not_said(plan, self.lexicon, self.language)
         if hurtful is not None:

@@ -38,6 +38,19 @@ def forbidden(tokens: Sequence[Token], language: Language) -> str | None:
 
 
 def no_thing(plan: Plan, lexicon: Lexicon, language: Language) -> tuple[str, str] | None:
+    """What is said to a plan that deals with what is no thing, or is nobody here, and the name of
+    it; None if there is nothing of that."""
+    found = _no_thing(plan, lexicon, language)
+    if found is None:
+        return None
+    phrase, thing = found
+    message = language.phrase(phrase, thing=thing, name=thing)
+    if phrase == "unknown_person":
+        message = f"{message} {language.phrase('say_who')}"
+    return message, thing
+
+
+def _no_thing(plan: Plan, lexicon: Lexicon, language: Language) -> tuple[str, str] | None:
     """The phrase for a plan that takes in the hand what is no thing ("take her temperature"), or
     looks for what is in no house ("wait for the full moon"), and the name of it. What the world
     lists is a thing, whatever it is called."""

@@ -190,8 +190,7 @@ class _Check:
         lexicon = self.turn.lexicon
         impossible = no_thing(self.plan, lexicon, self.language)
         if impossible is not None:
-            phrase, thing = impossible
-            message = self.language.phrase(phrase, thing=thing, name=thing)
+            message, thing = impossible
             yield Objection("refused", thing, message)
         wrong = misnamed(self.turn, self.plan)
         if wrong is not None:

@@ -42,6 +42,8 @@ def person_unknown(d: Discourse, node: Node) -> Thing:
 def unknown_person(d: Discourse, words: str, node: Node) -> NotUnderstood:
     known = nearest(words, d.lexicon.people)
     message = d.language.phrase("unknown_person", name=words)
+    if not known:
+        message = f"{message} {d.language.phrase('say_who')}"
     span = (node.start, node.end)
     return NotUnderstood(message, known, span if known else (0, 0), gap=span)
 

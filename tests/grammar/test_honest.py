@@ -248,7 +248,9 @@ def test_two_wrong_letters_are_another_word() -> None:
 def test_nobody_is_taken_in_the_hand(language: str, sentence: str) -> None:
     refused = understand(sentence, hospital(language), language)
     assert refused.status == "rejected"
-    assert refused.message == load_language(language).phrase("unknown_person", name=refused.unclear)
+    pack = load_language(language)
+    unknown = pack.phrase("unknown_person", name=refused.unclear)
+    assert refused.message == f"{unknown} {pack.phrase('say_who')}"
 
 
 def test_a_remark_is_never_all_that_is_done_somewhere() -> None:
