@@ -23,6 +23,9 @@ from grammar.planning.turn import Turn
 DATA: Final = Path(__file__).parent / "data" / "sightings.yaml"
 GOOD_FOR: Final = 300.0
 """Seconds for which it counts that somebody was seen: people go on."""
+HOUR: Final = 3600.0
+FORGOTTEN_AFTER: Final = 12 * HOUR
+"""Where they were before says nothing any more."""
 JUST_NOW: Final = 90.0
 """Seconds; what is longer ago is told in minutes."""
 
@@ -85,17 +88,29 @@ class Sightings:
         seen = self.of(thing) if thing is not None else None
         if thing is None or seen is None or not _only_asks(turn):
             return None
+        return thing, self._sentence("seen", thing, seen, turn)
+
+    def told_of_before(self, turn: Turn, plan: p.Plan) -> str | None:
+        """Where somebody who is now to be looked for was seen last: "I last saw Bob in ward a 40
+        minutes ago."; None for anything else."""
+        thing = sought(plan)
+        seen = self._last.get(thing.lower()) if thing is not None else None
+        known = turn.language.code in _words()
+        if thing is None or seen is None or not known or self._now() - seen.at > FORGOTTEN_AFTER:
+            return None
+        return self._sentence("last_seen", thing, seen, turn)
+
+    def _sentence(self, name: str, thing: str, seen: Sighting, turn: Turn) -> str:
         words = _words()[turn.language.code]
         ago = self._now() - seen.at
-        when = words["just_now" if ago < JUST_NOW else "minutes"]
-        return thing, joined_up(
-            words["seen"].format(
-                thing=_called(thing, turn.lexicon, turn.language),
-                place=place_called(seen.place, turn.lexicon, turn.language),
-                ago=when.format(number=round(ago / 60)),
-            ),
-            turn.language,
+        number = round(ago / 60) if ago < 2 * HOUR else round(ago / HOUR)
+        when = "just_now" if ago < JUST_NOW else "minutes" if ago < 2 * HOUR else "hours"
+        sentence = words[name].format(
+            thing=_called(thing, turn.lexicon, turn.language),
+            place=place_called(seen.place, turn.lexicon, turn.language),
+            ago=words[when].format(number=number),
         )
+        return joined_up(sentence, turn.language)
 
 
 def sought(plan: p.Plan) -> str | None:

@@ -207,6 +207,10 @@ def translate(
                 talk.refused = utterance
                 return _remembered(utterance, *seen, started)
             translation = _with_program(utterance, turn, answer, started)
+            last = history.sightings.told_of_before(turn, answer.plan) if history else None
+            if last is not None:
+                explanation = f"{last} {translation.explanation}"
+                translation = msgspec.structs.replace(translation, explanation=explanation)
             talk.note(translation)
             return translation
 

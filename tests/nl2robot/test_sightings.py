@@ -68,8 +68,14 @@ def test_the_conversation_goes_on_about_her(clock, operator) -> None:
 def test_people_go_on(clock, operator) -> None:
     nurse = Nurse(operator)
     assert nurse.has_done("go to ward a and ask Alice if she wants tea") == "done"
-    clock.now += GOOD_FOR + 1
-    assert nurse.says("where is Alice?").program is not None
+    clock.now += GOOD_FOR + 60
+    looks = nurse.says("where is Alice?")
+    assert looks.program is not None
+    assert looks.explanation.startswith("I last saw Alice in ward a 6 minutes ago. I will look")
+    clock.now += 4 * 3600
+    assert "4 hours ago" in nurse.says("where is Alice?").explanation
+    clock.now += 24 * 3600
+    assert "last saw" not in nurse.says("where is Alice?").explanation
 
 
 @pytest.mark.parametrize(
