@@ -284,7 +284,10 @@ class Server:
                 if started:
                     started(self)
                 while not ended.wait(NOTICE_SIGNALS):
-                    pass
+                    if self._thread is not None and not self._thread.is_alive():
+                        raise InternalError(
+                            "The robot's server has ended by a fault of its own. Start it again."
+                        )
             finally:
                 self.close()
 

@@ -51,6 +51,13 @@ class TwoWayServer(uvicorn.Server):
         ports = [_Port(each, protocol, self._encryption) for each in sockets or ()]
         self.servers.extend(ports)  # type: ignore[arg-type]
 
+    async def on_tick(self, counter: int) -> bool:
+        try:
+            return await super().on_tick(counter)
+        except (ValueError, OverflowError, OSError):
+            # Somebody has set the clock beyond all years, for which there is no date header.
+            return self.should_exit
+
 
 class _Port:
     """One listening socket; to be made in the loop thread."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import socket
+import threading
 from collections.abc import Iterator
 
 import pytest
@@ -11,6 +12,7 @@ import pytest
 from robot_api import two_way_port
 from robot_api.client import Robot
 from robot_api.drivers import emulated
+from robot_api.errors import InternalError
 from robot_api.server import MAX_HEAD, Server
 
 SOON = 20.0
@@ -72,3 +74,30 @@ def test_a_head_has_its_limit(server: Server) -> None:
     head = b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nCookie: " + b"a" * (2 * MAX_HEAD)
     with connections(server, 1, head) as [one]:
         assert b"400" in one.recv(4096).split(b"\r\n")[0]
+
+
+def test_a_clock_beyond_all_years_ends_nothing(
+    server: Server, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ticked = threading.Event()
+
+    def beyond() -> float:
+        ticked.set()
+        return 1e15
+
+    with Robot(server.address) as robot:
+        with monkeypatch.context() as clock:
+            clock.setattr("uvicorn.server.time.time", beyond)
+            for _ in range(2):  # it ticks on
+                assert ticked.wait(SOON)
+                ticked.clear()
+            robot.stop()
+        robot.say("What day is it?")
+    with Robot(server.address) as robot:
+        robot.say("It is an ordinary one.")
+
+
+def test_a_server_that_has_ended_by_itself_is_told_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    server = Server(emulated(), port=0)
+    with pytest.raises(InternalError, match="ended by a fault"):
+        server.serve_forever(lambda server: setattr(server._uvicorn, "should_exit", True))
