@@ -25,6 +25,7 @@ def kept_for(log: RunLog, seconds: float) -> Iterator[None]:
         while True:
             try:
                 log.delete(log.older_than(seconds))
+                log.delete_by_hand(seconds)
             except LogError as error:  # the next run is told, which cannot begin
                 _log.warning("old runs are not deleted: %s", error)
             if over.wait(LOOKS_EVERY):

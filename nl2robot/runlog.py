@@ -75,13 +75,19 @@ CREATE TABLE IF NOT EXISTS states (
     state TEXT NOT NULL,             -- see nl2robot/state.py
     because TEXT
 );
+CREATE TABLE IF NOT EXISTS by_hand (
+    time REAL NOT NULL,
+    who TEXT NOT NULL,
+    method TEXT NOT NULL,
+    arguments TEXT NOT NULL          -- JSON
+);
 CREATE TABLE IF NOT EXISTS movements (
     run INTEGER PRIMARY KEY REFERENCES runs(id),
     record BLOB NOT NULL             -- see nl2robot/kept_record.py
 );
 """
 
-_VERSION = 8
+_VERSION = 9
 _ADDED = {
     "runs": {
         "start": "TEXT",
@@ -152,6 +158,15 @@ class LoggedCall(msgspec.Struct, frozen=True, kw_only=True):
     result: str | None
     error: str | None
     made: str | None = None
+
+
+class DoneByHand(msgspec.Struct, frozen=True, kw_only=True):
+    """Something that somebody had the robot do without a program. `arguments` are JSON."""
+
+    time: float
+    who: str
+    method: str
+    arguments: str
 
 
 _TELLING = (
@@ -284,6 +299,10 @@ class RunLog:
         """Note where the robot came to stand, JSON, when a run was broken off."""
         self._write("UPDATE runs SET stood = ? WHERE id = ?", pose, run)
 
+    def by_hand(self, who: str, method: str, arguments: str) -> None:
+        """Note that somebody has the robot do this without a program; `arguments` are JSON."""
+        self._write("INSERT INTO by_hand VALUES (?, ?, ?, ?)", time.time(), who, method, arguments)
+
     def picture(self, run: int, path: str) -> None:
         self._write("UPDATE runs SET picture = ? WHERE id = ?", path, run)
 
@@ -309,6 +328,10 @@ class RunLog:
             if row["status"] is not None or row["process"] is None or not lives(row["process"])
         ]
 
+    def delete_by_hand(self, seconds: float) -> None:
+        """Delete what was done by hand so long ago."""
+        self._write("DELETE FROM by_hand WHERE time < ?", time.time() - seconds)
+
     def delete(self, runs: Sequence[int]) -> None:
         """Delete what was said, done and seen in these runs, and their pictures. Of the newest run
         its number is left, which no later one is to have."""
@@ -333,6 +356,11 @@ class RunLog:
         """The newest runs, newest first."""
         rows = self._read(f"SELECT {_COLUMNS} FROM runs ORDER BY id DESC LIMIT ?", last)
         return [Run(**row) for row in rows]
+
+    def done_by_hand(self, last: int = 20) -> list[DoneByHand]:
+        """What was done last without a program, the newest first."""
+        rows = self._read("SELECT * FROM by_hand ORDER BY rowid DESC LIMIT ?", last)
+        return [DoneByHand(**row) for row in rows]
 
     def run(self, number: int) -> Run | None:
         if number > _LARGEST:

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from nl2robot import present
 from nl2robot.attention import Attention
+from nl2robot.by_hand import ByHand
 from nl2robot.console.part import STOP, Backstage
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.harmless import ONLY_LOOKS
@@ -33,7 +34,7 @@ from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.client import Robot
 from robot_api.composed import ComposedDriver
 from robot_api.driver import Driver, Event
-from robot_api.errors import AccessDenied, NotTrusted, RobotError
+from robot_api.errors import AccessDenied, NotPossible, NotTrusted, RobotError
 from robot_api.robots.opening import hold
 from robot_api.robots.places import Places
 from robot_api.robots.reading import Read
@@ -350,10 +351,13 @@ def _open(
         present=present.Present(tell),
     )
 
-    def refuses(method: str) -> str | None:
+    hand = ByHand(log)
+
+    def before_call(who: str | None, method: str, arguments: Mapping[str, Any]) -> None:
         """Only its program has a robot act while one runs: that was approved, this was not."""
-        busy = runner.present.state.state in GOING and method not in ONLY_LOOKS
-        return _BUSY if busy else None
+        if runner.present.state.state in GOING and method not in ONLY_LOOKS:
+            raise NotPossible(_BUSY)
+        hand.note(who, method, arguments)
 
     talks = Talks()
     attention = Attention()
@@ -412,7 +416,7 @@ def _open(
         on_left=on_left,
         encryption=entrance.certificate.context if entrance and entrance.certificate else None,
         doors=added.doors if added else None,
-        refuses=refuses,
+        before_call=before_call,
     )
     if entrance:
         entrance.accounts.on_change(server.check_guests)

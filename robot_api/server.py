@@ -37,7 +37,6 @@ from robot_api.driver import EVENTS, Driver, Event, StopFlag
 from robot_api.errors import (
     InternalError,
     InvalidCall,
-    NotPossible,
     RobotError,
     StopNotConfirmed,
     Stopped,
@@ -154,8 +153,8 @@ class Server:
     are served beside the wire; without one, `status_page` makes the page at `/`. `on_left` is told
     the name of each connection that is gone, in the loop thread. `encryption`: the port also speaks
     TLS, with this context, and plainly with this machine alone. `doors` let in who has an account.
-    `refuses` says of a robot method why no client may call it now, if so; a stop is never asked
-    about.
+    `before_call` is told who is about to call which robot method with which arguments, and may
+    raise a `RobotError`; of a stop it is not told.
     The driver stays the caller's: the server stops the robot when it ends, and does not close it.
     """
 
@@ -175,12 +174,13 @@ class Server:
         ping_seconds: float = PING_SECONDS,
         encryption: ssl.SSLContext | None = None,
         doors: Doors | None = None,
-        refuses: Callable[[str], str | None] | None = None,
+        before_call: Callable[[str | None, str, Mapping[str, Any]], None] | None = None,
     ) -> None:
         self.token = token if token or access.is_loopback(host) else access.new_token()
         """What a client must bring, or None."""
         self.own_token = access.new_token()
-        """What a program of this server's own shows, whose robot calls nobody `refuses`."""
+        """What a program of this server's own shows, of whose robot calls `before_call` is not
+        told."""
         self.observer_token = access.new_token()
         """With it in place of the other, a client looks on: it moves nothing."""
         self.driver = driver
@@ -196,7 +196,7 @@ class Server:
         self._status_page = status_page
         self._pages = pages
         self._on_left = on_left or _ignore
-        self._refuses = refuses
+        self._before_call = before_call
         self._encrypted = encryption is not None
         self._doors = doors
         self._pose: Event | None = None
@@ -386,9 +386,8 @@ class Server:
             return Job(call.method, run_service, done, client, lane, fleeting=fleeting)
 
         def run(stop: StopFlag) -> Any:
-            why = None if client.guest.own or self._refuses is None else self._refuses(name)
-            if why is not None:
-                raise NotPossible(why)
+            if self._before_call is not None and not client.guest.own:
+                self._before_call(client.guest.name, name, call.arguments)
             return self.driver.call(name, call.arguments, stop)
 
         return Job(call.method, run, done, client, "robot", moves=method.moves)

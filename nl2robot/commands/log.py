@@ -8,6 +8,8 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any, Final
 
+import msgspec
+
 from nl2robot.changes import difference
 from nl2robot.commands.options import open_log, whole
 from nl2robot.errors import ExitStatus, UserError
@@ -30,6 +32,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--picture", metavar="FILE", help="with --replay: save its picture (.svg, .png, .webp)"
     )
     parser.add_argument("--json", action="store_true", help="one JSON object a run")
+    parser.add_argument(
+        "--by-hand", action="store_true", help="what people had the robot do without a program"
+    )
     parser.add_argument("--delete", action="store_true", help="delete what is known of that run")
     parser.add_argument(
         "--delete-older-than",
@@ -45,7 +50,11 @@ def run(options: argparse.Namespace) -> int:
     if options.picture is not None and not options.replay:
         raise UserError("A picture is made of a replay. Add --replay.")
     if options.delete_older_than is not None:
+        log.delete_by_hand(options.delete_older_than * DAY)
         return _delete(log, terminal, log.older_than(options.delete_older_than * DAY))
+    if options.by_hand:
+        _by_hand(log, terminal, options)
+        return ExitStatus.OK
     if options.run is None:
         if options.replay:
             raise UserError("Say which run to replay: nl2robot log NUMBER --replay.")
@@ -92,6 +101,28 @@ def _list(log: RunLog, terminal: Terminal, options: argparse.Namespace) -> None:
     terminal.console.print(table, markup=False)
 
 
+def _by_hand(log: RunLog, terminal: Terminal, options: argparse.Namespace) -> None:
+    done = log.done_by_hand(options.last)
+    if options.json:
+        for each in done:
+            about = {**msgspec.to_builtins(each), "arguments": json.loads(each.arguments)}
+            print(json.dumps(about, ensure_ascii=False))
+        return
+    if not done:
+        terminal.console.print("Nobody had the robot do anything without a program yet.")
+        return
+    table = terminal.table("when", "who", "what")
+    for each in reversed(done):
+        table.add_row(_when(each.time), visible(each.who), _call(each.method, each.arguments))
+    terminal.console.print(table, markup=False)
+
+
+def _call(method: str, arguments: str) -> str:
+    values = json.loads(arguments).items()
+    given = ", ".join(f"{name}={value!r}" for name, value in values if value is not None)
+    return visible(f"{method}({given})")
+
+
 def _show(log: RunLog, row: Run, terminal: Terminal) -> None:
     about = {
         "run": f"{row.id}, {_how(row)}",
@@ -114,11 +145,10 @@ def _show(log: RunLog, row: Run, terminal: Terminal) -> None:
     terminal.show_program(row.program)
     table = terminal.table("", "line", "call", "result", "seconds")
     for call in log.calls(row.id):
-        values = json.loads(call.arguments).items()
-        given = ", ".join(f"{name}={value!r}" for name, value in values if value is not None)
         result = call.error or ("" if call.result in (None, "null") else call.result)
         seconds = "never came back" if call.seconds is None else f"{call.seconds:.2f}"
-        table.add_row(str(call.number), str(call.line), f"{call.method}({given})", result, seconds)
+        told = _call(call.method, call.arguments)
+        table.add_row(str(call.number), str(call.line), told, result, seconds)
     terminal.console.print(table, markup=False)
     for text in log.output(row.id):
         terminal.console.print(f"printed: {visible(text).rstrip()}", markup=False)

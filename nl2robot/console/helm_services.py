@@ -15,6 +15,7 @@ from typing import Any, Final
 
 import msgspec
 
+from nl2robot.by_hand import ByHand
 from nl2robot.console.helm import HOLDS, Helm, State
 from nl2robot.console.localising import localise
 from nl2robot.console.part import Backstage, Part
@@ -47,6 +48,7 @@ class Controls:
         self._has_camera = backstage.camera is not None
         self.helm = Helm(lambda state: backstage.publish("helm", _plain(state)))
         self._telling = threading.Lock()
+        self._by_hand = ByHand(backstage.runner.log)
         self._seen: dict[str, Any] = {}
         self._log: deque[Event] = deque(maxlen=LINES_KEPT)
         self.forget = backstage.subscribe(self._on_event)
@@ -86,6 +88,7 @@ class Controls:
             raise InvalidCall("Drive with helm.drive, which stops by itself.")
         with self.helm.calling(context.connection, context.stop):
             self._check_no_program()
+            self._note(name, arguments, context)
             if name == "localize":  # which others may want to take back
                 who = self.helm.state().who or ""
                 return localise(self._backstage, arguments, who, context.stop)
@@ -94,15 +97,9 @@ class Controls:
     def drive(self, parameters: Mapping[str, Any], context: Context) -> None:
         with self.helm.steering(context.connection, context.stop, parameters.get("number")):
             self._check_no_program()
-            self._driver.call(
-                "drive",
-                {
-                    "linear": parameters["linear"],
-                    "angular": parameters["angular"],
-                    "seconds": HOLDS,
-                },
-                context.stop,
-            )
+            speeds = {"linear": parameters["linear"], "angular": parameters["angular"]}
+            self._note("drive", speeds, context)
+            self._driver.call("drive", {**speeds, "seconds": HOLDS}, context.stop)
 
     def release(self, parameters: Mapping[str, Any], context: Context) -> None:
         self.helm.release(context.connection, parameters.get("number"))
@@ -122,6 +119,10 @@ class Controls:
         return list(self._log)[-parameters.get("lines", 200) :]
 
     # --- inside
+
+    def _note(self, method: str, arguments: Mapping[str, Any], context: Context) -> None:
+        who = context.who or self.helm.state().who
+        self._by_hand.note(who, method, arguments)
 
     def _note_driver(self) -> None:
         """Let the state say who drives: not by the helm itself, which nobody may wait for who is

@@ -4,6 +4,7 @@ import itertools
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -16,6 +17,7 @@ from nl2robot.console.helm import HOLDS, IDLE, Helm, Operator, State
 from nl2robot.console.helm_services import part
 from nl2robot.console.part import Backstage
 from nl2robot.present import Present
+from nl2robot.runlog import RunLog
 from nl2robot.state import Began, Halted, PauseAsked, on_wire
 from robot_api import Robot, Server
 from robot_api.driver import StopFlag
@@ -270,6 +272,7 @@ class Ward(SimpleNamespace):
     server: Server
     simulation: Simulation
     present: Present
+    log: RunLog
     news: threading.Event
 
     def operator(self, who: str) -> Robot:
@@ -291,7 +294,7 @@ class Ward(SimpleNamespace):
 
 
 @pytest.fixture
-def ward() -> Iterator[Ward]:
+def ward(tmp_path: Path) -> Iterator[Ward]:
     world = load_world("city-hospital")
     simulation = Simulation(world, speed=1.0)
     driver = simulated(simulation)
@@ -302,7 +305,9 @@ def ward() -> Iterator[Ward]:
         server.publish(kind, data, to)
         ward.tell()
 
-    runner = SimpleNamespace(present=present, knowledge=SimpleNamespace(world=world))
+    log = RunLog(tmp_path / "runs.sqlite")
+    runner = SimpleNamespace(present=present, knowledge=SimpleNamespace(world=world), log=log)
+    ward.log = log
     backstage = Backstage(
         driver=driver,
         runner=runner,
@@ -322,6 +327,7 @@ def ward() -> Iterator[Ward]:
         yield ward
     made.close()
     driver.close()
+    log.close()
 
 
 _numbers = itertools.count(1)
@@ -363,6 +369,7 @@ def test_the_robot_drives_while_the_stick_is_held_and_stands_when_it_is_not(ward
         ward.until(lambda: ward.speed() == 0)
         lines = [line["message"] for line in ruth.request("helm.log", {})]
         assert len([line for line in lines if line.startswith("drive")]) == 1, "not ten a second"
+        assert [(each.who, each.method) for each in ward.log.done_by_hand()] == [("Ruth", "drive")]
 
 
 def test_a_lost_connection_stops_the_joystick_and_the_errand(ward: Ward) -> None:

@@ -11,6 +11,7 @@ import time
 
 import pytest
 
+from nl2robot.by_hand import ByHand
 from nl2robot.process import lives, own_process
 from nl2robot.retention import kept_for
 from nl2robot.runlog import LogError, RunLog
@@ -218,3 +219,17 @@ def test_runs_are_kept_as_long_as_the_hospital_says(log) -> None:
         while log.run(old) is not None and time.monotonic() < ends:
             time.sleep(0.01)
     assert [each.id for each in log.runs()] == [new, going_on]
+
+
+def test_one_drive_with_the_joystick_is_one_line(log) -> None:
+    clock = [0.0]
+    hand = ByHand(log, lambda: clock[0])
+    for _ in range(30):  # three seconds of it
+        hand.note("Ruth", "drive", {"linear": 0.3, "angular": 0.0})
+        clock[0] += 0.1
+    hand.note("Karim", "drive", {"linear": 0.3, "angular": 0.0})
+    clock[0] += 10
+    hand.note("Ruth", "drive", {"linear": -0.3, "angular": 0.0})
+    assert [each.who for each in log.done_by_hand()] == ["Ruth", "Karim", "Ruth"]
+    log.delete_by_hand(0)
+    assert log.done_by_hand() == []

@@ -335,6 +335,24 @@ def test_nobody_else_moves_the_robot_while_a_program_runs(slow_operator, slow_st
         script.say("Hello.")
 
 
+def test_what_somebody_does_by_hand_is_logged_or_not_done(station, log, monkeypatch) -> None:
+    with station.connect() as script:
+        script.say("Hello.")
+        script.battery()  # to look is nothing
+        [done] = log.done_by_hand()
+        assert (done.who, done.method) == ("somebody", "say") and "Hello." in done.arguments
+
+        def full(*values) -> None:
+            raise LogError("The run log cannot be used (database or disk is full).")
+
+        monkeypatch.setattr(log, "by_hand", full)
+        before = station.simulation.robot
+        with pytest.raises(NotPossible, match="disk is full"):
+            script.goto("ward b")
+        script.stop()  # which always is done
+        assert station.simulation.robot.x == before.x
+
+
 def test_two_operators_see_the_same_run(slow_station, sit_down) -> None:
     first, second = sit_down(slow_station), sit_down(slow_station)
     watch = Watch(second)

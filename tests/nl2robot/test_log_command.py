@@ -1,0 +1,57 @@
+"""`nl2robot log`: what was done is found, and deleted, in a terminal."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from nl2robot.errors import ExitStatus
+from nl2robot.paths import data_file
+from nl2robot.runlog import RunLog
+
+
+@pytest.fixture
+def log(home):
+    log = RunLog(data_file("runs.sqlite"))
+    yield log
+    log.close()
+
+
+def ran(log: RunLog, text: str, started: float | None = None) -> int:
+    run = log.begin(program=text, sha256="", approved_by="Kim", approved_at=0.0)
+    log.end(run, "done", None)
+    if started is not None:
+        log._write("UPDATE runs SET started = ? WHERE id = ?", started, run)
+    return run
+
+
+def test_a_run_is_deleted_at_once(nl2robot, log) -> None:
+    first, second = ran(log, "robot.say('a')"), ran(log, "robot.say('b')")
+    status, out, _ = nl2robot("log", str(first), "--delete")
+    assert (status, "One run was deleted" in out) == (ExitStatus.OK, True)
+    assert [each.id for each in log.runs()] == [second]
+    assert nl2robot("log", str(first), "--delete")[0] == ExitStatus.BAD_INPUT
+
+
+def test_old_runs_are_deleted(nl2robot, log) -> None:
+    ran(log, "robot.say('a')", started=0.0)
+    kept = ran(log, "robot.say('b')")
+    status, out, _ = nl2robot("log", "--delete-older-than", "30")
+    assert (status, "One run was deleted" in out) == (ExitStatus.OK, True)
+    assert [each.id for each in log.runs()] == [kept]
+
+
+def test_a_run_that_goes_on_is_not_deleted(nl2robot, log) -> None:
+    run = log.begin(program="", sha256="", approved_by="Kim", approved_at=0.0)
+    status, _, err = nl2robot("log", str(run), "--delete")
+    assert status == ExitStatus.BAD_INPUT and "is going on" in err
+    assert nl2robot("log", "--delete")[0] == ExitStatus.BAD_INPUT
+
+
+def test_what_was_done_by_hand_is_listed(nl2robot, log) -> None:
+    assert "Nobody had the robot do anything" in nl2robot("log", "--by-hand")[1]
+    log.by_hand("Ruth", "goto", '{"place": "lobby"}')
+    assert "goto(place='lobby')" in nl2robot("log", "--by-hand")[1]
+    told = json.loads(nl2robot("log", "--by-hand", "--json")[1])
+    assert (told["who"], told["arguments"]) == ("Ruth", {"place": "lobby"})
