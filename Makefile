@@ -5,7 +5,7 @@ BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
 ROS2   := .venv-ros2
 
-.PHONY: run test format lint types tests soak browser systemd ros2 wheels bench docs clean
+.PHONY: run test format lint types tests soak browser systemd ros2 wheels sbom audit bench docs clean
 
 run: $(STAMP)
 	@$(BIN)/nl2robot demo
@@ -73,6 +73,21 @@ ros2: $(STAMP)
 wheels: $(STAMP)
 	$(BIN)/python docs/deploy/wheels.py
 
+# What all of it is made of, with versions and licences (CycloneDX), and what is known to be wrong with
+# that, where the database of faults can be reached.
+AUDIT := .venv-audit
+sbom: $(STAMP) $(AUDIT)/.installed
+	$(AUDIT)/bin/cyclonedx-py environment --of JSON -o nl2robot.cdx.json $(BIN)/python
+	@echo "nl2robot.cdx.json lists every package that is installed."
+
+audit: $(STAMP) $(AUDIT)/.installed
+	$(AUDIT)/bin/pip-audit --path $$($(BIN)/python -c 'import site; print(site.getsitepackages()[0])')
+
+$(AUDIT)/.installed:
+	$(PYTHON) -m venv $(AUDIT)
+	$(AUDIT)/bin/python -m pip install --quiet 'cyclonedx-bom>=7.5,<8' 'pip-audit>=2.9,<3'
+	touch $@
+
 format: $(STAMP)
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
@@ -81,4 +96,4 @@ bench: $(STAMP)
 	$(BIN)/nl2robot bench
 
 clean:
-	rm -rf $(VENV) $(ROS2) build dist *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(ROS2) $(AUDIT) nl2robot.cdx.json build dist *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
