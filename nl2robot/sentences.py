@@ -7,8 +7,9 @@ over the wire, through a program and out of an old log. Whose driver says someth
 told in its own words.
 
 A gap says by its name what stands in it: `the_...` a name that goes with its article, `thing` what
-is called by its name alone, `number` a number, `names` a list, `part` another of these sentences;
-all else stands as it is. An entry may stand in such a gap as well: "the door of the pharmacy".
+is called by its name alone, `number` a number, `names` a list, `choice` what may be written in a
+program, with "or" between, `part` another of these sentences; all else stands as it is. An entry may
+stand in such a gap as well: "the door of the pharmacy".
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ _OF_A_FILE: Final = re.compile(r"(\s*(?:\S+?:(?:\d+:)? )?)(.*)", re.DOTALL)
 DEEPEST: Final = 6
 """Sentences within each other."""
 _NUMBER: Final = re.compile(r"[-0-9.]+")
+_EITHER: Final = re.compile(r", | or ")
 _LISTED: Final = re.compile(r", | and ")
 
 
@@ -99,7 +101,9 @@ def _told(sentence: str, pack: Language, lexicon: Lexicon, depth: int = 0) -> st
         }
         if None not in values.values():
             told = entry.said[pack.code].format(**values)
-            has_nouns = any(name.partition("_")[0] in ("the", "thing", "names") for name in values)
+            has_nouns = any(
+                name.partition("_")[0] in ("the", "thing", "names", "choice") for name in values
+            )
             return joined_up(told, pack) if has_nouns else told
     return None
 
@@ -119,6 +123,12 @@ def _value(name: str, text: str, pack: Language, lexicon: Lexicon, depth: int) -
                 _told(each, pack, lexicon, depth) or called(each) for each in _LISTED.split(text)
             ]
             return listed(names, pack)
+        case "choice":
+            # In a program names stay as the world spells them.
+            *first, last = [
+                _told(each, pack, lexicon, depth) or each for each in _EITHER.split(text)
+            ]
+            return f"{', '.join(first)} {pack.phrase('or')} {last}" if first else last
         case "the":
             bare = text.removeprefix("the ")
             # People who have a name of their own go without an article.

@@ -13,11 +13,12 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+import yaml
 
 from nl2robot.cli import main
 from nl2robot.errors import ExitStatus
 from nl2robot.knowledge import Knowledge
-from nl2robot.sentences import GAP, entries, in_language
+from nl2robot.sentences import DATA, GAP, entries, in_language
 from nl2robot.trouble import error_told, told
 from robot_api import errors
 from robot_api.errors import RobotError
@@ -70,6 +71,12 @@ OF_SOUND_ITSELF = {
     " Send one channel at 16000 or 48000.",
 }
 """Said to whoever sends sound from a program of their own."""
+
+OF_PROGRAMS = {
+    GAP.sub("{}", said["en"])
+    for said in yaml.safe_load((DATA / "programs.yaml").read_text(encoding="utf-8"))
+}
+"""Put together by the check of programs: see test_program_sentences.py."""
 
 PUT_TOGETHER = {
     # How a run failed, and then how its stop did.
@@ -141,7 +148,7 @@ def test_no_sentence_is_kept_that_nothing_says_any_more() -> None:
     }
     code |= {text.strip("\n") for text in code}
     code |= {re.sub(r"%(?:\(\w+\))?[rs]", "{}", text) for text in said_by_argparse()}
-    gone = KNOWN - code - PUT_TOGETHER
+    gone = KNOWN - code - PUT_TOGETHER - OF_PROGRAMS
     assert gone == set()
 
 
