@@ -8,8 +8,8 @@ told in its own words.
 
 A gap says by its name what stands in it: `the_...` a name that goes with its article, `thing` what
 is called by its name alone, `number` a number, `names` a list, `choice` what may be written in a
-program, with "or" between, `part` another of these sentences; all else stands as it is. An entry may
-stand in such a gap as well: "the door of the pharmacy".
+program, with "or" between, `part` another of these sentences; all else stands as it is. An entry
+may stand in such a gap as well: "the door of the pharmacy".
 """
 
 from __future__ import annotations
