@@ -13,6 +13,9 @@ from typing import Final
 
 from robot_api.methods import SUGGESTED_EMOTIONS, SUGGESTED_GESTURES
 
+LIKE_ENOUGH: Final = 55
+"""Percent that two names have to be alike for one to be offered in the place of the other."""
+
 
 @dataclass(frozen=True)
 class Name:
@@ -125,6 +128,23 @@ def series_of(name: str) -> str | None:
     *words, last = name.lower().split() or [""]
     numbered = last[:1].isdigit() or len(last) == 1
     return " ".join(words) if words and numbered else None
+
+
+def nearest(words: str, names: tuple[Name, ...]) -> tuple[str, ...]:
+    """The names most like some words, the best first."""
+    from rapidfuzz import fuzz, process
+
+    choices = {text: name.name for name in names for text in (name.name, *name.aliases)}
+    if _is_numbered(words):  # no room without a number is like "room 3"
+        choices = {text: name for text, name in choices.items() if _is_numbered(text)}
+    found = process.extract(
+        words.lower(), list(choices), scorer=fuzz.ratio, limit=6, score_cutoff=LIKE_ENOUGH
+    )
+    return tuple(dict.fromkeys(choices[text] for text, _, _ in found))[:3]
+
+
+def _is_numbered(name: str) -> bool:
+    return any(letter.isdigit() for letter in name)
 
 
 EMPTY: Final = Lexicon()

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from grammar.checking.evidence import evidence_of
-from grammar.lexicon import Lexicon, series_of
-from grammar.meanings.places import nearest
+from grammar.lexicon import Lexicon, nearest, series_of
 from grammar.plan import Ask, Call, Plan, Text
 from grammar.planning.turn import Turn
 from grammar.refusals import SEEN

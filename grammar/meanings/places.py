@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from typing import Any, Final
+from typing import Any
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Thing, Where
 from grammar.doubts import NotUnderstood
-from grammar.lexicon import Name
+from grammar.lexicon import nearest
 from grammar.meanings.registry import meaning
 from grammar.plan import Ask, Call, Items, Recall, Remember, Text, Value
-
-LIKE_ENOUGH: Final = 55
-"""Percent that two names have to be alike for one to be offered in the place of the other."""
 
 
 @meaning("place_name")
@@ -128,23 +125,6 @@ def where_owned(d: Discourse, node: Node) -> Where:
         word = d.words(node.start, node.start + 1)
         raise NotUnderstood(d.language.phrase("what_is_it", word=word), gap=(node.start, node.end))
     return Where(place_called_after(d, owner.value, node), d.get(node, "furniture"))
-
-
-def nearest(words: str, names: tuple[Name, ...]) -> tuple[str, ...]:
-    """The names most like some words, the best first."""
-    from rapidfuzz import fuzz, process
-
-    choices = {text: name.name for name in names for text in (name.name, *name.aliases)}
-    if _is_numbered(words):  # no room without a number is like "room 3"
-        choices = {text: name for text, name in choices.items() if _is_numbered(text)}
-    found = process.extract(
-        words.lower(), list(choices), scorer=fuzz.ratio, limit=6, score_cutoff=LIKE_ENOUGH
-    )
-    return tuple(dict.fromkeys(choices[text] for text, _, _ in found))[:3]
-
-
-def _is_numbered(name: str) -> bool:
-    return any(letter.isdigit() for letter in name)
 
 
 @meaning("where")
