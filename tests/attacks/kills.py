@@ -60,7 +60,7 @@ def killed(home: Path, chance: random.Random) -> tuple[int, int]:
         operator = Operator(robot, "Kim")
         operator.watch(told, "program")
         run = operator.run(operator.approve(operator.check(PROGRAM), insists=True))
-        begun.wait(10)
+        begun.wait(60)
         time.sleep(chance.uniform(0, 0.5))
         process.send_signal(signal.SIGKILL)
     process.wait()
