@@ -353,7 +353,10 @@ class _Brief(Teller):
         return Deed(fill(pattern, {"thing": told, "places": there}))
 
     def _report(self, step: p.If) -> list[Item] | None:
-        """Both branches of it only tell whoever asked: "tell you whether ..."."""
+        """Both branches of it only tell whoever asked: "tell you whether ..."; not where the robot
+        leaves them to know it."""
+        if any(isinstance(node, p.Ask) and node.method == "find" for node in nodes(step.condition)):
+            return None
         then, otherwise = self._reported(step.then), self._reported(step.otherwise)
         if not (then and otherwise) or then[0] or otherwise[0]:
             return None

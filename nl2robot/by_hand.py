@@ -14,6 +14,8 @@ from nl2robot.harmless import ONLY_LOOKS
 from nl2robot.runlog import LogError, RunLog
 from robot_api.errors import NotPossible
 
+BUSY: Final = "A program is running, and drives the robot. Wait for its end, or stop it first."
+"""Why nothing is done by hand meanwhile: what it does was approved, this was not."""
 ONE_DRIVE: Final = 2.0
 """Seconds between two movements of the joystick that are one drive: there are ten each second."""
 SOMEBODY: Final = "somebody"

@@ -10,6 +10,7 @@ from typing import Final
 
 from nl2robot.runlog import LogError, RunLog
 
+DAY: Final = 24 * 3600.0
 LOOKS_EVERY: Final = 3600.0
 """Seconds between two looks for what is too old."""
 

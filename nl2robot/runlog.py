@@ -339,7 +339,8 @@ class RunLog:
         for run in runs:
             for row in self._read("SELECT picture FROM runs WHERE id = ?", run):
                 if row["picture"]:
-                    Path(row["picture"]).unlink(missing_ok=True)
+                    with self._trouble():
+                        Path(row["picture"]).unlink(missing_ok=True)
             for table in ("calls", "output", "states", "movements"):
                 self._write(f"DELETE FROM {table} WHERE run = ?", run)
             if run == newest:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from nl2robot import present
 from nl2robot.attention import Attention
-from nl2robot.by_hand import ByHand
+from nl2robot.by_hand import BUSY, ByHand
 from nl2robot.console.part import STOP, Backstage
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.harmless import ONLY_LOOKS
@@ -48,7 +48,6 @@ if TYPE_CHECKING:
     from nl2robot.entrance import Entrance
     from nl2robot.speech.aloud import SoundFor
 
-_BUSY = "A program is running, and drives the robot. Wait for its end, or stop it first."
 ANSWERS_WITHIN = 5.0
 """Seconds that a server has to say what it can do."""
 
@@ -356,7 +355,7 @@ def _open(
     def before_call(who: str | None, method: str, arguments: Mapping[str, Any]) -> None:
         """Only its program has a robot act while one runs: that was approved, this was not."""
         if runner.present.state.state in GOING and method not in ONLY_LOOKS:
-            raise NotPossible(_BUSY)
+            raise NotPossible(BUSY)
         hand.note(who, method, arguments)
 
     talks = Talks()

@@ -82,8 +82,8 @@ def at_definition(node: ast.AST, calls: Callable[[ast.AST], bool]) -> Iterator[t
 
 
 def without_comments(program: str) -> str:
-    """The program with blanks in the place of its comments, of which some keep the type checker
-    quiet: nobody is to be told less for that."""
+    """The program without its comments, all else in its place: some keep the type checker quiet,
+    and nobody is to be told less for that."""
     try:
         tokens = list(tokenize.generate_tokens(io.StringIO(program).readline))
     except (tokenize.TokenError, SyntaxError):

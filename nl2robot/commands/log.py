@@ -6,7 +6,7 @@ import argparse
 import json
 from datetime import datetime
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 import msgspec
 
@@ -14,10 +14,9 @@ from nl2robot.changes import difference
 from nl2robot.commands.options import open_log, whole
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.plain import visible
+from nl2robot.retention import DAY
 from nl2robot.runlog import Run, RunLog
 from nl2robot.terminal import Terminal
-
-DAY: Final = 24 * 3600.0
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -29,7 +29,7 @@ from nl2robot.commands.options import (
 from nl2robot.entrance import PAGES_AT, Entrance
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.paths import authority_file, data_folder, pictures_folder
-from nl2robot.retention import kept_for
+from nl2robot.retention import DAY, kept_for
 from nl2robot.robots import places_of, reached, zones_of
 from nl2robot.station import robot_station, simulated_station
 from robot_api.access import LONGEST_SECRET, is_loopback
@@ -39,12 +39,10 @@ from robot_api.server import Server
 if TYPE_CHECKING:
     from nl2robot.certificates import Certificate
 
-FIRST_ACCOUNT_WITHIN: Final = 24 * 3600.0
+FIRST_ACCOUNT_WITHIN: Final = DAY
 """Seconds in which the first administrator's link is to be opened; the next start gives another."""
-
-
 LOG_DAYS: Final = 90
-DAY: Final = 24 * 3600.0
+"""That a run is kept, unless the hospital says otherwise."""
 SWITCHES_WITHIN: Final = 0.001
 """Seconds that a thread which computes (a dry run) keeps others waiting: a stop takes several."""
 SHORTEST_TOKEN: Final = 16

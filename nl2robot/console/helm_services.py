@@ -15,7 +15,7 @@ from typing import Any, Final
 
 import msgspec
 
-from nl2robot.by_hand import ByHand
+from nl2robot.by_hand import BUSY, ByHand
 from nl2robot.console.helm import HOLDS, Helm, State
 from nl2robot.console.localising import localise
 from nl2robot.console.part import Backstage, Part
@@ -137,7 +137,7 @@ class Controls:
 
     def _check_no_program(self) -> None:
         if self._runner.present.state.run is not None:
-            raise NotPossible("A program is running, and drives the robot. Stop it first.")
+            raise NotPossible(BUSY)
 
     def _on_event(self, kind: str, data: Event) -> None:
         match kind:

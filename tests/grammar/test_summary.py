@@ -267,6 +267,14 @@ def test_nothing_is_left_out_of_an_errand(language: str, plan: p.Plan) -> None:
             assert node.value in said, "a question is told in its words"
 
 
+def test_a_search_is_told_though_there_is_nothing_but_a_report_either_way() -> None:
+    found = p.Holds(p.Ask("find", {"thing": p.Text("Bob")}))
+    so = p.Sentence((p.Text("So: "), p.Ask("count", {"thing": p.Text("chair")}), p.Text(".")))
+    said = p.Call("say", {"text": so}), p.Call("say", {"text": p.Text("One.")})
+    plan = p.Plan((p.If(found, said[:1], said[1:]),), "en")
+    assert "find Bob" in summary(plan, "en")
+
+
 SENTENCES = Path(__file__).parent
 
 
