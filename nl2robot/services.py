@@ -190,6 +190,7 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             doc="Wait until a run is over and tell how it ended.",
             observes=True,
             lane="wait",
+            after_stop=True,
         ),
         "program.answer": service(
             lambda p: answer(runner.log, runner.knowledge, p["run"], p.get("language", "en")),

@@ -293,9 +293,15 @@ def _changes(state: State, happening: Happening) -> dict[str, Any]:
                 "because": because,
             }
         case Lost(since, because):
-            # A program that runs ends with the loss.
-            ending = {"ending": state.run is not None, "stands": False}
-            return {**ending, "lost_since": since, "because": because}
+            return {
+                "ending": state.run is not None,  # a program that runs ends with the loss
+                "stands": False,
+                # Nobody may ever answer for the stops that were on their way.
+                "stops": 0,
+                "unconfirmed": state.unconfirmed or state.stops > 0,
+                "lost_since": since,
+                "because": because,
+            }
         case Found():
             return {"lost_since": None}
         case Charging(charges):

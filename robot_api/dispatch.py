@@ -63,6 +63,8 @@ class Job:
     """Whether it can set the body in motion."""
     fleeting: bool = False
     """Whether it ends with its connection though it is one of a service."""
+    after_stop: bool = False
+    """Whether it is begun even if it is stopped before: it looks at the flag itself."""
     stop: StopFlag = field(default_factory=StopFlag)
     _claim: threading.Lock = field(default_factory=threading.Lock)
 
@@ -102,8 +104,8 @@ class Dispatcher:
     def start(self, job: Job) -> None:
         with self._lock:
             self._jobs.add(job)
-        # A stop also ends those that still wait for a worker.
-        job.stop.on_set(lambda: self._end_unstarted(job))
+        if not job.after_stop:  # a stop also ends those that still wait for a worker
+            job.stop.on_set(lambda: self._end_unstarted(job))
         self._lanes[job.lane].do(lambda: self._run(job), job.owner)
 
     def cancel(self, job: Job, because: str = "The call was cancelled.") -> None:

@@ -133,6 +133,9 @@ class Service:
     lane: Lane = "work"
     """Beside which others it runs: "control" if it is done at once, "wait" if it lasts as long as
     something else does."""
+    after_stop: bool = False
+    """Whether it is begun even if the robot is stopped before a thread has come to it, since it
+    tells what became of something; it looks at the flag itself."""
 
     @property
     def needs(self) -> roles.Right:
@@ -379,11 +382,20 @@ class Server:
         if method is None:
             service = self.services.get(call.method)
             fleeting = service is not None and service.for_caller
+            after_stop = service is not None and service.after_stop
             run_service = self._service(client, call)
             lane = service.lane if service is not None else "control"
             if lane == "work" and not roles.may(client.guest.role, "operate"):
                 lane = "look"
-            return Job(call.method, run_service, done, client, lane, fleeting=fleeting)
+            return Job(
+                call.method,
+                run_service,
+                done,
+                client,
+                lane,
+                fleeting=fleeting,
+                after_stop=after_stop,
+            )
 
         def run(stop: StopFlag) -> Any:
             if self._before_call is not None and not client.guest.own:

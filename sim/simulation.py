@@ -11,6 +11,7 @@ others return at once. Metres, seconds, degrees (left is +) everywhere.
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterable, Sequence
 from datetime import datetime, timedelta
 from types import TracebackType
@@ -35,6 +36,8 @@ T = TypeVar("T")
 
 LEAPS_AFTER = 60.0
 """Of a time in which the robot only waits, a copy leaps over what is beyond so many seconds."""
+_PATIENCE_WITH_LISTENERS = 0.02
+"""Seconds for which who has something to tell waits for another who tells: no stop hangs on it."""
 
 
 class Simulation:
@@ -59,6 +62,9 @@ class Simulation:
         self._waited = 0.0
         """How long its robot has done nothing but wait."""
         self._listeners: dict[int, Listener] = {}
+        self._delivering = threading.Lock()
+        self._deliverer: int | None = None
+        """The thread that hands out events now."""
         self._runner = Runner(hospital.step, hospital.rest, self._deliver, STEP, speed)
 
     # --- running ---------------------------------------------------------------------------------
@@ -159,11 +165,23 @@ class Simulation:
         self._deliver()
 
     def _deliver(self) -> None:
-        events = self._hospital.events
-        while events:
-            kind, data = events.popleft()
-            for listener in self._listeners.values():
-                listener(kind, data)
+        """Hand out the events, one thread at a time: everybody hears of them in the order in which
+        they happened, of the end of a stop never before its beginning."""
+        me, events = threading.get_ident(), self._hospital.events
+        if self._deliverer == me:  # a listener has made an event: it comes after the one at hand
+            return
+        # Who comes second waits until its own are told, but not for a listener that hangs: then
+        # the first hands them out as well, since it looks once more after it has let go.
+        while events and self._delivering.acquire(timeout=_PATIENCE_WITH_LISTENERS):
+            self._deliverer = me
+            try:
+                while events:
+                    kind, data = events.popleft()
+                    for listener in self._listeners.values():
+                        listener(kind, data)
+            finally:
+                self._deliverer = None
+                self._delivering.release()
 
     # --- things that take no time ----------------------------------------------------------------
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import threading
 from abc import ABC
 from collections.abc import Callable, Iterator
@@ -13,6 +14,8 @@ from robot_api.driver import Event, StopFlag
 from robot_api.methods import METHODS
 
 Listener = Callable[[str, Event], None]
+
+_log = logging.getLogger(__name__)
 
 POLL = 0.01
 """Seconds of real time between two looks at the stop flag while something is waited for."""
@@ -66,14 +69,19 @@ class Hub:
         return unsubscribe
 
     def publish(self, kind: str, **data: Any) -> None:
-        """Tell all listeners, in this thread. `kind` and its data are those of `EVENTS`."""
+        """Tell all listeners, in this thread. `kind` and its data are those of `EVENTS`. One with
+        a fault takes it from nobody else, nor from the robot."""
         self.forward(kind, data)
 
     def forward(self, kind: str, data: Event) -> None:
+        """As `publish`."""
         with self._lock:
             listeners = list(self._listeners.values())
         for listener in listeners:
-            listener(kind, data)
+            try:
+                listener(kind, data)
+            except Exception:  # noqa: BLE001 - whatever it was, the next one is told
+                _log.exception("a listener failed at the event '%s'", kind)
 
 
 class Turns:

@@ -80,14 +80,14 @@ def test_of_a_round_people_and_places_are_told(slow_operator) -> None:
         '        robot.ask("Tea?", ["yes", "no"], person=person)\n'
         "robot.dock()\n"
     )
-    stopped_at(slow_operator, program, 7)
+    stopped_at(slow_operator, program, 6)
     done = [
         "Done already, and not done again: say “Here I come.”; ward a.",
-        "Still to do: ward b. It goes on with ward b, at line 5.",
+        "Still to do: ward b. It goes on with ward b, at line 4.",
     ]
     assert slow_operator.unfinished().told[:2] == done
     assert slow_operator.unfinished("de").told[1] == (
-        "Noch zu tun: Station B. Es geht weiter mit Station B, in Zeile 5."
+        "Noch zu tun: Station B. Es geht weiter mit Station B, in Zeile 4."
     )
 
 

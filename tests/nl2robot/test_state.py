@@ -41,6 +41,8 @@ def story(*happenings) -> list[str]:
 
 STOP, STANDS = StopAsked("The robot was stopped."), StopConfirmed("The robot was stopped.")
 
+STUCK = ["stopping", "lost", "stopping"]
+
 
 @pytest.mark.parametrize(
     ("happenings", "states"),
@@ -62,6 +64,8 @@ STOP, STANDS = StopAsked("The robot was stopped."), StopConfirmed("The robot was
         ([STOP, STANDS, Moving()], ["stopping", "stopped", "idle"]),
         ([STOP, STANDS, Reviewing("desk", True)], ["stopping", "stopped", "reviewing"]),
         ([Began(1), Lost(0, "Gone."), Found()], ["running", "lost", "stopping"]),
+        # Of a stop that was on its way when the robot was lost nobody may ever hear again.
+        ([STOP, Lost(0, "Gone."), Found(), STOP, STANDS], [*STUCK, "stopping", "stopped"]),
         ([Lost(0, "Gone."), Began(1), STOP], ["lost", "lost", "stopping"]),
         ([Charging(True), Began(1), Ended(1, "done")], ["charging", "running", "charging"]),
         ([Halted(), Resumed(), PauseAsked()], ["idle"] * 3),

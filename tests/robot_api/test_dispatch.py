@@ -54,6 +54,27 @@ def test_one_connection_leaves_room_for_another(dispatcher: Dispatcher, lane: La
     assert other.ended.wait(SOON)
 
 
+def test_what_tells_of_an_end_is_begun_even_after_the_stop_that_brought_it(
+    dispatcher: Dispatcher,
+) -> None:
+    told: list[tuple[Any, Any]] = []
+    ended = [threading.Event() for _ in range(2)]
+
+    def job(number: int, after_stop: bool) -> Job:
+        def done(result: Any, error: Any) -> None:
+            told.append((result, type(error).__name__))
+            ended[number].set()
+
+        return Job("test", StopFlag.is_set, done, "nurse", "wait", after_stop=after_stop)
+
+    for number, after_stop in enumerate((True, False)):
+        begun = job(number, after_stop)
+        begun.stop.set("It was stopped before a thread had come to it.")
+        dispatcher.start(begun)
+        assert ended[number].wait(SOON)
+    assert told == [(True, "NoneType"), (None, "Stopped")]
+
+
 def test_who_waits_for_the_end_keeps_nobody_from_ending_it(dispatcher: Dispatcher) -> None:
     most, each = LANES["wait"]
     waiting = [

@@ -180,3 +180,20 @@ def test_events_reach_those_who_listen_as_long_as_they_do() -> None:
     hub.publish("gesture", name="wave")
     assert [kind for kind, _ in heard] == ["first emotion", "second emotion", "second gesture"]
     assert heard[0][1] == {"name": "happy"}
+
+
+def test_a_listener_with_a_fault_takes_the_event_from_nobody(
+    trolley: ComposedDriver, wheels: Trolley, caplog: pytest.LogCaptureFixture
+) -> None:
+    def fail(kind: str, data: Event) -> None:
+        raise ValueError("a listener with a fault")
+
+    heard: list[str] = []
+    trolley.subscribe(fail)
+    trolley.subscribe(lambda kind, data: heard.append(kind))
+    ride = Ride(trolley, "move", metres=3)
+    assert wheels.under_way.acquire(timeout=10)
+    trolley.stop("The ward stops it.")
+    assert isinstance(ride.end(), Stopped)
+    assert [kind for kind in heard if kind != "log"] == ["stopping", "stopped"]
+    assert "a listener failed at the event 'stopping'" in caplog.text

@@ -193,6 +193,67 @@ def test_a_stop_flag_is_seen_though_the_clock_stands_nearly_still(small_ward) ->
         assert simulation.robot.speed == 0
 
 
+def test_all_hear_of_events_in_the_order_in_which_they_happened(small_ward) -> None:
+    """Also if who tells of the first is held up meanwhile; the other is not held up with them."""
+    simulation = Simulation(small_ward)
+    told: list[str] = []
+    telling, go_on = threading.Event(), threading.Event()
+
+    def listener(kind: str, data: object) -> None:
+        if kind == "stopping":
+            telling.set()
+            assert go_on.wait(5)
+        told.append(kind)
+
+    simulation.subscribe(listener)
+    slow = threading.Thread(target=simulation.emit, args=("stopping", {}))
+    slow.start()
+    assert telling.wait(5)
+    simulation.emit("stopped", {})
+    assert told == []
+    go_on.set()
+    slow.join()
+    assert told == ["stopping", "stopped"]
+
+
+def test_what_a_listener_tells_comes_after_what_it_was_told(small_ward) -> None:
+    simulation = Simulation(small_ward)
+    told: list[str] = []
+
+    def answering(kind: str, data: object) -> None:
+        if kind == "speech":
+            simulation.emit("heard", {})
+
+    simulation.subscribe(answering)
+    simulation.subscribe(lambda kind, data: told.append(kind))
+    simulation.emit("speech", {})
+    assert told == ["speech", "heard"]
+
+
+def test_many_who_tell_at_the_same_time_take_nothing_from_each_other(small_ward) -> None:
+    simulation = Simulation(small_ward)
+    told: list[tuple[int, int]] = []
+    simulation.subscribe(lambda kind, data: told.append((data["who"], data["number"])))
+    failed: list[BaseException] = []
+
+    def tell(who: int) -> None:
+        try:
+            for number in range(300):
+                simulation.emit("heard", {"who": who, "number": number})
+        except BaseException as error:  # noqa: BLE001 - of a thread that nobody would hear of
+            failed.append(error)
+
+    threads = [threading.Thread(target=tell, args=(who,)) for who in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not failed
+    for who in range(4):
+        assert [number for each, number in told if each == who] == list(range(300))
+    assert len(told) == 1200
+
+
 def test_what_breaks_under_a_clock_is_raised_in_the_caller(small_ward) -> None:
     with Simulation(small_ward, speed=100) as simulation:
         simulation._hospital.people[0].body = None  # cannot be
