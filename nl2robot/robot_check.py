@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from nl2robot.robots import Chosen, alone, opener, trouble_reaching
+from nl2robot.robots import (
+    Chosen,
+    alone,
+    opener,
+    order_of,
+    places_of,
+    trouble_reaching,
+    zones_of,
+)
 from robot_api.checker import Report, check_driver, check_robot
 from sim.world import World
 
@@ -18,7 +26,13 @@ def checked(robot: Chosen, world: World, password: str | None, *, move: bool) ->
     if address.host and address.port is None:
         address = replace(address, port=robot.kind.port)
     with alone(robot), trouble_reaching():
-        return check_robot(opener(robot, world, password=password), address, move=move)
+        places = places_of(world, zones_of(world))
+        return check_robot(
+            opener(robot, world, password=password, places=places),
+            address,
+            move=move,
+            order=order_of(replace(robot, address=address), password, places),
+        )
 
 
 def _simulated(robot: Chosen, world: World, move: bool) -> Report:

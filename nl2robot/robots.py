@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
@@ -17,10 +17,11 @@ from robot_api.capabilities.sound import SILENT, Ears, Microphone, Sound
 from robot_api.driver import Driver
 from robot_api.errors import LostConnection, RobotError
 from robot_api.robots.address import Address, BadAddress, parse
+from robot_api.robots.guardian import Guardian, Order
 from robot_api.robots.opening import open_robot
 from robot_api.robots.places import NamedPlace, Places
 from robot_api.robots.reading import Read, read_robot_file, without_file
-from robot_api.robots.registry import RobotKind, kind_of
+from robot_api.robots.registry import RobotKind, Setup, kind_of
 
 if TYPE_CHECKING:
     from sim.world import World, Zone
@@ -82,10 +83,8 @@ def reached(
     with alone(robot):
         with trouble_reaching():
             driver = opener(robot, world, sound, password, places)(robot.address)
-        try:
+        with guarded(robot, password), closing(driver):
             yield driver
-        finally:
-            driver.close()
 
 
 def opener(
@@ -110,6 +109,32 @@ def opener(
         )
 
     return open_at
+
+
+@contextmanager
+def guarded(robot: Chosen, password: str | None = None) -> Iterator[None]:
+    """Meanwhile a process of its own stops the robot if this one is killed."""
+    if robot.kind.brake is None:
+        yield
+        return
+    guardian = Guardian(order_of(robot, password))
+    try:
+        yield
+    finally:
+        guardian.close()
+
+
+def order_of(robot: Chosen, password: str | None = None, places: Places | None = None) -> Order:
+    """The robot, for another process."""
+    return Order.of(
+        Setup(
+            address=robot.address,
+            file=robot.read.file,
+            places=places or Places(),
+            settings=robot.read.settings,
+            password=password or os.environ.get(PASSWORD),
+        )
+    )
 
 
 @contextmanager

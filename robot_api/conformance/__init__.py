@@ -21,6 +21,7 @@ from robot_api.conformance.behaviour import (
     check_names,
     check_places,
 )
+from robot_api.conformance.killing import check_killed
 from robot_api.conformance.limits import check_limits
 from robot_api.conformance.link import Proxy
 from robot_api.conformance.losing import Connect, check_link
@@ -30,6 +31,7 @@ from robot_api.conformance.subject import Findings, Subject, report
 from robot_api.driver import Driver
 from robot_api.errors import RobotError
 from robot_api.robots.address import Address
+from robot_api.robots.guardian import Order
 
 __all__ = ["Connect", "Problem", "Proxy", "Report", "Row", "State", "check_driver", "check_robot"]
 
@@ -44,12 +46,15 @@ def check_driver(driver: Driver, *, move: bool = True) -> Report:
     return report(subject)
 
 
-def check_robot(connect: Connect, address: Address, *, move: bool = True) -> Report:
+def check_robot(
+    connect: Connect, address: Address, *, move: bool = True, order: Order | None = None
+) -> Report:
     """The same for the robot at an address, and what happens when it cannot be reached.
 
     `connect` makes a driver for an address; it is called several times, mostly with that of a
     `Proxy` that stands for the robot, so the address needs a port. One without a host, such as
-    `sim`, has no link to be cut. Raises what `connect` raises if the robot is not there at all.
+    `sim`, has no link to be cut. `order` is how another process reaches the robot: that is killed
+    while it drives. Raises what `connect` raises if the robot is not there at all.
     """
     driver = connect(address)
     subject = Subject(driver, move, Findings())
@@ -60,6 +65,8 @@ def check_robot(connect: Connect, address: Address, *, move: bool = True) -> Rep
             driver.close()
     if address.host:
         check_link(connect, address, move, subject.findings)
+        if order is not None and move:
+            check_killed(connect, address, order, subject.findings)
     return report(subject)
 
 

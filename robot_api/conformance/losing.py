@@ -171,7 +171,7 @@ class Losing:
                 left = LOST_WITHIN - (time.monotonic() - began)
                 self.ended(name, call, max(left, _NEWS), when)
             if moving is not None:
-                self.robot_stands(began, what)
+                self.robot_stands(began, f"the link {what}")
             self.asked_in_vain(subject, when)
             self.stop_is_honest(subject, when)
             start = len(subject.heard)
@@ -211,19 +211,19 @@ class Losing:
         if subject.heard.wait_for("stopped", start, 0):
             self.wrong(f"a stop sent the event 'stopped' {when}")
 
-    def robot_stands(self, began: float, what: str) -> None:
-        """The robot itself comes to rest when nobody can reach it; seen over another link."""
+    def robot_stands(self, began: float, what: str, part: str = "link") -> None:
+        """The robot itself comes to rest when nobody drives it; seen over another link."""
         try:
             witness = self.connect(self.address)
         except RobotError as error:
-            self.findings.notes["link"] = f"whether it stands alone was not seen: {error}"
+            self.findings.notes[part] = f"whether it stands alone was not seen: {error}"
             return
         with self.looking_at(witness) as subject:
             moves = subject.moves_on()
             while moves and time.monotonic() - began < STANDS_WITHIN:
                 moves = subject.moves_on()
             if moves:
-                self.wrong(f"the robot {moves} {STANDS_WITHIN:g} s after the link {what}")
+                self.wrong(f"the robot {moves} {STANDS_WITHIN:g} s after {what}", part)
 
     def found_again(self, subject: Subject, start: int, when: str) -> None:
         """It is found by itself, works as before, and goes on with nothing."""

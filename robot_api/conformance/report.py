@@ -9,7 +9,7 @@ import msgspec
 
 State = Literal["works", "stood in for", "lacks", "not tried", "problems"]
 
-PARTS = ("stopping", "limits", "events", "link", "two clients")
+PARTS = ("stopping", "limits", "events", "link", "two clients", "killed server")
 """What is looked at besides the capabilities of the method table."""
 
 

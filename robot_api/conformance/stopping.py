@@ -104,6 +104,8 @@ def _ended(subject: Subject, call: Attempt, began: float, what: str, faults: _Fa
         faults.wrong.append(f"did not come back after {what}")
         subject.stop("The check gives this call up.", call).returned()
         return
+    if call.ended <= began:
+        return  # it was done when nobody had told it anything yet
     _in_time(subject, call.ended - began, f"came back {{}} ms after {what}", faults)
     if call.error is None:  # it may just have been done
         faults.late.append(f"returned after {what} as if nothing had been, and raised no Stopped")

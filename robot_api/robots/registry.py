@@ -58,6 +58,16 @@ class Setup:
     password: str | None = None
 
 
+@dataclass(frozen=True)
+class Brake:
+    """Stops a robot from beside its driver, over a connection of its own."""
+
+    halt: Callable[[], None]
+    """Returns when the robot has confirmed that it stands. Raises `StopNotConfirmed`."""
+    close: Callable[[], None]
+    """Lets go of the robot; never raises."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class RobotKind:
     """A kind of robot, and how to get a driver for one."""
@@ -72,6 +82,9 @@ class RobotKind:
     """Reaches the robot. It imports what it needs when it is called. Raises `LostConnection` (the
     robot cannot be reached), `AccessDenied` (it wants a login), `NotSupported` (it is not what its
     file says)."""
+    brake: Callable[[Setup], Brake] | None = None
+    """Reaches the robot beside its driver, to stop it when that is killed (`guardian`). Raises
+    `RobotError`. None for a robot that stands by itself when nobody drives it any more."""
     modules: tuple[str, ...] = ()
     """Libraries that must be there."""
     extra: str | None = None

@@ -130,8 +130,7 @@ def test_a_listener_that_stumbles_does_not_keep_the_robot_from_stopping(robot: F
             raise ZeroDivisionError
 
     robot.subscribe(stumble)
-    with pytest.raises(ZeroDivisionError):
-        robot.stop("The nurse said so.")
+    robot.stop("The nurse said so.")
     assert robot.core.asked.acquire(blocking=False)
 
 

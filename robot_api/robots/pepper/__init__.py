@@ -20,7 +20,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from robot_api.robots.pepper.settings import PepperSettings
-from robot_api.robots.registry import RobotKind, Setup
+from robot_api.robots.registry import Brake, RobotKind, Setup
 
 if TYPE_CHECKING:
     from robot_api.driver import Driver
@@ -32,11 +32,18 @@ def _connect(setup: Setup) -> Driver:
     return connect(setup)
 
 
+def _brake(setup: Setup) -> Brake:
+    from robot_api.robots.pepper.driver import brake
+
+    return brake(setup)
+
+
 PEPPER = RobotKind(
     scheme="pepper",
     title="A Pepper with NAOqi 2.5, or 2.9 with a login",
     example="pepper://HOST",
     connect=_connect,
+    brake=_brake,
     modules=("qi",),
     extra="pepper",
     port=9559,

@@ -30,7 +30,7 @@ from robot_api.robots.pepper.skills import PepperSkills
 from robot_api.robots.pepper.tablet import PepperScreen
 from robot_api.robots.pepper.voice import PepperSpeech
 from robot_api.robots.pepper.wheels import PepperMotion
-from robot_api.robots.registry import Setup
+from robot_api.robots.registry import Brake, Setup
 
 
 class PepperDriver(ComposedDriver):
@@ -86,6 +86,14 @@ def connect(setup: Setup) -> PepperDriver:
     except BaseException:
         wire.close()
         raise
+
+
+def brake(setup: Setup) -> Brake:
+    """What stops the robot beside a driver. Raises `LostConnection`, `AccessDenied`."""
+    settings = setup.settings if isinstance(setup.settings, PepperSettings) else PepperSettings()
+    wire = Wire(setup.address, setup.password)
+    wire.open()
+    return Brake(Body(wire, settings.autonomous_life).stand_still, wire.close)
 
 
 def _parts(

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from robot_api.robots.registry import RobotKind, Setup
+from robot_api.robots.registry import Brake, RobotKind, Setup
 from robot_api.robots.ros.settings import RosSettings
 
 if TYPE_CHECKING:
@@ -33,11 +33,24 @@ def _ros2(setup: Setup) -> Driver:
     return connect(setup, 2)
 
 
+def _ros1_brake(setup: Setup) -> Brake:
+    from robot_api.robots.ros.driver import brake
+
+    return brake(setup, 1)
+
+
+def _ros2_brake(setup: Setup) -> Brake:
+    from robot_api.robots.ros.driver import brake
+
+    return brake(setup, 2)
+
+
 ROS2 = RobotKind(
     scheme="ros2",
     title="A robot with ROS 2 and Nav2, through rosbridge",
     example="ros2://HOST:9090",
     connect=_ros2,
+    brake=_ros2_brake,
     modules=("roslibpy",),
     extra="ros",
     port=9090,
@@ -49,6 +62,7 @@ ROS1 = RobotKind(
     title="A robot with ROS 1 and move_base, through rosbridge",
     example="ros1://HOST:9090",
     connect=_ros1,
+    brake=_ros1_brake,
     modules=("roslibpy",),
     extra="ros",
     port=9090,

@@ -24,7 +24,7 @@ from robot_api.capabilities.speech import LoudspeakerSpeech, Speech
 from robot_api.composed import ComposedDriver
 from robot_api.errors import AccessDenied, LostConnection, NotSupported, StopNotConfirmed
 from robot_api.robots.link import Link
-from robot_api.robots.registry import Setup
+from robot_api.robots.registry import Brake, Setup
 from robot_api.robots.ros.actions import Action, Ros1Action, Ros2Action
 from robot_api.robots.ros.body import (
     Battery,
@@ -86,19 +86,38 @@ class RosDriver(ComposedDriver):
 def connect(setup: Setup, version: Version) -> RosDriver:
     """Raises `LostConnection`, `AccessDenied`, `NotSupported`."""
     settings = setup.settings if isinstance(setup.settings, RosSettings) else RosSettings()
-    address = setup.address
-    where = Where(address.host, address.port or 9090, settings.tls, address.user, setup.password)
-    name = setup.file.name or f"The robot at {address.host}"
-    connection = Connection(where, settings.lost_after, name)
+    connection = _connected(setup, settings)
     try:
-        return _Assembly(setup, settings, Dialect(version), connection, name).driver()
+        return _Assembly(setup, settings, Dialect(version), connection).driver()
     except BaseException:
         connection.close()
         raise
 
 
+def brake(setup: Setup, version: Version) -> Brake:
+    """What stops the robot beside a driver. Raises as `connect` does."""
+    settings = setup.settings if isinstance(setup.settings, RosSettings) else RosSettings()
+    connection = _connected(setup, settings)
+    try:
+        halting = _Assembly(setup, settings, Dialect(version), connection).halting()
+    except BaseException:
+        connection.close()
+        raise
+    return Brake(halting.halt, connection.close)
+
+
+def _connected(setup: Setup, settings: RosSettings) -> Connection:
+    address = setup.address
+    where = Where(address.host, address.port or 9090, settings.tls, address.user, setup.password)
+    return Connection(where, settings.lost_after, _name_of(setup))
+
+
+def _name_of(setup: Setup) -> str:
+    return setup.file.name or f"The robot at {setup.address.host}"
+
+
 class _Assembly:
-    """Puts one driver together."""
+    """Puts one driver together, or what stops it."""
 
     def __init__(
         self,
@@ -106,8 +125,8 @@ class _Assembly:
         settings: RosSettings,
         dialect: Dialect,
         connection: Connection,
-        name: str,
     ) -> None:
+        name = _name_of(setup)
         self._setup = setup
         self._settings = settings
         self._dialect = dialect
@@ -143,13 +162,7 @@ class _Assembly:
         if found.laser is not None:
             laser = Laser(self._hub, self._settings.laser_turned)
             self._connection.work.subscribe(*found.laser, laser.hear, EVERY)
-        halting = Halting(
-            self._actions,
-            self._connection.ask,
-            self._still(found),
-            self._wheels if found.odometry is not None else None,
-            self._settings.stop_within,
-        )
+        halting = self._halting(found)
         core = RosCore(
             self._book,
             halting,
@@ -169,6 +182,29 @@ class _Assembly:
         )
         self._watch(found, halting)
         return driver
+
+    def halting(self) -> Halting:
+        """What stops the robot, without all else that a driver has."""
+        found = survey(self._graph, self._dialect, self._settings)
+        if found.odometry is not None:
+            self._connection.halt.subscribe(*found.odometry, self._wheels.hear, _ODOMETRY_EVERY)
+        if found.navigate is not None:
+            self._action(found.navigate, going(self._dialect))
+        if found.dock is not None:
+            self._action(found.dock, DOCKING)
+        for name, kind in found.controllers.items():
+            if kind == "action":
+                self._action(f"{name}/follow_joint_trajectory", TRAJECTORIES)
+        return self._halting(found)
+
+    def _halting(self, found: Found) -> Halting:
+        return Halting(
+            self._actions,
+            self._connection.ask,
+            self._still(found),
+            self._wheels if found.odometry is not None else None,
+            self._settings.stop_within,
+        )
 
     def _check_alone(self) -> None:
         """Raise `AccessDenied` if another server's heart is heard on the robot."""

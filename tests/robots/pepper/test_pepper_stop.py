@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import subprocess
 import time
 from collections.abc import Callable
 from typing import Any
 
+import msgspec
 import pytest
 
+from robot_api.conformance.killing import COMMAND
 from robot_api.driver import StopFlag
 from robot_api.errors import StopNotConfirmed, Stopped
-from tests.robots.pepper.conftest import Call, call, until
+from robot_api.robots.address import parse
+from robot_api.robots.guardian import Order
+from robot_api.robots.pepper import PepperSettings
+from robot_api.robots.registry import Setup
+from tests.robots.pepper.conftest import MAP, PLACES, Call, call, until
 
 
 @pytest.mark.parametrize(
@@ -165,3 +172,22 @@ def test_what_is_stopped_before_it_begins_does_not_begin(
     with pytest.raises(Stopped):
         driver.call("move", {"metres": 1}, flag)
     assert pepper.pose == [0, 0, 0]
+
+
+def test_of_a_server_that_is_killed_pepper_stands(standing_in: Callable[..., Any]) -> None:
+    """Pepper alone would go on to where it was sent."""
+    pepper = standing_in(hurry=1.0)
+    setup = Setup(
+        address=parse(f"pepper://127.0.0.1:{pepper.port}"),
+        places=PLACES,
+        settings=PepperSettings(map=MAP),
+    )
+    server = subprocess.Popen(COMMAND, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0)
+    assert server.stdin is not None and server.stdout is not None
+    with server.stdin, server.stdout:
+        server.stdin.write(msgspec.json.encode(Order.of(setup)) + b"\n")
+        assert server.stdout.readline().startswith(b"moving ")
+        server.kill()
+        server.wait()
+        assert until(lambda: pepper.speed < 0.001)
+        assert not until(lambda: pepper.speed > 0.01, 0.5)
