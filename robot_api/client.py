@@ -453,6 +453,8 @@ def _open(
         sentence = (refused.resp_body or b"").decode(errors="replace").strip()
         if refused.status_code in (401, 403):
             raise AccessDenied(sentence or "The robot refuses the connection.") from None
+        if refused.status_code == 503 and sentence:
+            raise LostConnection(sentence) from None
         raise LostConnection(f"What answers at {address} is no robot.") from None
     except websocket.WebSocketTimeoutException:
         raise LostConnection(f"The robot at {address} does not answer.") from None

@@ -25,6 +25,7 @@ from starlette.requests import Request
 from starlette.responses import (
     HTMLResponse,
     JSONResponse,
+    PlainTextResponse,
 )
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.types import ASGIApp
@@ -60,6 +61,11 @@ DEFAULT_PORT: Final = 9090
 PING_SECONDS: Final = 1.25
 """How often a client is asked for a sign of life, and how long it has to answer."""
 
+MAX_CLIENTS: Final = 256
+"""Connections at a time: each takes a descriptor, of which the robot's own work needs some."""
+MAX_LOOKING: Final = 128
+"""Of those who may not operate the robot."""
+FULL: Final = "The robot's server has no room for another connection. Close one, then try again."
 MAX_HEAD: Final = 8 * 1024
 """Bytes of the head of a request, which is read before it is known who sends it."""
 
@@ -475,8 +481,12 @@ class Server:
         return HTMLResponse(self._status_page(status), headers=HEADERS)
 
     async def _serve_client(self, socket: WebSocket) -> None:
+        guest = socket.scope["state"]["guest"]
+        if self._is_full(guest):
+            await socket.send_denial_response(PlainTextResponse(FULL, 503))
+            return
         self._clients_met += 1
-        client = Client(self, f"{self._clients_met}", socket.scope["state"]["guest"])
+        client = Client(self, f"{self._clients_met}", guest)
         self.clients.add(client)
         try:
             await client.serve(socket)
@@ -484,6 +494,14 @@ class Server:
             self.clients.discard(client)
             self.dispatcher.drop(client)
             self._on_left(client.name)
+
+    def _is_full(self, guest: access.Guest) -> bool:
+        """Whether there is no room for one more of them: who only looks on never takes the room of
+        who works with the robot."""
+        if roles.may(guest.role, "operate"):
+            return len(self.clients) >= MAX_CLIENTS
+        looking = sum(not roles.may(each.guest.role, "operate") for each in self.clients)
+        return looking >= MAX_LOOKING
 
 
 def _read_stop(params: protocol.Params) -> dict[str, Any]:

@@ -28,6 +28,7 @@ from nl2robot.commands.options import (
 )
 from nl2robot.entrance import PAGES_AT, Entrance
 from nl2robot.errors import ExitStatus, UserError
+from nl2robot.machine import allow_open_files, outdated_python
 from nl2robot.paths import authority_file, data_folder, pictures_folder
 from nl2robot.retention import DAY, kept_for
 from nl2robot.robots import places_of, reached, zones_of
@@ -113,6 +114,10 @@ def run(options: argparse.Namespace) -> int:
     from nl2robot.console.app import Console
 
     sys.setswitchinterval(SWITCHES_WITHIN)
+    allow_open_files()
+    outdated = outdated_python()
+    if outdated:
+        print(outdated, file=sys.stderr)
     robot = robot_of(options)
     world, log = world_of(options), open_log(options.debug)
     with ExitStack() as stack:

@@ -14,7 +14,6 @@ from string import Template
 from typing import Any, Final
 
 import msgspec
-import requests
 from starlette.requests import Request
 from starlette.responses import HTMLResponse
 from starlette.routing import Route
@@ -23,6 +22,7 @@ from nl2robot.console import video
 from nl2robot.console.choices import called, language_of_program
 from nl2robot.console.forgetting import Forgetting
 from nl2robot.console.part import Backstage, Part
+from nl2robot.console.sites import Answer, lets_itself_be_framed
 from nl2robot.console.tablet import FaceTablet
 from nl2robot.console.visitor import LANGUAGES, texts, visitor_of
 from nl2robot.console.visitor_language import VisitorLanguage
@@ -37,7 +37,6 @@ from robot_api.server import Context, Service
 PAGE: Final = Path(__file__).parent / "templates" / "face.html"
 LONGEST_PAGE: Final = 100_000
 """Of HTML, in characters, as for `show`."""
-SITE_ANSWERS_WITHIN: Final = 4.0
 
 SEARCHING: Final = ("find", "wait_for", "sees", "count", "objects", "people", "describe", "scan")
 """The calls during which the robot looks as if it thought."""
@@ -334,14 +333,5 @@ def _page(state: Mapping[str, Any], role: str, languages: Mapping[str, str]) -> 
     )
 
 
-def _shows_in_frames(url: str | None) -> str:
-    """Whether the web page at this address may stand in a frame of ours."""
-    if url is None:
-        return "yes"
-    try:
-        with requests.get(url, timeout=SITE_ANSWERS_WITHIN, stream=True) as answer:
-            policy = answer.headers.get("Content-Security-Policy", "").lower()
-            refuses = "X-Frame-Options" in answer.headers or "frame-ancestors" in policy
-            return "refuses" if refuses else "yes"
-    except requests.RequestException:
-        return "away"
+def _shows_in_frames(url: str | None) -> Answer:
+    return "yes" if url is None else lets_itself_be_framed(url)

@@ -7,6 +7,7 @@ import threading
 import urllib.request
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import MISSING, fields
 from http.server import HTTPServer, SimpleHTTPRequestHandler
 from types import SimpleNamespace
@@ -405,17 +406,54 @@ def test_who_looks_on_touches_nothing(ward: Ward, front: Tablet) -> None:
     assert front.touch("tea") and touched.result(AT_ONCE) == "tea"
 
 
-def test_a_web_page_that_cannot_be_framed_is_found_out(ward: Ward, front: Tablet) -> None:
-    with HTTPServer(("127.0.0.1", 0), SimpleHTTPRequestHandler) as another_site:
-        threading.Thread(target=another_site.serve_forever, daemon=True).start()
+class Detour(SimpleHTTPRequestHandler):
+    """A web site that sends everybody elsewhere."""
+
+    to = ""
+
+    def do_GET(self) -> None:
+        self.send_response(302)
+        self.send_header("Location", self.to)
+        self.end_headers()
+
+
+@contextmanager
+def another_site(handler: type[SimpleHTTPRequestHandler]) -> Iterator[str]:
+    with HTTPServer(("127.0.0.1", 0), handler) as site:
+        threading.Thread(target=site.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{site.server_port}/"
+        site.shutdown()
+
+
+def test_a_web_page_that_cannot_be_framed_is_found_out(
+    ward: Ward, front: Tablet, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # As if this machine were the open internet.
+    monkeypatch.setattr("nl2robot.console.sites._is_public", lambda url: True)
+    with another_site(SimpleHTTPRequestHandler) as site:
         for url, answer in (
             (f"http://{ward.server.address}/face", "refuses"),
-            (f"http://127.0.0.1:{another_site.server_port}/", "yes"),
+            (site, "yes"),
             ("http://127.0.0.1:1/", "away"),
         ):
             ward.driver.call("show", {"url": url}, StopFlag())
             assert front.request("site") == answer
-        another_site.shutdown()
+
+
+def test_nobody_learns_by_it_what_there_is_in_the_hospital(
+    ward: Ward, front: Tablet, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whether somebody listens there or not, the answer is the same; a detour does not help."""
+    with another_site(Detour) as site:
+        for url in ("http://127.0.0.1:1/", site, "http://10.0.0.1/", "http://[::1]:1/"):
+            ward.driver.call("show", {"url": url}, StopFlag())
+            assert front.request("site") == "yes"
+        monkeypatch.setattr("nl2robot.console.sites._is_public", lambda url: url == site)
+        ward.driver.call("show", {"url": site}, StopFlag())
+        for Detour.to in ("http://127.0.0.1:1/", f"http://{ward.server.address}/face"):
+            assert front.request("site") == "yes"
+        Detour.to = site  # for ever
+        assert front.request("site") == "away"
 
 
 # --- in a browser

@@ -9,8 +9,9 @@ import socket
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import Any
 
 import pytest
@@ -23,7 +24,7 @@ from starlette.routing import Route
 from robot_api import Context, InvalidCall, Robot, Server, Service
 from robot_api.driver import StopFlag
 from robot_api.drivers import EmulatedDriver, emulated
-from robot_api.errors import InternalError, NotPossible, Stopped
+from robot_api.errors import InternalError, LostConnection, NotPossible, Stopped
 from robot_api.server import CannotListen
 
 SOON = 20  # seconds; what is waited for comes within milliseconds
@@ -597,6 +598,28 @@ def test_an_observer_looks_on_and_may_stop_the_robot(driver: EmulatedDriver) -> 
         assert looks_on.ask("robot.move", {"metres": 1})["error"]["data"]["error"] == "AccessDenied"
         assert "result" in looks_on.ask("robot.stop")
         assert Wire(server.address).ask("ward.change")["result"] == "administrator"
+
+
+def test_who_only_looks_on_takes_nobody_s_room_to_work(
+    driver: EmulatedDriver, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("robot_api.server.MAX_LOOKING", 2)
+    monkeypatch.setattr("robot_api.server.MAX_CLIENTS", 4)
+    with Server(driver, port=0) as server, ExitStack() as stack:
+
+        def comes(token: str | None) -> Robot:
+            return stack.enter_context(Robot(server.address, token=token))
+
+        first, _ = comes(server.observer_token), comes(server.observer_token)
+        with pytest.raises(LostConnection, match="no room for another connection"):
+            comes(server.observer_token)
+        comes(None), comes(None)
+        with pytest.raises(LostConnection, match="no room for another connection"):
+            comes(None)
+        first.close()  # and there is room again
+        while len(server.clients) > 3:
+            time.sleep(0.01)
+        assert comes(None).battery() == 100
 
 
 def test_who_left_is_told_and_what_is_wanted_known(driver: EmulatedDriver) -> None:
