@@ -27,7 +27,7 @@ from grammar.lexicon import Lexicon
 from grammar.meanings.offers import with_offers_kept
 from grammar.memory import Command, Deliveries, People, Scene
 from grammar.names import Names
-from grammar.naming import joined_up, place_called
+from grammar.naming import joined_up, naming, place_called
 from grammar.plan import Plan, Text, Value
 from grammar.plausible import implausible
 from grammar.readings import read
@@ -286,6 +286,9 @@ class Reader:
             choices = self.language.phrase("did_you_mean", choices=self.alternatives(names))
             message = f"{message} {choices}"
             first, last = reason.span
+            articles = self.language.speech.get("articles", ())
+            if first and self.tokens[first - 1].norm in articles:  # a name brings its own
+                first -= 1
             suggestions = [self.with_words(first, last, name, noun=True) for name in names]
         return Understanding(
             self.text,
@@ -339,6 +342,10 @@ class Reader:
         return f"{', '.join(names[:-1])} {self.language.phrase('or')} {names[-1]}"
 
     def _ask_back(self, which: Ambiguous) -> Understanding:
+        whole = self._longer_name(which)
+        if whole is not None:
+            message = self.language.phrase("unknown_place", name=self.words(*whole))
+            return self._refused(NotUnderstood(message, span=whole))
         end = self.tokens[which.end - 1].end
         start = self.tokens[which.start].start if which.start < which.end else end
         before = self.opened(which.start)
@@ -361,6 +368,29 @@ class Reader:
             unclear=self.text[start:end],
             context=replace(self.context, question=question),
         )
+
+    def _longer_name(self, which: Ambiguous) -> tuple[int, int] | None:
+        """The tokens of the name that the unclear words are only a part of, of a place that nobody
+        knows here: "the meeting [room]", "[room] 101"."""
+        called = naming(self.lexicon, self.language).called
+        places = {called(each.name) for each in self.lexicon.places}
+        if which.start >= which.end or not places.issuperset(which.choices):
+            return None
+        people = {
+            word for each in self.lexicon.people for word in self.language.tokens_of(each.name)
+        }
+        known = (self.language.words, self.language.closed, people)
+        first, last = which.start, which.end
+        while first and self.tokens[first - 1].kind == "word":
+            if any(self.tokens[first - 1].norm in words for words in known):
+                break
+            first -= 1
+        if last < self.last_word and self.tokens[last].kind == "number":
+            # "room 101 that ..."; "the room 3 times" is said of the room.
+            behind = self.tokens[last + 1 : last + 2]
+            if all(each.kind == "mark" or each.norm in self.language.closed for each in behind):
+                last += 1
+        return (first, last) if (first, last) != (which.start, which.end) else None
 
     def _not_understood(self, chart: Chart) -> Understanding:
         """Name the first words that no reading could use."""

@@ -83,7 +83,7 @@ def worn(d: Discourse, node: Node) -> str:
         for way in ways
     }
     if last not in clothes and singular(last, d.language) not in clothes:
-        raise unknown_place(d, words, node)
+        raise unknown_place(d, words, part)
     return f"{d.language.speech['wearing']} {words}"
 
 

@@ -640,3 +640,39 @@ def test_whom_kind_words_are_for_is_no_part_of_them(
                 text = found.split("robot.say(")[1]
                 assert 'robot.goto("ward b")' in found, (each, whom, found)
                 assert "tation" not in text and "ward" not in text and "service" not in text, found
+
+
+@pytest.mark.parametrize(
+    ("language", "order", "unknown"),
+    [
+        (
+            "en",
+            [
+                "go to {}",
+                "is there a nurse in {}",
+                "take the cup to {}",
+                "tell Bob in {} that it is late",
+            ],
+            ["ward d", "the reading room", "the lecture room", "room 101", "the meeting room"],
+        ),
+        (
+            "de",
+            ["fahr nach {}", "ist jemand auf {}", "bring die Tasse nach {}"],
+            ["Station D", "Station 12"],
+        ),
+        ("fr", ["va à {}", "apporte la tasse à {}"], ["la chambre 12"]),
+    ],
+)
+def test_a_place_that_nobody_knows_is_named_whole_and_what_is_proposed_can_be_said(
+    language: str, order: list[str], unknown: list[str]
+) -> None:
+    """Not for "room" of the meeting room: which of all rooms."""
+    for each in order:
+        for place in unknown:
+            answer = said(language, each.format(place))
+            if answer.program is not None:
+                continue
+            assert answer.message is not None and place.split()[-1] in answer.message, each
+            for proposed in answer.suggestions:
+                understood = said(language, proposed)
+                assert understood.program is not None, (each, place, proposed, understood.message)

@@ -10,6 +10,7 @@ from typing import Final
 
 import msgspec
 
+from grammar.naming import naming, place_called
 from grammar.normal import normal
 from grammar.planning.heeding import heeded
 from grammar.planning.model.expansion import expanded
@@ -130,6 +131,9 @@ def _draft(turn: Turn, written: Written, share: float) -> Draft | None:
     return Draft(plan, NAME, share, context, score=written.score, surest=written.surest)
 
 
+_OF_SEVERAL: Final = ("which", "where")
+"""Questions which of several is meant."""
+MOST_CHOICES: Final = 4
 _SAME: Final = {
     (REFUSE, "dangerous"): "no_harm",
     (REFUSE, "medical"): "no_medicine",
@@ -146,9 +150,49 @@ def _way_out(turn: Turn, way: str, reason: str, words: str | None) -> Answer:
     if phrase not in turn.language.phrases:  # a reason that nobody knows
         return Refusal(turn.language.phrase("not_understood_at_all"), context=turn.context)
     message = turn.language.phrase(phrase, part=words or "")
+    if way == CLARIFY and reason in _OF_SEVERAL and words:
+        return _which(turn, words, message)
     if way == CLARIFY:
         return Question(message, context=turn.context)
     return Refusal(message, final=reason in ("dangerous", "medical"), context=turn.context)
+
+
+def _which(turn: Turn, words: str, message: str) -> Answer:
+    """The question which of those is meant that go by these words; if there are none, it is
+    something that nobody knows here."""
+    said = set(turn.language.tokens_of(words))
+    if said.isdisjoint(turn.reader.names.called):
+        unknown = turn.language.phrase("refuse_unknown_of", part=words)
+        return Refusal(unknown, context=turn.context)
+    lexicon = turn.lexicon
+    names = (*lexicon.places, *lexicon.people, *lexicon.objects, *lexicon.furniture)
+    choices = {
+        each.name: naming(lexicon, turn.language).called(each.name)
+        for each in names
+        if any(said <= set(turn.language.tokens_of(text)) for text in (each.name, *each.aliases))
+    }
+    if not 2 <= len(choices) <= MOST_CHOICES or words in choices.values():
+        return Question(message, context=turn.context)
+    *first, last = choices.values()
+    told = f"{', '.join(first)} {turn.language.phrase('or')} {last}"
+    return Question(
+        turn.language.phrase("which_one", what=words, choices=told),
+        tuple(_with_name(turn, words, name) for name in choices if words in turn.text),
+        context=turn.context,
+    )
+
+
+def _with_name(turn: Turn, words: str, name: str) -> str:
+    """The sentence with a name in the place of these words: a place brings its own article."""
+    articles = "|".join(map(re.escape, turn.language.speech.get("articles", ())))
+    article = (
+        re.search(rf"\b(?:{articles})\s+(?={re.escape(words)})", turn.text) if articles else None
+    )
+    is_place = any(each.name == name for each in turn.lexicon.places)
+    if article is None or not is_place:
+        return turn.text.replace(words, naming(turn.lexicon, turn.language).called(name), 1)
+    called = place_called(name, turn.lexicon, turn.language)
+    return turn.text[: article.start()] + called + turn.text[article.end() + len(words) :]
 
 
 _QUOTED: Final = re.compile(r'("(?:[^"\\]|\\.)*"?)')

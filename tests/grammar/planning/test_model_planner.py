@@ -11,6 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from grammar.language import load_language
+from grammar.naming import place_called
 from grammar.planning.model.planner import LONGEST, ModelPlanner
 from grammar.planning.model.request import Request, Written
 from grammar.planning.planner import (
@@ -90,6 +91,28 @@ def test_ways_out_are_told_in_words(
     assert getattr(answer, "final", False) is final
     for words in ("sauna", "ward"):
         assert (words in answer.message) == (words in written)
+
+
+def test_which_of_several_is_meant_is_asked_with_all_of_them(scripted: Scripted) -> None:
+    words = "Take the red cup to the ward."
+    turn = Turn(words, WARD, load_language("en"))
+    answer = ModelPlanner(scripted({words: ['clarify("which", "ward")']})).plan(turn, Watch())
+    assert isinstance(answer, Question)
+    names = [place.name for place in WARD.places if "ward" in place.name.split()]
+    assert len(names) > 1
+    assert all(name in answer.message for name in names)
+    called = [place_called(name, WARD, turn.language) for name in names]
+    assert answer.suggestions == tuple(f"Take the red cup to {name}." for name in called)
+    assert "Take the red cup to the children's ward." in answer.suggestions
+
+
+def test_what_nobody_here_is_called_is_not_one_of_several(scripted: Scripted) -> None:
+    words = "Take the red cup to the sauna."
+    turn = Turn(words, WARD, load_language("en"))
+    for question in ("which", "where"):
+        writer = scripted({words: [f'clarify("{question}", "sauna")']})
+        answer = ModelPlanner(writer).plan(turn, Watch())
+        assert isinstance(answer, Refusal) and "do not know “sauna” here" in answer.message
 
 
 def test_a_way_out_that_is_only_second_best_is_none(scripted: Scripted) -> None:
