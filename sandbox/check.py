@@ -16,11 +16,12 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 from robot_api.methods import METHODS
+from sandbox.diagnosis import diagnose
 from sandbox.disguise import at_definition, hidden_signs, strange_letters, without_comments
-from sandbox.interpreter import Unavailable, diagnose
 from sandbox.limits import MAX_PROGRAM
 from sandbox.sentences import UNAVAILABLE, near, problem, type_problem
 from sandbox.source import WRAPPERS, unix_newlines
+from sandbox.worker import Unavailable
 
 MODULES: Final = ("re", "math", "random")
 """What a program may import."""

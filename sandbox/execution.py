@@ -30,11 +30,11 @@ from sandbox.interpreter import (
     LimitReached,
     ProgramError,
     Slept,
-    Unavailable,
 )
 from sandbox.limits import MAX_PROGRAM, Limits
 from sandbox.sentences import UNAVAILABLE, problem
 from sandbox.visits import CLOSED, METHOD, going_on
+from sandbox.worker import Unavailable
 
 __all__ = ["CallRecord", "Execution", "Limits", "Outcome"]
 

@@ -1,4 +1,5 @@
-"""The one module that knows Monty, the interpreter that programs run in.
+"""A program in Monty, the interpreter that programs run in. (`worker` starts it, `diagnosis` has it
+check programs; nothing else knows it.)
 
 Monty runs a program in a process of its own that can reach nothing: every use of `robot` suspends
 it and comes here as an event, and it goes on when the event has been answered.
@@ -13,13 +14,8 @@ All of it belongs to one thread but `kill`, which any thread may call at any tim
 
 from __future__ import annotations
 
-import atexit
 import bisect
-import json
-import os
 import re
-import select
-import signal
 import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -32,8 +28,10 @@ import pydantic_monty as monty
 from robot_api.errors import cause
 from robot_api.values import Clock, Location
 from sandbox.limits import Limits
+from sandbox.process import Process
 from sandbox.rounds import counted
 from sandbox.source import unix_newlines, with_values
+from sandbox.worker import FAILURES, Unavailable, Worker
 
 # --- what comes out ------------------------------------------------------------------------------
 
@@ -90,20 +88,6 @@ class Killed(Exception):
     def __init__(self, message: str, interrupted: bool = False) -> None:
         super().__init__(message)
         self.interrupted = interrupted
-
-
-class Unavailable(Exception):
-    """The interpreter does not start on this machine."""
-
-
-@dataclass(frozen=True)
-class Diagnostic:
-    """What the type checker says of a program, in its own words; line and column count from 1."""
-
-    line: int
-    column: int
-    code: str
-    message: str
 
 
 # --- values that cross ---------------------------------------------------------------------------
@@ -224,9 +208,8 @@ class Interpreter:
         self._fault: BaseException | None = None
         self._seed = seed
         self._lock = threading.Lock()
-        self._pool = monty.Monty(max_processes=1)
-        self._session: monty.MontySession | None = None
-        self._process: _Process | None = None
+        self._worker: Worker | None = None
+        self._process: Process | None = None
         self._killed = False
         self._snapshot: Any = None
         self._robot = monty.ClassInstance(_Robot(), allowed_methods="all")
@@ -238,16 +221,18 @@ class Interpreter:
 
     def __enter__(self) -> Self:
         try:
-            self._pool.__enter__()
-            self._check_out()
-        except (monty.MontyError, RuntimeError, OSError) as error:
-            self.__exit__(None, None, None)
+            self._worker = Worker(self._check_out, limits=self._limits)
+        except FAILURES as error:
             raise Unavailable(cause(error)) from error
+        with self._lock:
+            self._process = Process(self._worker.process, self._died)
+            if self._killed:
+                self._process.kill()
         return self
 
-    def _check_out(self) -> None:
+    def _check_out(self, pool: monty.Monty) -> monty.MontySession:
         limits = self._limits
-        self._session = self._pool.checkout(
+        return pool.checkout(
             limits={
                 "max_turn_duration_secs": limits.computing,
                 "max_feed_duration_secs": limits.total_computing,
@@ -261,13 +246,6 @@ class Interpreter:
                 **({} if self._seed is None else {"random_start": {"seed": self._seed}}),
             },
         )
-        self._session.__enter__()
-        pid = self._session.worker_pid
-        assert pid is not None
-        with self._lock:
-            self._process = _Process(pid, self._died)
-            if self._killed:
-                self._process.kill()
 
     def __exit__(
         self,
@@ -282,9 +260,13 @@ class Interpreter:
         if process is not None:
             process.close()  # which waits for whoever is told of its end
         self._snapshot = None
-        if self._session is not None:
-            self._session.__exit__(None, None, None)
-        self._pool.__exit__(None, None, None)
+        if self._worker is not None:
+            self._worker.close()
+
+    @property
+    def layers(self) -> frozenset[str]:
+        """The layers of the wall around the process (`sandbox.confinement`) that hold."""
+        return self._worker.layers if self._worker is not None else frozenset()
 
     def kill(self) -> None:
         """End the program's process now, whatever it does; from any thread."""
@@ -307,8 +289,8 @@ class Interpreter:
             source = counted(source)
         encoded = source.encode()
         self._line_starts = [0, *(place + 1 for place, byte in enumerate(encoded) if byte == 10)]
-        session = self._session
-        assert session is not None, "enter the interpreter first"
+        assert self._worker is not None, "enter the interpreter first"
+        session = self._worker.session
 
         def start() -> Any:
             session.feed_run(_PRELUDE, print_callback=self._printed_text)
@@ -403,7 +385,7 @@ class Interpreter:
         if isinstance(error, monty.MontyCrashedError):
             if error.timed_out:
                 return LimitReached("computing")
-            return Killed(text, bool(re.search(r"\(SIG(INT|TERM|HUP)\)", str(error))))
+            return _broken(str(error)) or Killed(text, bool(_INTERRUPTED.search(str(error))))
         if "time limit exceeded" in text and isinstance(inner, TimeoutError):
             return LimitReached("computing")
         if isinstance(inner, MemoryError):
@@ -422,158 +404,22 @@ class Interpreter:
         return lines[-1] if lines else None
 
 
+_INTERRUPTED: Final = re.compile(r"\(SIG(INT|TERM|HUP)\)")
+_TOO_LONG: Final = re.compile(r"\(SIGXCPU\)")
+_BROKEN: Final = re.compile(r"\(SIG(ABRT|SEGV|BUS|ILL|TRAP)\)")
+
+
+def _broken(how: str) -> LimitReached | None:
+    """If a process ended by itself: the limit of the system that it came up against, beyond the
+    interpreter's own. One that is given no more memory breaks down."""
+    if _TOO_LONG.search(how):
+        return LimitReached("computing")
+    return LimitReached("memory") if _BROKEN.search(how) else None
+
+
 MOST_TOLD: Final = 2000
 """Letters of what a program's error says: it is kept in the log, and people read it."""
 
 
 def shortened(text: str) -> str:
     return text if len(text) <= MOST_TOLD else f"{text[:MOST_TOLD]} …"
-
-
-_INTERRUPTING: Final = (signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", None))
-
-
-class _Process:
-    """The process of a program, held so that no other process can be hit when it is gone."""
-
-    def __init__(self, pid: int, died: Callable[[bool], None]) -> None:
-        """`died(interrupted)` is called when it has ended, where the system tells of that (on
-        Linux)."""
-        self._pid = pid
-        self._handle = os.pidfd_open(pid) if hasattr(os, "pidfd_open") else None
-        self._watch: threading.Thread | None = None
-        if self._handle is not None:
-            self._watch = threading.Thread(
-                target=_when_readable, args=(self._handle, died), name="program", daemon=True
-            )
-            self._watch.start()
-
-    def kill(self) -> None:
-        try:
-            if self._handle is not None:
-                signal.pidfd_send_signal(self._handle, signal.SIGKILL)
-            else:
-                os.kill(self._pid, getattr(signal, "SIGKILL", signal.SIGTERM))
-        except (ProcessLookupError, PermissionError):
-            pass  # it is gone already
-
-    def close(self) -> None:
-        """After `kill`."""
-        if self._handle is not None:
-            if self._watch is not None and self._watch is not threading.current_thread():
-                self._watch.join()
-            os.close(self._handle)
-            self._handle = None
-
-
-def _when_readable(handle: int, died: Callable[[bool], None]) -> None:
-    """A process is gone when its handle can be read."""
-    waiting = select.poll()
-    waiting.register(handle, select.POLLIN)
-    waiting.poll()
-    try:
-        how = os.waitid(os.P_PIDFD, handle, os.WEXITED | os.WNOWAIT | os.WNOHANG)
-    except ChildProcessError:  # somebody has asked before
-        how = None
-    died(how is not None and how.si_code == os.CLD_KILLED and how.si_status in _INTERRUPTING)
-
-
-# --- checking ------------------------------------------------------------------------------------
-
-
-def diagnose(program: str, stub: str, seconds: float = 60.0) -> list[Diagnostic]:
-    """What Monty's parser and type checker say of a program; nothing of it is run. A check takes
-    milliseconds; after so many `seconds` by the clock on the wall it is given up, far above what a
-    busy machine needs. Raises `Unavailable`."""
-    with CHECKER as kept:
-        try:
-            try:
-                return _diagnosed(program, stub, kept.pool(seconds))
-            except monty.MontyCrashedError as error:
-                if error.timed_out:
-                    raise
-                kept.close()  # Ctrl-C ends the worker as well, wherever it was at
-                return _diagnosed(program, stub, kept.pool(seconds))
-        except monty.MontyCrashedError as error:
-            kept.close()
-            if not error.timed_out:
-                raise Unavailable(cause(error)) from error
-            message = "CheckError: The program is too involved to be checked. Make it simpler"
-            return [Diagnostic(1, 1, "unsupported", message)]
-        except (monty.MontyError, RuntimeError, OSError) as error:
-            kept.close()
-            raise Unavailable(cause(error)) from error
-
-
-class Checker:
-    """The worker that checks programs, kept for the next one: to start it takes forty times as long
-    as a check."""
-
-    def __init__(self) -> None:
-        self._lock = threading.Lock()
-        self._pool: monty.Monty | None = None
-        self._of: tuple[int, float] | None = None
-        """The process that it belongs to, which a fork is not, and its seconds for a check."""
-
-    def __enter__(self) -> Self:
-        self._lock.acquire()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._lock.release()
-
-    def pool(self, seconds: float) -> monty.Monty:
-        """The worker's pool; to be asked for under the lock."""
-        of = (os.getpid(), seconds)
-        if self._pool is None or self._of != of:
-            if self._of is not None and self._of[0] == of[0]:
-                self.close()
-            self._pool, self._of = monty.Monty(max_processes=1, request_timeout=seconds), of
-            self._pool.__enter__()
-        return self._pool
-
-    def close(self) -> None:
-        """Let go of the worker; the next check starts another."""
-        pool, self._pool = self._pool, None
-        if pool is not None and self._of is not None and self._of[0] == os.getpid():
-            pool.__exit__(None, None, None)
-
-
-CHECKER: Final = Checker()
-atexit.register(CHECKER.close)
-
-
-def _diagnosed(program: str, stub: str, pool: monty.Monty) -> list[Diagnostic]:
-    # The name is looked up before anything else happens, and never found.
-    guard = "program_starts_here"
-    with (
-        pool.checkout(
-            limits={"max_memory": 200_000_000},
-            type_check=True,
-            type_check_stubs=f"{stub}\n{guard}: int\n",
-            type_check_format="json",
-        ) as session,
-    ):
-        try:
-            snapshot = session.feed_start(f"{guard}\n{program}")
-            while isinstance(snapshot, monty.FunctionSnapshot) and snapshot.is_os_function:
-                snapshot = snapshot.resume_not_handled()  # stubs of modules that do not exist
-        except monty.MontyTypingError as error:
-            return [
-                Diagnostic(
-                    each["location"]["row"] - 1,
-                    each["location"]["column"],
-                    each["code"],
-                    each["message"],
-                )
-                for each in json.loads(error.display())
-                if each["severity"] == "error"
-            ]
-        except monty.MontyCrashedError:
-            raise
-        except monty.MontyError as error:
-            frames: list[monty.Frame] = getattr(error, "traceback", list)()
-            line = frames[-1].line - 1 if frames else 1
-            column = frames[-1].column if frames else 1
-            return [Diagnostic(max(1, line), column, "unsupported", str(error))]
-    return []

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from grammar.program import write_program
 from robot_api.driver import Capabilities
 from robot_api.stub import stub
-from sandbox import interpreter
+from sandbox import diagnosis
 from sandbox.check import Finding, check
 from sandbox.limits import MAX_PROGRAM
 from tests.grammar.random_plans import plans
@@ -381,16 +381,16 @@ def test_checks_of_several_threads_wait_for_each_other() -> None:
 def test_a_checker_that_ctrl_c_has_ended_is_started_anew(monkeypatch: pytest.MonkeyPatch) -> None:
     """The terminal interrupts all that it has started, whatever the checker is at."""
     assert found("robot.wait(1)") == []
-    real, interrupted = interpreter._diagnosed, []
+    real, interrupted = diagnosis._diagnosed, []
 
-    def interrupting(program: str, *more: Any) -> list[interpreter.Diagnostic]:
+    def interrupting(program: str, *more: Any) -> list[diagnosis.Diagnostic]:
         if not interrupted:
             interrupted.extend(workers())
             for worker in interrupted:
                 os.kill(worker, signal.SIGINT)
         return real(program, *more)
 
-    monkeypatch.setattr(interpreter, "_diagnosed", interrupting)
+    monkeypatch.setattr(diagnosis, "_diagnosed", interrupting)
     assert found("robot.wait(1)") == []
     assert interrupted
 

@@ -17,8 +17,8 @@ from robot_api.errors import Stopped, TimedOut
 from robot_api.stub import stub
 from robot_api.values import Location
 from sandbox.check import check
+from sandbox.diagnosis import CHECKER
 from sandbox.execution import Execution
-from sandbox.interpreter import CHECKER
 from sandbox.limits import Limits
 from tests.sandbox.ward import Ward, children
 
