@@ -25,8 +25,9 @@ from grammar.checking.misnamed import Misnamed, misnamed
 from grammar.checking.names import idle_names, misplaced, unbound
 from grammar.checking.sources import Source, Sources, content_left, sort_of
 from grammar.checking.words import Weighty, content, weighty, words_of
+from grammar.lexicon import Question
 from grammar.naming import place_called
-from grammar.plan import Ask, Call, Items, Plan
+from grammar.plan import Ask, Call, Items, Plan, Text
 from grammar.planning.mentions import Mention
 from grammar.planning.turn import Turn
 from grammar.plausible import implausible
@@ -244,7 +245,7 @@ class _Check:
         words = [token.norm for _, token in content(self.turn.tokens, self.language)]
         unasked = [
             method
-            for method in sorted(self.deeds & UNASKED)
+            for method in sorted((self.deeds & UNASKED) - self.asked_word_by_word)
             if not any(
                 self.evidence.speaks_for(word, deed) for word in words for deed in _akin(method)
             )
@@ -262,9 +263,31 @@ class _Check:
         words = [token.norm for _, token in content(self.turn.tokens, self.language)]
         return [
             method
-            for method in sorted(self.deeds & UNASKED)
+            for method in sorted((self.deeds & UNASKED) - self.asked_word_by_word)
             if not any(self.evidence.licenses(word, method) for word in words)
         ]
+
+    @cached_property
+    def asked_word_by_word(self) -> set[str]:
+        """ "answer", if the questions that are answered are among those that the house has answers
+        to, and all their words were said."""
+        said = {token.norm for token in self.turn.tokens}
+        known = {each.question: each for each in self.turn.lexicon.questions}
+        asked = [
+            known.get(question.value) if isinstance(question, Text) else None
+            for step in nodes(self.plan.steps)
+            if isinstance(step, Call | Ask) and step.method == "answer"
+            for question in (step.arguments.get("question"),)
+        ]
+        known_all = asked and all(each and self._said(each, said) for each in asked)
+        return {"answer"} if known_all else set()
+
+    def _said(self, question: Question, said: set[str]) -> bool:
+        for text in (question.question, *question.aliases):
+            words = set(self.language.tokens_of(text.rstrip(" ?"))) - self.language.closed
+            if words and words <= said:
+                return True
+        return False
 
     # --- what was left out
 

@@ -252,3 +252,15 @@ def test_a_name_that_nearly_is_one_is_asked_about(
 def test_a_thing_that_nobody_listed_is_looked_for(code: str, said: str, does: str) -> None:
     objections = Order(code, said, does).checked().objections
     assert not [each for each in objections if each.kind == "refused"]
+
+
+@pytest.mark.parametrize("language", ["en", "de", "fr"])
+def test_who_asks_word_by_word_what_the_house_has_an_answer_to_wants_that(language: str) -> None:
+    questions = orders.WARDS[language].questions
+    assert len(questions) > 1
+    for question, other in zip(questions, (*questions[1:], questions[0]), strict=True):
+        for says in (question.question, *question.aliases):
+            order = Order(language, says.lower().rstrip(" ?"), f'answer("{question.question}")')
+            assert not order.checked().doubts, says
+        another = Order(language, other.question, f'answer("{question.question}")').checked()
+        assert another.doubts or not another.sound or another.unused, (question, other)
