@@ -2,24 +2,57 @@
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
+# What is installed there: what runs, with voices too, with all that development needs.
+RUNS   := $(VENV)/.installed-run
+VOICES := $(VENV)/.installed-voices
 STAMP  := $(VENV)/.installed
 ROS2   := .venv-ros2
 
-.PHONY: run test format lint types tests soak browser systemd ros2 wheels sbom audit bench docs clean
+.PHONY: run voices test format lint types tests soak browser systemd ros2 wheels lock sbom audit bench docs clean
 
-run: $(STAMP)
+run: $(RUNS)
 	@$(BIN)/nl2robot demo
+
+# piper and espeak-ng stand under the GPL: whoever wants the robot to speak aloud asks for them.
+voices: $(VOICES)
 
 test: lint types tests
 
-$(STAMP): pyproject.toml
+# What a file of locks/ names, and nothing else: a package that is not the one that was tested is
+# refused. Versions are the same in all three files, so they may follow each other in any order.
+define install
 	@$(PYTHON) -c 'import sys; sys.exit("nl2robot needs Python 3.11 or newer; this is " + sys.version.split()[0] + ". Try: make PYTHON=python3.12 ...") if sys.version_info < (3, 11) else None'
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --upgrade pip
-	$(BIN)/python -m pip install --progress-bar on -e '.[dev]'
+	$(BIN)/python -m pip install --progress-bar on --require-hashes -r $(1)
+	$(BIN)/python -m pip install --quiet --no-deps -e .
 	@# the first start is as fast as any other, also where Python may write no bytecode later
 	@$(BIN)/python -m compileall -q grammar nl2robot robot_api sandbox sim
+endef
+
+$(RUNS): pyproject.toml locks/run.txt
+	$(call install,locks/run.txt)
 	@touch $@
+
+$(VOICES): $(RUNS) locks/voices.txt
+	$(BIN)/python -m pip install --progress-bar on --require-hashes -r locks/voices.txt
+	@touch $@
+
+$(STAMP): pyproject.toml locks/dev.txt
+	$(call install,locks/dev.txt)
+	@touch $(RUNS) $(VOICES) $@
+
+# After a change of what pyproject.toml asks for. Versions stay where they still fit;
+# `make lock UPGRADE=1` takes the newest.
+COMPILE = $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
+  --no-emit-index-url --no-header --annotation-style line $(if $(UPGRADE),--upgrade)
+EXTRA   = $(BIN)/python -c 'import sys, tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"][sys.argv[1]], sep="\n")'
+lock: | $(BIN)/uv
+	$(COMPILE) pyproject.toml --extra dev -o locks/dev.txt >/dev/null
+	$(COMPILE) pyproject.toml $(patsubst %,--extra %,echo planner pepper ros) --no-annotate -c locks/dev.txt -o locks/run.txt >/dev/null
+	$(EXTRA) voices | $(COMPILE) - --no-annotate -c locks/dev.txt -o locks/voices.txt >/dev/null
+
+$(BIN)/uv:
+	$(MAKE) $(STAMP)
 
 lint: $(STAMP)
 	$(BIN)/ruff format --check .

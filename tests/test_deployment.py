@@ -159,9 +159,12 @@ def test_the_image_asks_the_server_whether_it_is_well(image: list[dict[str, str]
     compile(code, "HEALTHCHECK", "exec")
 
 
-def test_the_image_installs_extras_that_there_are(image: list[dict[str, str]]) -> None:
-    [extras] = re.findall(r"\.\[([a-z,]+)\]", " ".join(of(image, "RUN")))
-    assert set(extras.split(",")) <= set(PROJECT["optional-dependencies"])
+def test_the_image_installs_what_is_locked_and_nothing_else(image: list[dict[str, str]]) -> None:
+    commands = [each for ran in of(image, "RUN") for each in ran.split("&&") if "install" in each]
+    of_others, ours = commands
+    assert "--require-hashes" in of_others and "--no-deps" in ours
+    files = re.findall(r"-r (\S+)", of_others)
+    assert files and all((ROOT / file).is_file() for file in files)
 
 
 # --- wheels --------------------------------------------------------------------------------------

@@ -51,7 +51,21 @@ def run(options: argparse.Namespace) -> int:
         '\nNow in your own words: [bold].venv/bin/nl2robot run "bring the red cup to Alice"[/]'
         "\nIn the browser:         [bold].venv/bin/nl2robot serve --open[/]"
     )
+    terminal.console.print(how_to_hear())
     return typed or spoken
+
+
+def how_to_hear() -> str:
+    """How the robot speaks aloud, which it did not here; what it needs is installed only where
+    somebody asks for it."""
+    from nl2robot.speech.voices import voices
+
+    if voices("en"):
+        return 'Aloud:                  [bold].venv/bin/nl2robot run "say good morning" --speak[/]'
+    return (
+        "Nothing was spoken aloud: no voice is installed, for they stand under the GPL."
+        " Get them with: [bold]make voices[/]"
+    )
 
 
 def _perform(

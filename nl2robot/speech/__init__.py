@@ -20,6 +20,7 @@ Hearing
 
 Speaking
     voices       text -> sound; sentences: what is spoken at a time; kept: what was spoken before
+                 voice_process: where that happens; voice_worker: what runs there, under the GPL
     kokoro       many voices, for trainings and benchmarks
     speaking     one text after the other, silent at once; loudspeaker: where the sound goes
     echo_cancelling  the robot's own voice, taken out of what is heard

@@ -32,6 +32,8 @@ def respelled(
 
     words = text.split()
     known = [(name, sound) for name in names if (sound := sounds(name.lower(), language))]
+    if not known:
+        return
     called = {name.lower() for name, _ in known}
     found: list[tuple[float, int, str]] = []
     for length in range(1, min(LONGEST, len(words)) + 1):
@@ -51,10 +53,14 @@ def respelled(
     yield from dict.fromkeys(instead for _, _, instead in sorted(found))
 
 
-@lru_cache(maxsize=4096)
 def sounds(words: str, language: str) -> str:
     """The sounds of some words, a letter of the IPA each; empty where nobody can tell."""
     try:
-        return _STRESS.sub("", phonemes(words, language))
-    except VoiceError:
+        return _told(words, language)
+    except VoiceError:  # not kept: what tells may be there again the next time
         return ""
+
+
+@lru_cache(maxsize=4096)
+def _told(words: str, language: str) -> str:
+    return _STRESS.sub("", phonemes(words, language))

@@ -55,6 +55,7 @@ SAYING = {
     "nl2robot/planners.py": {"UserError"},
     "nl2robot/speech/audio.py": {"AudioError"},
     "nl2robot/speech/microphone.py": {"AudioError"},
+    "nl2robot/speech/voices.py": {"VoiceError"},
 }
 BEFORE_THERE_IS_A_ROBOT = {
     "The world {} has no map to drive on. Give its places a pose, or choose another world.",
