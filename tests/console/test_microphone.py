@@ -667,9 +667,9 @@ def test_stop_cried_on_any_page_stops_the_program(says, listening) -> None:
         operator = Operator(robot, "Nurse Kim")
         run = operator.run(operator.approve(operator.check("robot.wait(100)\n")))
         hold(page)
-        assert operator.wait(run).state == "stopped"
         # Looked for first: it fades.
         expect(page.get_by_role("alert")).to_contain_text(WORDS["stopped"].split("{")[0])
+        assert operator.wait(run).state == "stopped"
         expect(button(page)).to_have_attribute("data-state", "listening")  # still held
 
 
