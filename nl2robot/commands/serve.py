@@ -115,9 +115,6 @@ def run(options: argparse.Namespace) -> int:
 
     sys.setswitchinterval(SWITCHES_WITHIN)
     allow_open_files()
-    outdated = outdated_python()
-    if outdated:
-        print(outdated, file=sys.stderr)
     robot = robot_of(options)
     world, log = world_of(options), open_log(options.debug)
     with ExitStack() as stack:
@@ -203,6 +200,9 @@ def _say_where(server: Server, entrance: Entrance, options: argparse.Namespace) 
     print(f"Who only looks on opens {page}?token={accounts.link('observer')}")
     if options.open:
         _open_page(server, port)
+    outdated = outdated_python()
+    if outdated:
+        print(outdated, file=sys.stderr)
     print("Ctrl-C stops the robot and ends the server.", flush=True)
 
 

@@ -182,6 +182,7 @@ def driven(station, before) -> float:
     return math.hypot(robot.x - before.x, robot.y - before.y)
 
 
+@pytest.mark.parametrize("slow_station", [2], indirect=True)  # twice, on a busy machine
 @pytest.mark.parametrize(
     ("program", "call", "whole"),
     [
