@@ -30,7 +30,7 @@ def test_a_goal_on_the_stairs_is_refused(version) -> None:
 
 @both
 def test_it_is_stopped_before_the_stairs_when_its_navigation_leads_there(version) -> None:
-    with StandIn(version, speed=0.8) as robot, connected(robot, keep_out=[STAIRS]) as driver:
+    with StandIn(version, speed=0.4) as robot, connected(robot, keep_out=[STAIRS]) as driver:
         error = Under(driver, "goto", place="far end").ended()
         assert isinstance(error, Blocked)
         assert "must not drive" in str(error)
