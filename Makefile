@@ -70,7 +70,6 @@ tests: $(STAMP) browser systemd ros2
 soak: $(STAMP)
 	$(BIN)/pytest -n auto --soak tests/errands
 	$(BIN)/python -m tests.attacks
-	$(BIN)/python -m tests.attacks.kills
 
 # The console is tested in a real browser: Debian's Chromium.
 browser:

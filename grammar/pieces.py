@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
@@ -46,6 +47,8 @@ NUMBERS: Final = frozenset({"number", "count"})
 NAMED: Final = {"person": "person_ref"}
 """Slots for names, and the rule that they count as where none of it is around them."""
 PRONOUNS: Final = frozenset({"person_pronoun", "person_me", "thing_it", "place_there"})
+MOST_ROWS: Final = 1000
+"""Ways to read some words as parts that are looked at."""
 UNHEARD: Final = frozenset({"noun", "unknown", "text", "word"})
 """Slots for words that nobody knows."""
 
@@ -96,18 +99,23 @@ def pieces_of(reader: Reader) -> Iterator[list[Piece]]:
     """The ways to read all words of a correction as parts that can be put in, the longest parts
     first."""
     try:
-        yield from _rows(reader, 0)
+        yield from itertools.islice(_rows(reader, 0, set()), MOST_ROWS)
     except TooMuch:
         return
 
 
-def _rows(reader: Reader, at: int) -> Iterator[list[Piece]]:
+def _rows(reader: Reader, at: int, dead: set[int]) -> Iterator[list[Piece]]:
+    """`dead`: where it is known already that nothing leads from to the end; there may be as many
+    ways to each of them as there are ways to read a row of numbers."""
     end = reader.last_word
     while at < end and (reader.tokens[at].kind == "mark" or at in reader.skips):
         at += 1
     if at >= end:
         yield []
         return
+    if at in dead:
+        return
+    found = False
     joined = words_listed(reader.language, "joins")
     begins = [at + 1] if (reader.tokens[at].norm,) in joined else []
     for begin in (at, *begins):
@@ -118,8 +126,11 @@ def _rows(reader: Reader, at: int) -> Iterator[list[Piece]]:
             if start >= end:  # a preposition without more
                 continue
             for piece in sorted(_likely_at(reader, start), key=lambda piece: -piece.end):
-                for rest in _rows(reader, piece.end):
+                for rest in _rows(reader, piece.end, dead):
+                    found = True
                     yield [piece, *rest]
+    if not found:
+        dead.add(at)
 
 
 def _likely_at(reader: Reader, start: int) -> list[Piece]:
@@ -158,6 +169,7 @@ def words_listed(language: Language, name: str) -> frozenset[tuple[str, ...]]:
 
 
 def pieces_at(reader: Reader, start: int) -> Iterator[Piece]:
+    """The parts that begin here. Raises `TooMuch`."""
     for rule in CORRECTABLE:
         if rule in reader.language.rules:
             node = reader.chart().longest(rule, start)

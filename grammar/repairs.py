@@ -27,14 +27,22 @@ from grammar.understanding import Context, Understanding
 MOST_REPAIRS: Final = 3
 """Times that somebody puts themselves right in one sentence."""
 MOST_TRIED: Final = 6
+MOST_TRIED_IN_ALL: Final = 30
+"""Of one sentence: with each time that somebody puts themselves right there are more ways to."""
 MOST_WORDS: Final = 6
 """Words that take something back at once: "oh no sorry i meant"."""
 
 
 def understood(
-    text: str, lexicon: Lexicon, language: Language, context: Context, depth: int = 0
+    text: str,
+    lexicon: Lexicon,
+    language: Language,
+    context: Context,
+    depth: int = 0,
+    tried_before: list[str] | None = None,
 ) -> Understanding:
     """Understand a sentence of a conversation, as it was put right in the end."""
+    all_tried: list[str] = [] if tried_before is None else tried_before
     reader = Reader(text, lexicon, language, context)
     for start, end in taken_back(reader) if depth < MOST_REPAIRS else ():
         before = Reader(reader.words(0, start), lexicon, language, context)
@@ -47,11 +55,14 @@ def understood(
             _in_its_place(before, behind),
         )
         for tried, fixed in enumerate(others):
-            if tried == MOST_TRIED:
+            if tried == MOST_TRIED or len(all_tried) >= MOST_TRIED_IN_ALL:
                 break
-            result = understood(fixed, lexicon, language, context, depth + 1)
+            all_tried.append(fixed)
+            result = understood(fixed, lexicon, language, context, depth + 1, all_tried)
             if result.plan is not None:
                 return result
+        if len(all_tried) >= MOST_TRIED_IN_ALL:
+            break
         changed = _as_a_change(before, behind, reader.words(start, end), context)
         if changed is not None:
             return changed

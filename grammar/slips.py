@@ -34,6 +34,8 @@ SHORTEST_SWAPPED: Final = 3
 """Letters of a function word that may have two of them swapped: "teh"."""
 SHORTEST_CORRECTED: Final = 4
 """Letters of a word that may be misspelt."""
+LONGEST_CORRECTED: Final = 100
+"""Letters of a word that may be a slip: of longer ones there are too many ways to read them."""
 
 
 def swapped_back(text: str, language: Language, known: Collection[str]) -> tuple[str, int]:
@@ -46,7 +48,9 @@ def swapped_back(text: str, language: Language, known: Collection[str]) -> tuple
     slips = 0
     for token in tokenise(text, language.spelling):
         word = text[token.start : token.end]
-        if token.kind != "word" or not word.islower() or len(word) < SHORTEST_SWAPPED:
+        if token.kind != "word" or not word.islower():
+            continue
+        if not SHORTEST_SWAPPED <= len(word) <= LONGEST_CORRECTED:
             continue
         if (
             not real.isdisjoint((word, singular(word, language)))
@@ -135,7 +139,7 @@ def _parted(
     stands behind others, behind a preposition or a verb. Many a noun only looks so: "carton",
     "invoice"."""
     word = token.norm
-    if token.kind != "word" or word in known:
+    if token.kind != "word" or word in known or len(word) > LONGEST_CORRECTED:
         return [token]
     for cut in (len(each) for each in language.speech.get("elided", ()) if word.startswith(each)):
         rest = word[cut:]

@@ -7,6 +7,7 @@ and from the lists of the language; they are found along a trie, misspelt ones t
 from __future__ import annotations
 
 import functools
+import math
 import re
 from collections.abc import Iterable, Mapping
 from typing import Any, Final
@@ -202,7 +203,7 @@ class Slots:
         return [
             (end, cost, int(value))
             for end, cost, value in self._number(at)
-            if value >= 1
+            if 1 <= value < math.inf
             and value == int(value)
             and not (cost and end == at + 1)
             and not self._is_measure(end)

@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import Final
 
 from grammar import repairs, rewordings
-from grammar.chart import Node
+from grammar.chart import Node, TooMuch
 from grammar.discourse import START, Discourse, Steps
 from grammar.doubts import NotUnderstood
 from grammar.language import load_language
@@ -43,7 +43,10 @@ def understand(
         return rejected(text, pack.phrase("too_long"), context)
     forget()
     text = rewordings.said_plainly(text, lexicon, pack, context)
-    understood = repairs.understood(text, lexicon, pack, context)
+    try:
+        understood = repairs.understood(text, lexicon, pack, context)
+    except TooMuch:  # of one way to read it, and there are others that would take as long
+        return rejected(text, pack.phrase("too_long"), context)
     return _with_quotes(understood, lexicon, language) if understood.quoted else understood
 
 

@@ -49,6 +49,8 @@ NOTICED_AFTER: Final = 0.5
 """Seconds between two looks whether another process changed something."""
 USES_KEPT_EVERY: Final = 30.0
 
+_LARGEST: Final = 2**63 - 1
+"""Of the numbers that SQLite knows."""
 LINKED: Final[dict[Role, str]] = {"operator": "operators' link", "observer": "observers' link"}
 """The links that `nl2robot serve` prints, as they are called in lists."""
 
@@ -304,7 +306,10 @@ class Accounts:
     def withdraw(self, session: int) -> None:
         """Let nobody come in by this any more. Raises `UserError`."""
         with self._changing() as database:
-            if not database.execute("DELETE FROM sessions WHERE id = ?", (session,)).rowcount:
+            gone = session <= _LARGEST and database.execute(
+                "DELETE FROM sessions WHERE id = ?", (session,)
+            )
+            if not gone or not gone.rowcount:
                 raise UserError(f"There is no device {session}. `nl2robot accounts list` has them.")
 
     def accounts(self) -> list[Account]:

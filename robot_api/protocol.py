@@ -299,8 +299,8 @@ def _parse(frame: str | bytes) -> Any:
 
 
 def _is_id(id: Any) -> bool:
-    if isinstance(id, str):
-        return len(id) <= MAX_ID
+    if isinstance(id, str):  # with half a sign in it, nothing can be answered under it
+        return len(id) <= MAX_ID and not any("\ud800" <= sign <= "\udfff" for sign in id)
     return id is None or (isinstance(id, int | float) and not isinstance(id, bool))
 
 

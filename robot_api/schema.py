@@ -151,6 +151,8 @@ def _accepts(kind: Kind, value: Any) -> bool:
     return not is_oversize(kind.schema, value) and _validator(kind)(value)
 
 
+MOST_SHOWN: Final = 10
+"""Of what was given, in a sentence that refuses it."""
 MOST: Final = 1000
 """Items of a list, and fields of an object, where a schema does not say how many it may have."""
 
@@ -244,7 +246,9 @@ def _does_not_fit(method: Method, positional: Sequence[Any], named: Mapping[str,
         return f"{method.name} has no parameter {_shown(strange)}" + did_you_mean(
             strange, known, otherwise=takes
         )
-    got = [*map(_shown, positional), *(str(name) for name in named)]
+    got = [*map(_shown, positional[:MOST_SHOWN]), *map(str, named)][:MOST_SHOWN]
+    if len(positional) + len(named) > MOST_SHOWN:
+        got.append(f"{len(positional) + len(named) - MOST_SHOWN} more")
     wanted = ", or ".join(_needed(form) for form in method.forms)
     return f"{method.name} needs {wanted}; got {_listed(got) if got else 'nothing'}."
 

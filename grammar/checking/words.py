@@ -89,4 +89,4 @@ def alike(words: Set[str], known: Set[str]) -> bool:
 def words_of(text: str, language: Language) -> set[str]:
     """The words of a text, comparable with `forms`."""
     words = (without_accents(word.lower()) for word in language.tokens_of(text))
-    return {word for word in words if word[0].isalnum()}
+    return {word for word in words if word[:1].isalnum()}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from typing import Final
 
@@ -113,7 +114,10 @@ def count_aloud(d: Discourse, node: Node) -> Steps:
     """ "count to ten", "count down from five"."""
     last = d.get(node, "last")
     first = d.get(node, "first", 1)
-    last = int(1 if last is None else last)
+    last = 1 if last is None else last
+    if math.inf in (first, last):
+        raise NotUnderstood(d.language.phrase("too_long"))
+    last = int(last)
     numbers = range(int(first), last + 1) if last >= first else range(int(first), last - 1, -1)
     if len(numbers) > MOST_COUNTED:
         raise NotUnderstood(d.language.phrase("too_long"))

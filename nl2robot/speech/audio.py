@@ -272,4 +272,5 @@ def _finite(frames: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def _whole(channel: NDArray[np.float32]) -> Samples:
-    return (np.clip(channel, -1.0, 1.0) * 32767).astype(np.int16)
+    # Enormous samples become none at all in a resampler.
+    return (_finite(np.clip(channel, -1.0, 1.0)) * 32767).astype(np.int16)

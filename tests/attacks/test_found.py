@@ -1,0 +1,104 @@
+"""What attacks have found, and is borne since."""
+
+from __future__ import annotations
+
+import io
+import random
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+import soundfile
+
+from nl2robot.accounts import Accounts
+from nl2robot.errors import UserError
+from nl2robot.knowledge import Knowledge
+from nl2robot.speech.audio import read_bytes
+from nl2robot.translation import Talk, translate
+from robot_api import protocol
+from robot_api.errors import InvalidCall
+from robot_api.schema import read_arguments
+from sim.world import load_world
+from tests.attacks.outcome import what_is_no_sentence
+
+
+@pytest.mark.parametrize("method", ["robot.stop", "robot.fly", "rpc.cancel"])
+def test_half_a_sign_in_an_id_is_refused_and_ends_no_connection(method: str) -> None:
+    """It could not be written into the reply, and the error of that went up to the loop."""
+    wire = protocol.Connection({}, [])
+    [answer] = wire.receive(f'{{"jsonrpc": "2.0", "id": "a\\ud800", "method": "{method}"}}')
+    assert isinstance(answer, protocol.Send) and '"id":null' in answer.frame
+
+
+def test_what_is_refused_is_not_listed_without_end() -> None:
+    with pytest.raises(InvalidCall) as refused:
+        read_arguments("location", [0] * 900)
+    assert str(refused.value).endswith("0 and 890 more.") and len(str(refused.value)) < 100
+
+
+def test_a_word_without_end_costs_nothing() -> None:
+    """Of 70,000 letters, each way of swapping two of them was kept: 5 GB."""
+    word = "".join(random.Random(1).choices("abcdefghij", k=250_000))
+    for language in ("en", "de", "fr"):
+        told = translate(f"tell me {word}", Knowledge(load_world("ward")), language, "grammar")
+        assert told.status == "rejected" and what_is_no_sentence(told.message) is None
+        assert told.ms < 5_000
+
+
+def test_a_sign_that_only_belongs_over_another_is_no_word() -> None:
+    told = translate("dmande à Bob sil e\u0323", Knowledge(load_world("ward")), "fr", "grammar")
+    assert told.program is not None or what_is_no_sentence(told.message) is None
+
+
+def test_a_correction_of_a_correction_of_a_correction_is_refused() -> None:
+    again = "nee, bring den leeren Karton ins Lager."
+    said = f"Bring den Müll... ach {again * 5}"
+    told = translate(said, Knowledge(load_world("ward")), "de", "grammar")
+    assert told.program is not None or what_is_no_sentence(told.message) is None
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "{}",
+        "wait {} seconds",
+        "say hello {} times",
+        "move {} metres",
+        "count to {}",
+        "set it to {}",
+    ],
+)
+def test_a_number_beyond_all_numbers_is_refused(said: str) -> None:
+    told = translate(said.format("9" * 400), Knowledge(load_world("ward")), "en", "grammar")
+    assert told.program is not None or what_is_no_sentence(told.message) is None
+
+
+def test_of_many_corrections_not_all_ways_are_tried() -> None:
+    """It took a minute and a half, and four times as long with each two more."""
+    said = "bring the cup to Bob" + ", no, zorple the red one" * 8
+    told = translate(said, Knowledge(load_world("city-hospital")), "en", "grammar")
+    assert told.status == "rejected" and told.ms < 20_000
+
+
+def test_a_row_of_numbers_is_not_read_in_all_the_ways_there_are() -> None:
+    """It took seven seconds, and twice as long with each number more."""
+    knowledge, talk = Knowledge(load_world("city-hospital")), Talk()
+    assert translate("chase persons", knowledge, "en", "grammar", talk).program is not None
+    told = translate("é'8611é'2d4!04?522i" + "'2d" * 20, knowledge, "en", "grammar", talk)
+    assert told.ms < 5_000
+
+
+@pytest.mark.parametrize("sample", [1e30, 3e38, float("inf"), float("nan")])
+def test_enormous_samples_are_only_loud(sample: float) -> None:
+    file = io.BytesIO()
+    loud = np.full(800, sample, np.float32)
+    soundfile.write(file, loud, 8_000, format="WAV", subtype="FLOAT")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        read_bytes(file.getvalue(), "the siren.wav")
+
+
+def test_a_device_whose_number_is_too_large_is_none(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match="There is no device"):
+        Accounts(tmp_path / "accounts.sqlite").withdraw(2**63)
