@@ -8,7 +8,7 @@ VOICES := $(VENV)/.installed-voices
 STAMP  := $(VENV)/.installed
 ROS2   := .venv-ros2
 
-.PHONY: run voices test format lint types tests soak browser systemd ros2 wheels lock sbom audit bench docs clean
+.PHONY: run voices test format lint types tests soak attacks browser systemd ros2 wheels lock sbom audit bench docs clean
 
 run: $(RUNS)
 	@$(BIN)/nl2robot demo
@@ -66,10 +66,15 @@ types: $(STAMP)
 tests: $(STAMP) browser systemd ros2
 	$(BIN)/pytest -n $$($(BIN)/python -c 'import os; print((os.cpu_count() or 1) + 1)') --dist loadfile
 
-# What takes too long for every change: whole samples of what people say.
+# What takes too long for every change: whole samples of what people say, and all attacks, an hour of
+# them unless MINUTES says otherwise.
 soak: $(STAMP)
 	$(BIN)/pytest -n auto --soak tests/errands
-	$(BIN)/python -m tests.attacks
+	$(MAKE) attacks
+
+MINUTES ?= 60
+attacks: $(STAMP)
+	$(BIN)/python -m tests.attacks --minutes $(MINUTES)
 
 # The console is tested in a real browser: Debian's Chromium.
 browser:
