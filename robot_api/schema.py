@@ -153,6 +153,8 @@ def _accepts(kind: Kind, value: Any) -> bool:
 
 MOST_SHOWN: Final = 10
 """Of what was given, in a sentence that refuses it."""
+LARGEST: Final = 2**63 - 1
+"""Whole number, either side of 0: what stores and computes numbers takes no larger ones."""
 MOST: Final = 1000
 """Items of a list, and fields of an object, where a schema does not say how many it may have."""
 
@@ -167,6 +169,8 @@ def is_oversize(schema: Mapping[str, Any], value: Any) -> bool:
         return len(value) <= max(most, default=otherwise)
 
     match value:
+        case int():
+            return abs(value) > LARGEST
         case str():
             return not within("maxLength", len(value))
         case list():
@@ -246,7 +250,7 @@ def _does_not_fit(method: Method, positional: Sequence[Any], named: Mapping[str,
         return f"{method.name} has no parameter {_shown(strange)}" + did_you_mean(
             strange, known, otherwise=takes
         )
-    got = [*map(_shown, positional[:MOST_SHOWN]), *map(str, named)][:MOST_SHOWN]
+    got = [*map(_shown, positional[:MOST_SHOWN]), *map(_cut, map(str, named))][:MOST_SHOWN]
     if len(positional) + len(named) > MOST_SHOWN:
         got.append(f"{len(positional) + len(named) - MOST_SHOWN} more")
     wanted = ", or ".join(_needed(form) for form in method.forms)
@@ -308,7 +312,10 @@ def _listed(words: Sequence[str]) -> str:
 
 
 def _shown(value: Any) -> str:
-    text = repr(value)
+    return _cut(repr(value))
+
+
+def _cut(text: str) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 

@@ -70,6 +70,8 @@ def _kind(annotation: str) -> str:
             words.append("a list")
         elif each.startswith("bound method"):
             words.append("a method without its ()")
+        elif each.startswith("<class "):
+            words.append("a type")
         else:
             words.append(_KINDS.get(each, each))
     return " or ".join(words)

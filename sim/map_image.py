@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from pathlib import Path, PureWindowsPath
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -85,17 +86,20 @@ def read_image(path: Path) -> Picture:
     from PIL import Image, UnidentifiedImageError
 
     try:
-        with Image.open(path, formats=_FORMATS) as image:
-            _check_size(path, *image.size)
-            image.load()
-            return _picture(image)
+        with warnings.catch_warnings():
+            # It has more pixels than is looked at here, and nobody wants to read more of that.
+            warnings.simplefilter("error", Image.DecompressionBombWarning)
+            with Image.open(path, formats=_FORMATS) as image:
+                _check_size(path, *image.size)
+                image.load()
+                return _picture(image)
     except (UnidentifiedImageError, OSError, ValueError, SyntaxError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise ImageError(
             f"The map's image {path.name} is no PGM or PNG that can be read ({reason}). "
             "Save it again as PGM."
         ) from None
-    except Image.DecompressionBombError:
+    except (Image.DecompressionBombError, Image.DecompressionBombWarning):
         raise ImageError(f"The map's image {path.name} is too large. Scale it down.") from None
 
 

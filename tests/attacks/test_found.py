@@ -18,7 +18,10 @@ from nl2robot.speech.audio import read_bytes
 from nl2robot.translation import Talk, translate
 from robot_api import protocol
 from robot_api.errors import InvalidCall
-from robot_api.schema import read_arguments
+from robot_api.schema import is_oversize, read_arguments
+from robot_api.stub import stub
+from sandbox.check import check
+from sim.map_image import ImageError, image_size
 from sim.world import load_world
 from tests.attacks.outcome import what_is_no_sentence
 
@@ -35,6 +38,19 @@ def test_what_is_refused_is_not_listed_without_end() -> None:
     with pytest.raises(InvalidCall) as refused:
         read_arguments("location", [0] * 900)
     assert str(refused.value).endswith("0 and 890 more.") and len(str(refused.value)) < 100
+
+
+def test_names_of_what_is_refused_are_cut_short() -> None:
+    with pytest.raises(InvalidCall) as refused:
+        read_arguments("do", named={"a" * 70_000: 1})
+    assert len(str(refused.value)) < 200
+
+
+@pytest.mark.parametrize("number", [10**400, -(10**400), 2**63])
+def test_a_number_that_nothing_can_take_is_refused_before_it_is_used(number: int) -> None:
+    assert is_oversize({"properties": {"x": {"type": "number"}}}, {"x": number})
+    with pytest.raises(InvalidCall):
+        read_arguments("wait", [number])
 
 
 def test_a_word_without_end_costs_nothing() -> None:
@@ -99,6 +115,20 @@ def test_enormous_samples_are_only_loud(sample: float) -> None:
         read_bytes(file.getvalue(), "the siren.wav")
 
 
+def test_an_image_of_too_many_pixels_is_refused_and_no_warning_is_printed(tmp_path: Path) -> None:
+    head = b"BM\xb6\x04" + b"\0" * 6 + b"6\0\0\0(\0\0\0" + b"\x18\0d\0\x10\0\0\0\x01\0\x18"
+    (tmp_path / "floor.bmp").write_bytes(head + b"\0" * 40)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(ImageError, match="too large"):
+            image_size(tmp_path / "floor.bmp")
+
+
 def test_a_device_whose_number_is_too_large_is_none(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="There is no device"):
         Accounts(tmp_path / "accounts.sqlite").withdraw(2**63)
+
+
+def test_what_the_check_calls_a_type_is_told_in_words() -> None:
+    [finding] = check("x = robot.objects() > list[str]\n", stub())
+    assert "between a list and a type" in finding.message and "<class" not in finding.message
