@@ -247,6 +247,9 @@ class Performance:
                 if self._outcome.status != "done" and robot.connected:
                     robot.stop()
                     self._note_where_it_stands(self._where(robot))
+        except Stopped as stopped:  # before its first line, or while it was seen to its end
+            if self._outcome is None:
+                self._outcome = Outcome("stopped", str(stopped))
         except RobotError as error:  # the robot cannot be reached
             if self._outcome is not None:
                 self._note_where_it_stands(self._pose)

@@ -13,7 +13,7 @@ import pytest
 
 from nl2robot.operator import Operator
 from nl2robot.runlog import LogError
-from robot_api.errors import AccessDenied, NotPossible
+from robot_api.errors import AccessDenied, NotPossible, Stopped
 from sandbox.execution import DIED
 from sim.world import Zone
 from tests.sandbox.ward import children
@@ -420,3 +420,16 @@ def test_who_stops_the_robot_waits_for_no_disk(slow_operator, slow_station, log)
         other.execute("ROLLBACK")
     assert slow_operator.wait(run).state == "stopped"
     assert log.states(run)[-1]["state"] == "stopping"
+
+
+def test_a_program_that_is_stopped_before_its_first_line_was_stopped(
+    operator, log, monkeypatch, recwarn
+) -> None:
+    def stopped(*_: object) -> None:
+        raise Stopped("The nurse pressed stop.")
+
+    monkeypatch.setattr("nl2robot.spoken_language.SpokenLanguage.adopt", stopped)
+    status = operator.wait(start(operator, 'robot.say("Good morning.")\n'))
+    assert (status.state, status.message) == ("stopped", "The nurse pressed stop.")
+    assert log.run(status.run).status == "stopped" and not log.calls(status.run)
+    assert not recwarn.list  # nobody reads a traceback of it
