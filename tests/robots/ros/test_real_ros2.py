@@ -86,7 +86,7 @@ def _driver(port: int) -> RosDriver:
             driver = ROS2.connect(
                 Setup(
                     address=parse(f"ros2://127.0.0.1:{port}"),
-                    settings=RosSettings(types=TYPES, stop_within=1.0),
+                    settings=RosSettings(types=TYPES),
                 )
             )
         except LostConnection:
