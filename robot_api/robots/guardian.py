@@ -36,6 +36,8 @@ SILENT: Final = 1.0
 """Seconds of silence after which the server counts as frozen: a busy machine is late as well."""
 TRIES_FOR: Final = 20.0
 """Seconds for which a robot is tried to be stopped that does not confirm it."""
+REACHES_WITHIN: Final = 20.0
+"""Seconds after which it is told that the guardian has not reached the robot."""
 _AGAIN: Final = 0.5
 """Seconds between two such tries, and between two to reach the robot at the start."""
 _ANEW: Final = 5.0
@@ -130,8 +132,15 @@ class Guardian:
                 self._watches.set()
 
     def _beat(self) -> None:
-        started = time.monotonic()
+        started, is_told = time.monotonic(), False
         while not self._over.wait(BEAT):
+            late = time.monotonic() - started > REACHES_WITHIN
+            if late and not is_told and not self._watches.is_set():
+                is_told = True
+                _log.warning(
+                    "the guardian does not reach the robot: nothing stops it yet if this server is"
+                    " killed"
+                )
             if self._say(_ALIVE) or time.monotonic() - started < _ANEW:
                 continue
             _log.error("the robot's guardian has died: it is started again")
@@ -220,12 +229,12 @@ def _stop(kind: RobotKind, setup: Setup, brake: Brake | None) -> Brake | None:
                 brake = kind.brake(setup)
             brake.halt()
             return brake
-        except RobotError as error:
+        except RobotError:
             if brake is not None:
                 brake.close()
                 brake = None
             if time.monotonic() > end:
-                raise error
+                raise
             time.sleep(_AGAIN)
 
 

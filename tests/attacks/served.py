@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from robot_api.client import Robot
-from tests.attacks.outcome import Row, what_is_no_sentence
+from tests.attacks.outcome import Row
 
 ROOT: Final = Path(__file__).parents[2]
 SERVE: Final = ("-m", "nl2robot.cli", "serve")
@@ -65,7 +65,6 @@ def served(
     home: Path,
     *more: str,
     launch: Sequence[str] = SERVE,
-    environment: dict[str, str] | None = None,
     prepare: Callable[[], None] | None = None,
 ) -> Iterator[Served]:
     """A server whose data are in `home`, which is not removed; `more` are its options."""
@@ -81,7 +80,6 @@ def served(
                 **os.environ,
                 "NL2ROBOT_HOME": str(home),
                 "NL2ROBOT_LANGUAGE_MODEL": "none",
-                **(environment or {}),
             },
             preexec_fn=prepare,
         )
@@ -173,8 +171,3 @@ class Watched:
         began = time.perf_counter()
         self.robot.stop()
         row.stopped_in(1000 * (time.perf_counter() - began))
-
-
-def told_in_a_sentence(error: BaseException) -> str | None:
-    """What is wrong with how a refusal is told; None if nothing."""
-    return what_is_no_sentence(str(error))

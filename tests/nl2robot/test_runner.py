@@ -16,6 +16,7 @@ from nl2robot.runlog import LogError
 from robot_api.errors import AccessDenied, NotPossible, Stopped
 from sandbox.execution import DIED
 from sim.world import Zone
+from tests.attacks.disasters import deleted, replaced, without_what_was_just_written
 from tests.sandbox.ward import children
 
 linux = pytest.mark.skipif(not Path("/proc").exists(), reason="looks at processes in /proc")
@@ -265,26 +266,12 @@ def test_what_cannot_be_logged_is_not_done(operator, station, log, monkeypatch) 
     assert station.simulation.robot.x == before.x
 
 
-def deleted(path: Path) -> None:
-    path.unlink()
-
-
-def without_what_was_just_written(path: Path) -> None:
-    Path(f"{path}-wal").unlink()
-
-
-def cut(path: Path) -> None:
+def emptied(path: Path) -> None:
     with path.open("r+b") as file:
         file.truncate(0)
 
 
-def replaced(path: Path) -> None:
-    other = path.with_name("other")
-    other.write_bytes(path.read_bytes())
-    other.replace(path)
-
-
-@pytest.mark.parametrize("tampered", [deleted, without_what_was_just_written, cut, replaced])
+@pytest.mark.parametrize("tampered", [emptied, deleted, without_what_was_just_written, replaced])
 def test_what_goes_into_a_log_that_nobody_will_read_is_not_done(
     slow_operator, slow_station, log, tampered
 ) -> None:

@@ -104,6 +104,19 @@ def test_a_guardian_that_dies_is_followed_by_another(monkeypatch) -> None:
         assert guardian._process.poll() is None
 
 
+def test_whom_it_does_not_reach_is_told_of(monkeypatch, caplog) -> None:
+    monkeypatch.setattr("robot_api.robots.guardian.REACHES_WITHIN", 0.0)
+    with StandIn() as robot:
+        order = order_for(robot)
+    guardian = Guardian(order)  # of a robot that was switched off
+    try:
+        while "does not reach the robot" not in caplog.text:
+            time.sleep(0.01)
+    finally:
+        guardian.close()
+    assert caplog.text.count("does not reach the robot") == 1
+
+
 def test_neither_ctrl_c_nor_a_terminate_takes_it_away_from_the_robot() -> None:
     with StandIn() as robot, guarded(order_for(robot)) as guardian:
         for number in (signal.SIGINT, signal.SIGTERM):

@@ -173,8 +173,7 @@ def _which(turn: Turn, words: str, message: str) -> Answer:
     }
     if not 2 <= len(choices) <= MOST_CHOICES or words in choices.values():
         return Question(message, context=turn.context)
-    *first, last = choices.values()
-    told = f"{', '.join(first)} {turn.language.phrase('or')} {last}"
+    told = turn.reader.alternatives([*choices.values()])
     return Question(
         turn.language.phrase("which_one", what=words, choices=told),
         tuple(_with_name(turn, words, name) for name in choices if words in turn.text),
