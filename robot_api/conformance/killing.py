@@ -61,7 +61,7 @@ def check_killed(
         process.wait()
         process.stdin.close()
     if word != "moving":
-        findings.notes[PART] = more or "nothing that it does takes long"
+        findings.notes[PART] = more or "the robot was not seen to move"
         return
     findings.tried.add(PART)
     losing = Losing(connect, address, True, findings)
