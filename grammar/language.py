@@ -85,6 +85,10 @@ class Language:
     spelled_words: frozenset[str]
     """The same words as people write and speak them, for the recogniser."""
 
+    def __reduce__(self) -> tuple[Callable[[str], Language], tuple[str]]:
+        """Another process has it, too."""
+        return load_language, (self.code,)
+
     def tokens_of(self, text: str) -> tuple[str, ...]:
         """The normal forms of the words of a text."""
         return _tokens_of(self, text)

@@ -101,6 +101,10 @@ class Lexicon:
         """Of all its names, counted once: whatever is known of a lexicon is looked up by it."""
         return self._hash
 
+    def __getstate__(self) -> dict[str, object]:
+        """Without the hash: another process counts otherwise."""
+        return {name: value for name, value in vars(self).items() if name != "_hash"}
+
     @functools.cached_property
     def _hash(self) -> int:
         return hash((self.places, self.people, self.objects, self.furniture, self.routines))

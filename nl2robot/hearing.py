@@ -29,6 +29,7 @@ from nl2robot.speech.sounding_like import respelled
 from nl2robot.speech.streaming import Streaming
 from nl2robot.speech.vocabulary import Missing, missing_words
 from nl2robot.translation import Talk, Translation, translate
+from nl2robot.work import Do, here
 
 MOST_RESPELLED: Final = 8
 """Texts with names of the world in the place of what sounds like them that are tried."""
@@ -40,8 +41,10 @@ class Ear:
     """Hears commands: whole sample sentences teach it which word follows which, the grammar's and
     the world's words are what it can hear at all."""
 
-    def __init__(self, knowledge: Knowledge, language: str = "en") -> None:
-        """Raises ModelError if the language has no speech model here."""
+    def __init__(self, knowledge: Knowledge, language: str = "en", think: Do = here) -> None:
+        """Sentences are thought about by `think` (`nl2robot.apart`). Raises ModelError if the
+        language has no speech model here."""
+        self._think = think
         lexicon = knowledge.lexicon(language)
         self.knowledge = knowledge
         self.language = language
@@ -172,7 +175,13 @@ class Ear:
             translation = self._by_rules(heard.text)
         else:
             translation = translate(
-                heard.text, self.knowledge, self.language, planner, talk, watch=watch
+                heard.text,
+                self.knowledge,
+                self.language,
+                planner,
+                talk,
+                watch=watch,
+                do=self._think,
             )
         phrase = load_language(self.language).phrase
         if not heard.text:
@@ -192,4 +201,4 @@ class Ear:
         )
 
     def _by_rules(self, text: str) -> Translation:
-        return translate(text, self.knowledge, self.language, RULES)
+        return translate(text, self.knowledge, self.language, RULES, do=self._think)

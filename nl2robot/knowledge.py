@@ -36,6 +36,10 @@ class Knowledge:
         """Why the routines are unknown, if they could not be read last time."""
         self.see(world)
 
+    def __reduce__(self) -> tuple[type[Knowledge], tuple[World, Capabilities | None]]:
+        """For a review in another process, which needs no routines."""
+        return Knowledge, (self.world, self.capabilities)
+
     def see(self, world: World) -> None:
         """From now on this is the world: its names are known to whatever is translated next."""
         self.world = world

@@ -3,23 +3,38 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING
+import threading
+from collections.abc import Iterator
+from contextlib import suppress
+from functools import partial
+from typing import TYPE_CHECKING, Final
 
 import msgspec
 
 from grammar.explain import explain_program
 from grammar.language import load_language
 from grammar.naming import naming
+from nl2robot.apart import HELPERS, REVIEWS
 from nl2robot.knowledge import Knowledge
 from nl2robot.policy import violations
-from nl2robot.rehearsal import DryRun, watched
+from nl2robot.rehearsal import BUDGET, DryRun, watched
 from nl2robot.risks import Risk, Situation, Tried, risks
+from nl2robot.work import Died, TookTooLong
+from robot_api.errors import NotPossible
 from sandbox.check import Finding, check
 
 if TYPE_CHECKING:
     from nl2robot.going_on import Recall
     from sim.simulation import Simulation
+    from sim.world import World
+
+MOST_SECONDS: Final = BUDGET.real_seconds + 30.0
+"""For a review; its dry run breaks off by itself before."""
+_AT_A_TIME: Final = threading.BoundedSemaphore(REVIEWS)
+UNFINISHED: Final = (
+    "The review did not come to its end: this computer has too little memory, or too much else to"
+    " do. Try again in a moment."
+)
 
 
 class Reading(msgspec.Struct, frozen=True):
@@ -64,21 +79,22 @@ def digest(program: str) -> str:
 def review(
     program: str,
     knowledge: Knowledge,
-    stage: Callable[[], Simulation] | None = None,
+    simulation: Simulation | None = None,
     language: str = "en",
     seed: int | None = None,
     recall: Recall | None = None,
 ) -> Review:
-    """Check a program without moving anything. `stage` gives a copy of the simulated world,
-    in which the program is tried; `seed` is what its `random` will begin with; `recall` answers
-    what was done of it before."""
+    """Check a program without moving anything. `simulation` is a copy of the simulated world, in
+    which the program is tried; `seed` is what its `random` will begin with; `recall` answers what
+    was done of it before."""
     from robot_api.stub import stub
 
     findings = [*check(program, stub()), *violations(program, knowledge)]
     findings.sort(key=lambda finding: (finding.line, finding.column))
     acceptable = not any(finding.severity == "error" for finding in findings)
-    may_try = acceptable and stage is not None
-    tried = _tried(program, stage(), seed, knowledge, recall) if may_try and stage else None
+    tried = None
+    if acceptable and simulation is not None:
+        tried = _tried(program, simulation, seed, knowledge, recall)
     return Review(
         program=program,
         sha256=digest(program),
@@ -87,6 +103,42 @@ def review(
         dry_run=tried.dry_run if tried else None,
         risks=risks(program, knowledge, language, tried),
     )
+
+
+def get_ready(world: World, language: str = "en") -> None:
+    """Begin a process for reviews in this world, and load there what they need, in the background:
+    the first one shall not wait for that."""
+
+    def load() -> None:
+        with suppress(Exception):  # told when it is needed
+            HELPERS.call(partial(_load, world, language), MOST_SECONDS)
+
+    threading.Thread(target=load, name="getting ready", daemon=True).start()
+
+
+def _load(world: World, language: str) -> None:
+    from sim.simulation import Simulation
+
+    simulation = Simulation(world) if world.has_geometry else None
+    review("robot.wait(0)\n", Knowledge(world), simulation, language)
+
+
+def review_apart(
+    program: str,
+    knowledge: Knowledge,
+    simulation: Simulation | None = None,
+    language: str = "en",
+    seed: int | None = None,
+    recall: Recall | None = None,
+) -> Review:
+    """`review` in a process of its own, for who has to hear a stop meanwhile. Raises `NotPossible`
+    if that ends before it is through."""
+    try:
+        work = partial(review, program, knowledge, simulation, language, seed, recall)
+        with _AT_A_TIME:
+            return HELPERS.call(work, MOST_SECONDS)
+    except (TookTooLong, Died) as error:
+        raise NotPossible(UNFINISHED) from error
 
 
 def _tried(

@@ -36,6 +36,7 @@ from nl2robot.runs import Approval, Status
 from nl2robot.sightings import Sightings
 from nl2robot.spoken_language import SpokenLanguage
 from nl2robot.state import State
+from nl2robot.work import Do, here
 from robot_api.client import Robot
 from robot_api.errors import AccessDenied, LostConnection, NotPossible, RobotError, Stopped
 from sim.simulation import Simulation
@@ -71,7 +72,13 @@ class Runner:
         stage: Callable[[], Simulation] | None = None,
         seed: int | None = None,
         present: Present | None = None,
+        think: Do = here,
+        review: Callable[..., Review] = review,
     ) -> None:
+        """`think` and `review` do what computes for long: here, or in another process
+        (`nl2robot.apart.think`, `nl2robot.review.review_apart`)."""
+        self.think = think
+        self.review = review
         self.knowledge = knowledge
         self.present = present or Present(lambda state: None)
         """How the robot and its program stand."""
@@ -104,8 +111,7 @@ class Runner:
         recall = self._recall(continues, program)
         simulation = self._stage() if self._stage is not None else None
         world = as_it_is(simulation) if simulation is not None else None
-        stage = (lambda: simulation) if simulation is not None else None
-        made = review(program, self.knowledge, stage, language, self._seed, recall)
+        made = self.review(program, self.knowledge, simulation, language, self._seed, recall)
         self._reviews.keep(made, continues, world)
         return made
 
@@ -154,7 +160,7 @@ class Runner:
             )
         errors = [
             finding
-            for finding in review(program, self.knowledge).findings
+            for finding in self.review(program, self.knowledge).findings
             if finding.severity == "error"
         ]
         if errors:

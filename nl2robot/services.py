@@ -66,6 +66,7 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
                 mine,
                 runner,
                 watch,
+                runner.think,
             ),
             published(context.publish, {"talk": talk, "utterance": utterance}),
         )

@@ -16,12 +16,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from nl2robot import present
+from nl2robot.apart import think
 from nl2robot.attention import Attention
 from nl2robot.by_hand import BUSY, ByHand
 from nl2robot.console.part import STOP, Backstage
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.harmless import ONLY_LOOKS
 from nl2robot.knowledge import Knowledge
+from nl2robot.review import review, review_apart
 from nl2robot.routines import open_routines
 from nl2robot.runlog import LogError, RunLog
 from nl2robot.runner import Runner
@@ -29,6 +31,7 @@ from nl2robot.services import EVENTS, reviewer, services
 from nl2robot.state import GOING, Charging, Reviewing, State, on_wire
 from nl2robot.talks import Talks
 from nl2robot.voice_services import Microphones
+from nl2robot.work import here
 from robot_api import limits
 from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.client import Robot
@@ -348,6 +351,9 @@ def _open(
         stage=(lambda: stage(runner.knowledge.world)) if world.has_geometry else None,
         seed=seed,
         present=present.Present(tell),
+        # A console is there for several people, of whom one may want to stop meanwhile.
+        think=think if console else here,
+        review=review_apart if console else review,
     )
 
     hand = ByHand(log)
@@ -360,7 +366,7 @@ def _open(
 
     talks = Talks()
     attention = Attention()
-    microphones = Microphones(lambda: runner.knowledge, talks.of, give_way, publish)
+    microphones = Microphones(lambda: runner.knowledge, talks.of, give_way, publish, runner.think)
     backstage = Backstage(
         driver=driver,
         runner=runner,

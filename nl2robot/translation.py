@@ -39,12 +39,15 @@ from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.plain import visible
 from nl2robot.planners import AUTO, available, planner
+from nl2robot.work import Died, Do, TookTooLong, here
 
 if TYPE_CHECKING:
     from nl2robot.history import History, Record
     from nl2robot.teaching import Pending, Reply
 
 
+BRIEF = 8
+"""Tokens up to which the rules think about a sentence here: "stop" waits for nobody else's."""
 POLITE = 3
 """Words that an answer may have besides those of what was offered."""
 _IN_ANY_LANGUAGE = ({"set_language"}, {"stop"})
@@ -155,10 +158,12 @@ def translate(
     talk: Talk | None = None,
     history: History | None = None,
     watch: Watch | None = None,
+    do: Do = here,
 ) -> Translation:
     """Understand an utterance and write it as a program. Never moves anything, never raises for
     words that are not understood: the status says so. A `talk` remembers it; `history` knows what
-    was run, for questions about it; `watch` is told how far it is, and may end it.
+    was run, for questions about it; `watch` is told how far it is, and may end it; `do`
+    does what computes for more than a moment (`nl2robot.apart.think`: in another process).
     Raises `UserError` for a language or a planner that there is not, and
     `grammar.planning.planner.Interrupted` when `watch` has ended it."""
     started, watch, talk = time.perf_counter(), watch or Watch(), talk or Talk()
@@ -177,7 +182,13 @@ def translate(
     turn = _turn(utterance, knowledge, language, talk.context)
     chosen = _chosen(utterance, turn, talk)
     insists, talk.refused = talk.refused == utterance, ""
-    turn, answer = (turn, chosen) if chosen else _planned(turn, knowledge, planner, watch, insists)
+    if chosen:
+        answer: Decided = chosen
+    else:
+        try:
+            turn, answer = _planned(turn, knowledge, planner, watch, insists, do)
+        except (TookTooLong, Died):
+            answer = Refusal(turn.language.phrase("not_sure_enough"), context=turn.context)
     if watch.cancelled:  # nobody waits for it, so nothing that is said later can refer to it
         raise Interrupted
     match answer:
@@ -229,40 +240,48 @@ Decided = Service | Question | Refusal | Open | Chosen
 
 
 def _planned(
-    turn: Turn, knowledge: Knowledge, name: str, watch: Watch, insists: bool
+    turn: Turn, knowledge: Knowledge, name: str, watch: Watch, insists: bool, do: Do
 ) -> tuple[Turn, Decided]:
     """What the planner of this name makes of a turn. The rules come first where nobody has chosen:
     what they know they know at once; what they do not, a language model may, unless it seems to be
     in another language than is spoken here: a model would guess, where one has to ask. Whoever says
     the same again `insists`."""
     first = "grammar" if name == AUTO else name
-    decided = _decided(turn, planner(first).plan(turn, watch), knowledge)
+    quick = here if len(turn.tokens) <= BRIEF else do
+    if first == "grammar":
+        decided = quick(_by_rules, turn, knowledge)
+    else:
+        decided = do(_decided, turn, planner(first).plan(turn, watch), knowledge)
     if isinstance(decided, Refusal):
-        other = _in_another_language(turn.text, knowledge, turn.language.code)
+        other = _in_another_language(turn.text, knowledge, turn.language.code, quick)
         if other is not None:
             return other
     if name != AUTO or not turn.tokens or not available("model"):
         return turn, decided
-    if not _is_open(turn, decided):
+    if not _is_open(turn, decided, quick):
         return turn, decided
     if isinstance(decided, Refusal) and not insists and _seems_foreign(turn):
         return turn, decided
-    by_model = _decided(turn, planner("model").plan(turn, watch), knowledge)
+    by_model = do(_decided, turn, planner("model").plan(turn, watch), knowledge)
     if isinstance(by_model, Refusal) and not by_model.final:
         if by_model.absent and isinstance(decided, Refusal):
             decided = replace(decided, message=f"{decided.message} {by_model.message}")
         return turn, decided  # the rules say which word they do not know
     if isinstance(decided, Chosen) and not isinstance(by_model, Question | Service):
-        return turn, between(turn, decided, by_model)
+        return turn, do(between, turn, decided, by_model)
     return turn, by_model
 
 
-def _is_open(turn: Turn, decided: Decided) -> bool:
+def _by_rules(turn: Turn, knowledge: Knowledge) -> Decided:
+    return _decided(turn, planner("grammar").plan(turn, Watch()), knowledge)
+
+
+def _is_open(turn: Turn, decided: Decided, do: Do) -> bool:
     """Whether another planner may know better than the rules."""
     if isinstance(decided, Chosen):
         if methods(decided.plan) == {"stop"}:  # nobody thinks twice
             return False
-        return not is_sure(turn, decided.considered) or _loses(turn, decided.plan)
+        return not is_sure(turn, decided.considered) or do(_loses, turn, decided.plan)
     return isinstance(decided, Refusal) and not decided.final
 
 
@@ -373,7 +392,7 @@ def _milliseconds(started: float) -> float:
 
 
 def _in_another_language(
-    utterance: str, knowledge: Knowledge, language: str
+    utterance: str, knowledge: Knowledge, language: str, do: Do
 ) -> tuple[Turn, Chosen] | None:
     """Who wants to be spoken to in another language, or cries stop, may do so in that one: "sprich
     Deutsch", "arrête". What was understood in it; None for anything else."""
@@ -383,7 +402,7 @@ def _in_another_language(
         if code == language:
             continue
         turn = _turn(utterance, knowledge, code, None)
-        decided = _decided(turn, planner("grammar").plan(turn, Watch()), knowledge)
+        decided = do(_by_rules, turn, knowledge)
         if isinstance(decided, Chosen) and methods(decided.plan) in _IN_ANY_LANGUAGE:
             return turn, decided
     return None

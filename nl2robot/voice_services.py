@@ -27,6 +27,7 @@ from nl2robot.models import need
 from nl2robot.thinking import Thought, published
 from nl2robot.translation import Talk, Translation
 from nl2robot.wire import service, service_of_call
+from nl2robot.work import Do, here
 from robot_api.capabilities.sound import SILENT
 from robot_api.driver import StopFlag
 from robot_api.errors import InvalidCall
@@ -100,9 +101,11 @@ class Microphones:
         talk_of: TalkOf,
         give_way: Callable[[], None] = SILENT.give_way,
         publish: Publish | None = None,
+        think: Do = here,
     ) -> None:
         """`give_way` ends what the robot is saying. `publish` tells a microphone's client how far a
         language model is with what they said."""
+        self._think = think
         self._give_way = give_way
         self._publish = publish
         self._knowledge = knowledge
@@ -233,7 +236,7 @@ class Microphones:
         need(language)
         with self._lock:
             if language not in self._ears:  # its phrases are those of the world
-                self._ears[language] = Ear(self._knowledge(), language)
+                self._ears[language] = Ear(self._knowledge(), language, self._think)
             return self._ears[language]
 
     def _told(self, opened: _Open, event: Event) -> dict[str, Any]:

@@ -32,6 +32,7 @@ from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
 from robot_api import access, protocol, roles
+from robot_api.beside import Beside
 from robot_api.connections import REMEMBERED, UNCONFIRMED, Client
 from robot_api.dispatch import Dispatcher, Job, Lane
 from robot_api.driver import EVENTS, Driver, Event, StopFlag
@@ -203,7 +204,7 @@ class Server:
         self._host = host
         self._port = port
         self._status_page = status_page
-        self._pages = pages
+        self._pages = Beside(pages) if pages else None
         self._on_left = on_left or _ignore
         self._before_call = before_call
         self._encrypted = encryption is not None
@@ -452,9 +453,7 @@ class Server:
     @contextlib.asynccontextmanager
     async def _lifespan(self, app: Starlette) -> Any:
         self._loop = asyncio.get_running_loop()
-        async with contextlib.AsyncExitStack() as stack:
-            if isinstance(self._pages, Starlette):  # a mounted application is not told by itself
-                await stack.enter_async_context(self._pages.router.lifespan_context(self._pages))
+        async with self._pages.running() if self._pages else contextlib.nullcontext():
             self._started.set()
             yield
 

@@ -23,6 +23,7 @@ from sim.physics import BORDER_WIDTH, STEP, Physics
 from sim.placing import Item, free_spot, people_at_start, things_at_start
 from sim.record import Happening, Record, Sample
 from sim.robot import Robot, RobotState
+from sim.snapshot import Snapshot
 from sim.world import GridMap, Person, Place, Segment, World, Zone, map_corners
 
 if TYPE_CHECKING:
@@ -126,38 +127,38 @@ class Hospital:
         self._scanned = -1
         self._sample()
 
-    def copy(self) -> Hospital:
-        """The same state, with a record of its own that begins now."""
-        twin = Hospital.__new__(Hospital)
-        twin.world, twin.start, twin.steps, twin.chart = (
-            self.world,
-            self.start,
-            self.steps,
-            self.chart,
+    @classmethod
+    def of(cls, snapshot: Snapshot, chart: Chart | None = None) -> Hospital:
+        """As it was, with a record of its own that begins now; what is in the snapshot is its own
+        from then on. `chart` is that of the snapshot's world, if there is one."""
+        self = cls.__new__(cls)
+        self.world, self.start, self.steps = snapshot.world, snapshot.start, snapshot.steps
+        self.chart = chart or chart_of(snapshot.world)
+        self.leapt = 0
+        self.random = random.Random()
+        self.random.setstate(snapshot.chance)
+        self.open_doors = snapshot.open_doors
+        self.physics = self._new_physics()
+        robot_body = self.physics.add_robot(
+            *snapshot.robot_moves.position, snapshot.world.robot.radius
         )
-        twin.leapt = 0
-        twin.random = random.Random()
-        twin.random.setstate(self.random.getstate())
-        twin.open_doors = list(self.open_doors)
-        twin.physics = twin._new_physics()
-        robot_body = twin.physics.add_robot(*self.robot.position, self.robot.body.radius)
-        robot_body.resume(self.robot.body)
-        twin.robot = self.robot.copy(robot_body)
-        twin._keep_out()
-        twin.items = [item.copy() for item in self.items]
-        twin.people = []
-        for human in self.people:
-            body = twin.physics.add_person(*human.position, PERSON_RADIUS)
-            body.resume(human.body)
-            twin.people.append(human.copy(body))
-        twin.known_closed = dict(self.known_closed)
-        twin.last_seen = dict(self.last_seen)
-        twin.trail = list(self.trail)
-        twin.met = {place: set(names) for place, names in self.met.items()}
-        twin.partner = self.partner
-        twin.newcomers = self.newcomers
-        twin._begin()
-        return twin
+        robot_body.resume(snapshot.robot_moves)
+        self.robot = snapshot.robot.copy(robot_body)
+        self._keep_out()
+        self.items = snapshot.items
+        self.people = []
+        for human, motion in zip(snapshot.people, snapshot.people_move, strict=True):
+            body = self.physics.add_person(*motion.position, PERSON_RADIUS)
+            body.resume(motion)
+            self.people.append(human.copy(body))
+        self.known_closed = snapshot.known_closed
+        self.last_seen = snapshot.last_seen
+        self.trail = snapshot.trail
+        self.met = snapshot.met
+        self.partner = snapshot.partner
+        self.newcomers = snapshot.newcomers
+        self._begin()
+        return self
 
     def add_person(self, person: Person, x: float, y: float, theta: float, posture: str) -> Human:
         """Let somebody be there from now on."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterable, Sequence
+from typing import NamedTuple
 
 import pymunk
 
@@ -37,6 +38,14 @@ _BORDERS = pymunk.ShapeFilter(categories=_BORDER, mask=_FEELER)
 _FEELERS = pymunk.ShapeFilter(categories=_FEELER, mask=_BORDER)
 _LIDAR = pymunk.ShapeFilter(categories=_ROBOT, mask=_WALL | _FURNITURE | _PERSON)
 _SIGHT = pymunk.ShapeFilter(categories=_ROBOT | _PERSON, mask=_WALL)
+
+
+class Motion(NamedTuple):
+    """Where a body is, how it moves and how it is to move. Metres, m/s."""
+
+    position: tuple[float, float]
+    velocity: tuple[float, float]
+    wanted: tuple[float, float]
 
 
 class Body:
@@ -85,11 +94,15 @@ class Body:
         self.rest()
         self._body.position = (x, y)
 
-    def resume(self, other: Body) -> None:
-        """Take over where another body is and how it moves."""
-        self._body.position = other._body.position
-        self._body.velocity = other._body.velocity
-        self.drive(*other._wanted)
+    @property
+    def motion(self) -> Motion:
+        return Motion(self.position, self.velocity, self._wanted)
+
+    def resume(self, motion: Motion) -> None:
+        """Take over where another body was and how it moved."""
+        self._body.position = motion.position
+        self._body.velocity = motion.velocity
+        self.drive(*motion.wanted)
 
     def remove(self, space: pymunk.Space) -> None:
         space.remove(*self._parts)

@@ -21,11 +21,13 @@ import msgspec
 
 from sim import company, driving, handling, likely, perception, searching, talking
 from sim.hospital import Hospital, Listener, chart_of
+from sim.navigation import Chart
 from sim.perception import Seen
 from sim.physics import STEP
 from sim.record import Record
 from sim.robot import RobotState
 from sim.runner import Behaviour, Runner, Stop
+from sim.snapshot import Snapshot, snapshot
 from sim.talking import Reply
 from sim.view import View, view
 from sim.world import Place, World, Zone
@@ -84,12 +86,21 @@ class Simulation:
     def copy(self) -> Simulation:
         """The present state as a simulation of its own, without a clock, for trying things out:
         in it long waits are leapt over."""
-        twin = Simulation.__new__(Simulation)
         with self._runner.turn:
-            hospital = self._hospital.copy()
-        twin._open(hospital, None)
+            now, chart = snapshot(self._hospital), self._hospital.chart
+        return self._of(now, chart)
+
+    @classmethod
+    def _of(cls, now: Snapshot, chart: Chart | None = None) -> Simulation:
+        twin = cls.__new__(cls)
+        twin._open(Hospital.of(now, chart), None)
         twin._leaps = True
         return twin
+
+    def __reduce__(self) -> tuple[Callable[[Snapshot], Simulation], tuple[Snapshot]]:
+        """What is pickled is a copy."""
+        with self._runner.turn:
+            return Simulation._of, (snapshot(self._hospital),)
 
     def close(self) -> None:
         """End the clock thread, if there is one, and whatever runs."""

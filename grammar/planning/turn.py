@@ -21,6 +21,10 @@ class Turn:
     context: Context = field(default_factory=Context)
     """What was said and planned before."""
 
+    def __reduce__(self) -> tuple[type[Turn], tuple[str, Lexicon, Language, Context]]:
+        """What was found out about it can be found out again."""
+        return Turn, (self.text, self.lexicon, self.language, self.context)
+
     @cached_property
     def reader(self) -> Reader:
         return Reader(self.text, self.lexicon, self.language, self.context)

@@ -28,9 +28,11 @@ from nl2robot.commands.options import (
 )
 from nl2robot.entrance import PAGES_AT, Entrance
 from nl2robot.errors import ExitStatus, UserError
+from nl2robot.garbage import swept
 from nl2robot.machine import allow_open_files, outdated_python
 from nl2robot.paths import authority_file, data_folder, pictures_folder
 from nl2robot.retention import DAY, kept_for
+from nl2robot.review import get_ready
 from nl2robot.robots import places_of, reached, zones_of
 from nl2robot.station import robot_station, simulated_station
 from robot_api.access import LONGEST_SECRET, is_loopback
@@ -156,6 +158,8 @@ def run(options: argparse.Namespace) -> int:
             )
             _, server = stack.enter_context(station)
         planners.get_ready()
+        get_ready(world)
+        stack.enter_context(swept(lambda: server.dispatcher.moves))
         server.serve_forever(lambda server: _say_where(server, entrance, options))
     return ExitStatus.OK
 

@@ -210,7 +210,14 @@ class Dialogue:
         mine = talk.copy()
         try:
             made = translate(
-                thought.words, runner.knowledge, language, "auto", mine, runner, thought.watch
+                thought.words,
+                runner.knowledge,
+                language,
+                "auto",
+                mine,
+                runner,
+                thought.watch,
+                runner.think,
             )
         except Interrupted:
             return None
@@ -394,9 +401,10 @@ class Dialogue:
         """Lay a routine before the operator, as if they had said its name in its language."""
         self.cancel(language)
         self._tell(Line("you", name))
-        knowledge = self._backstage.runner.knowledge
+        runner = self._backstage.runner
+        knowledge = runner.knowledge
         try:
-            translation = translate(name, knowledge, said_in, "grammar")
+            translation = translate(name, knowledge, said_in, "grammar", do=runner.think)
         except UserError as error:
             self._tell(Line("robot", str(error), "trouble"))
             return

@@ -24,7 +24,7 @@ from nl2robot.console.highlight import highlighted
 from nl2robot.console.outlook import outlook
 from nl2robot.console.part import Backstage
 from nl2robot.console.visitor import texts
-from nl2robot.review import Review, review
+from nl2robot.review import Review
 from nl2robot.routines import Routine
 from nl2robot.runlog import LogError
 from nl2robot.teaching import Teacher
@@ -104,7 +104,12 @@ class Viewer:
         except PlanError:
             program = ""
         steps = self._steps(plan, lexicons[-1], reader)
-        findings = review(program, self._knowledge, language=reader).findings if program else ()
+        made = (
+            self._backstage.runner.review(program, self._knowledge, language=reader)
+            if program
+            else None
+        )
+        findings = made.findings if made is not None else ()
         errors = [found for found in findings if found.severity == "error"]
         if errors:
             line = f"{texts('desk', reader)['line']} {errors[0].line}"

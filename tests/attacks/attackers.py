@@ -4,6 +4,7 @@ ADDRESS SECONDS`. They do nothing that the network does not allow, and say in th
 from __future__ import annotations
 
 import contextlib
+import itertools
 import json
 import random
 import socket
@@ -13,6 +14,7 @@ import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
+import httpx
 import websockets.sync.client
 from websockets.exceptions import WebSocketException
 
@@ -133,6 +135,24 @@ def _waiting(address: str) -> Iterator[None]:
                 break
 
 
+def _readers(address: str) -> Iterator[None]:
+    """Three who open one page after the other."""
+    pages = ("/", "/runs", "/map", "/drive", "/devices", "/face")
+    done = threading.Semaphore(0)
+
+    def read() -> None:
+        for page in itertools.cycle(pages):
+            with contextlib.suppress(httpx.HTTPError):
+                httpx.get(f"http://{address}{page}", timeout=10).raise_for_status()
+                done.release()
+
+    for _ in range(3):
+        threading.Thread(target=read, daemon=True).start()
+    while True:
+        done.acquire()
+        yield
+
+
 ATTACKS: dict[str, Callable[[str], Iterator[None]]] = {
     "60,000 options": _frames(lambda chance: OPTIONS),
     "batches of 64": _frames(lambda chance: BATCH),
@@ -144,6 +164,7 @@ ATTACKS: dict[str, Callable[[str], Iterator[None]]] = {
     "large cookies": _open(b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nCookie: " + b"\\x" * 30_000),
     "64 calls that wait": _waiting,
     "four colleagues": _colleagues,
+    "pages opened": _readers,
 }
 
 

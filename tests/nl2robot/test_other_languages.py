@@ -19,6 +19,7 @@ from nl2robot.sightings import Sightings
 from nl2robot.talks import Talks
 from nl2robot.translation import Talk, translate
 from nl2robot.words import words_in
+from nl2robot.work import here
 from sim.world import load_world
 
 KNOWLEDGE = Knowledge(load_world(DEFAULT_WORLD))
@@ -210,6 +211,7 @@ class _Runner:
         self.knowledge = knowledge
         self.present = Present(lambda state: None)
         self.sightings = Sightings()
+        self.think = here
 
     def state(self) -> None:
         return None

@@ -40,7 +40,7 @@ def reviewed(
     if place is not None:
         simulation.localize(*simulation.locate(place))
     knowledge = Knowledge(HOSPITAL, simulated(simulation).capabilities())
-    return review(program, knowledge, simulation.copy, language, seed=1)
+    return review(program, knowledge, simulation.copy(), language, seed=1)
 
 
 def found(program: str, **more) -> list[tuple[int, str]]:
@@ -137,7 +137,7 @@ def test_driving_past_somebody_without_steering_is_marked() -> None:
     x, y = tom.position
     simulation.localize(x - 2.0, y + 0.7, 0)
     knowledge = Knowledge(HOSPITAL, simulated(simulation).capabilities())
-    told = review("robot.move(3)", knowledge, simulation.copy).risks
+    told = review("robot.move(3)", knowledge, simulation.copy()).risks
     assert [(risk.line, risk.kind) for risk in told] == [(1, "speed")]
     assert "Tom" in told[0].text
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Callable
 
 import pytest
 
@@ -11,7 +12,7 @@ from robot_api.client import Robot
 from robot_api.drivers import emulated
 from robot_api.errors import Stopped
 from robot_api.server import Server
-from robot_api.watchdog import BECAUSE, DEAF
+from robot_api.watchdog import BECAUSE, COMPUTES, DEAF
 
 SOON = 20.0
 
@@ -19,7 +20,9 @@ SOON = 20.0
 class Deafened:
     """A server whose loop is kept busy, with a robot that drives meanwhile."""
 
-    def __init__(self, seconds: float, method: str = "drive") -> None:
+    def __init__(
+        self, seconds: float, method: str = "drive", busy: Callable[[float], None] = time.sleep
+    ) -> None:
         self.stops: list[str] = []
         driver = emulated(speed=1.0)
         stop = driver.stop
@@ -41,7 +44,7 @@ class Deafened:
             thread = threading.Thread(target=call)
             thread.start()
             assert begun.wait(SOON)
-            server.in_loop(time.sleep, seconds)
+            server.in_loop(busy, seconds)
             thread.join(SOON)
             self.during = list(self.stops)
 
@@ -50,6 +53,21 @@ def test_a_robot_that_drives_is_stopped_when_its_server_is_deaf() -> None:
     deafened = Deafened(3 * DEAF)
     assert deafened.during == [BECAUSE]
     assert deafened.ended == BECAUSE
+
+
+def compute(seconds: float) -> None:
+    ends = time.thread_time() + seconds
+    while time.thread_time() < ends:
+        pass
+
+
+@pytest.mark.skipif(
+    not hasattr(time, "pthread_getcpuclockid"), reason="this system has no clock for a thread"
+)
+def test_one_whose_server_computes_is_stopped_at_once() -> None:
+    """Long before it counts as deaf: it is at a fault then, and not only late."""
+    assert COMPUTES < DEAF / 4
+    assert Deafened(DEAF / 2, busy=compute).during == [BECAUSE]
 
 
 @pytest.mark.parametrize(("seconds", "method"), [(DEAF / 3, "drive"), (3 * DEAF, "wait")])
