@@ -7,8 +7,10 @@ nobody will ever read that. SQLite notices none of this, so it is looked at befo
 from __future__ import annotations
 
 import os
+import struct
 from contextlib import suppress
 from pathlib import Path
+from typing import Final
 
 from nl2robot.errors import UserError
 
@@ -23,6 +25,12 @@ class Tampered(UserError):
         )
 
 
+_HEAD: Final = struct.Struct(">8xI")
+"""Of a write-ahead log, as SQLite's file format has it; the number is the size of a page, of which
+each is kept behind a head of its own."""
+_FRAME_HEAD: Final = 24
+
+
 class LogFile:
     """The files of an SQLite database with a write-ahead log, which never get shorter while it is
     open."""
@@ -31,6 +39,8 @@ class LogFile:
         self._path = path
         self._files = (path, Path(f"{path}-wal"))
         self._known: dict[Path, os.stat_result] = {}
+        self._last_frame: int | None = None
+        """Where the last page begins that was known to be written ahead."""
         self._touched = False
 
     def check(self) -> None:
@@ -47,6 +57,7 @@ class LogFile:
             with suppress(FileNotFoundError):
                 self._known.setdefault(file, file.stat())
         self._look()
+        self._last_frame = self._frame()
 
     def _look(self) -> None:
         for file, known in self._known.items():
@@ -58,3 +69,27 @@ class LogFile:
             same = (now.st_dev, now.st_ino) == (known.st_dev, known.st_ino)
             self._touched = self._touched or not same or now.st_size < known.st_size
             self._known[file] = now if same else known
+        if self._last_frame is not None and not self._has(self._last_frame):
+            self._touched = True
+
+    def _frame(self) -> int | None:
+        """Where the last page begins now."""
+        _, ahead = self._files
+        with suppress(OSError), ahead.open("rb") as file:
+            head = file.read(_HEAD.size)
+            if len(head) == _HEAD.size:
+                page = int(_HEAD.unpack(head)[0])
+                return max(0, ahead.stat().st_size - page - _FRAME_HEAD)
+        return None
+
+    def _has(self, frame: int) -> bool:
+        """Whether something is there. If the file was cut since it was last looked at, and then
+        written to, it is as long as before, with nothing in between."""
+        _, ahead = self._files
+        try:
+            with ahead.open("rb") as file:
+                begins = file.read(_HEAD.size)
+                file.seek(frame)
+                return any(begins) and any(file.read(_FRAME_HEAD))
+        except OSError:
+            return False

@@ -32,7 +32,7 @@ from nl2robot.errors import UserError
 from nl2robot.routine_files import Choice
 from nl2robot.routines import Routine, Routines, spelled
 from nl2robot.teaching import Teacher, tidied
-from nl2robot.wire import service
+from nl2robot.wire import an_object, service
 from robot_api.methods import MAX_TEXT
 from robot_api.server import Service
 from sandbox.limits import MAX_PROGRAM
@@ -149,17 +149,11 @@ class Shelf:
 
     def services(self) -> dict[str, Service]:
         one = {"name": _NAME, "language": _LANGUAGE, "reader": _READER}
-        which = {"type": "object", "properties": {"name": _NAME, "language": _LANGUAGE}}
-        choice = {
-            "type": "object",
-            "properties": {
-                "number": {"type": "integer", "minimum": 0},
-                "name": _NAME,
-                "replace": {"type": "boolean"},
-            },
-            "required": ["number", "name"],
-            "additionalProperties": False,
-        }
+        which = an_object({"name": _NAME, "language": _LANGUAGE}, "name language")
+        number = {"type": "integer", "minimum": 0}
+        choice = an_object(
+            {"number": number, "name": _NAME, "replace": {"type": "boolean"}}, "number name"
+        )
         return {
             "routines.list": service(
                 lambda p: [routine_view.as_data(card) for card in self._viewer.cards(_reader(p))],

@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from nl2robot.console.visitor import texts
-from robot_api.errors import RobotError
+from robot_api.errors import InvalidCall, RobotError
 from tests.console.conftest import Look, Picture, Served
 from tests.console.test_looks import CONTRAST, STICKS_OUT, nameless
 
@@ -443,3 +443,8 @@ def test_what_opens_in_a_card_fits_is_read_and_is_told(
     expect(page.locator(".routines-panel .routine-check .outlook")).to_be_visible()
     fits()
     picture(page, f"routines-{width}")
+
+
+def test_what_is_left_out_of_a_list_is_asked_for(served: Served) -> None:
+    with served.robot() as robot, pytest.raises(InvalidCall, match="language"):
+        robot.request("routines.export", {"which": [{"name": "evening round"}]})

@@ -59,3 +59,10 @@ def test_tokens_stand_in_order_within_the_text(text: str) -> None:
     found = tokens(text)
     assert all(0 <= token.start <= token.end <= len(text) for token in found)
     assert [token.start for token in found] == sorted(token.start for token in found)
+
+
+def test_many_apostrophes_are_read_in_no_more_time_than_others() -> None:
+    """With one quotation that is never closed, every way to end it was tried once: two to the power
+    of them."""
+    asked = " s'ils ont soif et affiche suren" * 60
+    assert "demande" in norms(f"'demande{asked} !")
