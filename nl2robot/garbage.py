@@ -26,10 +26,9 @@ _NEVER: Final = 1_000_000_000
 
 @contextmanager
 def swept(moves: Callable[[], bool]) -> Iterator[None]:
-    """While this lasts, long searches are made while the robot does not move, and spare what there
-    is now, which stays."""
+    """While this lasts, long searches are made while the robot does not move. They spare what there
+    is now, for good."""
     before = gc.get_threshold()
-    gc.collect()
     gc.freeze()
     gc.set_threshold(*before[:2], _NEVER)
     over = threading.Event()
@@ -48,4 +47,3 @@ def swept(moves: Callable[[], bool]) -> Iterator[None]:
         over.set()
         thread.join()
         gc.set_threshold(*before)
-        gc.unfreeze()

@@ -23,6 +23,7 @@ from nl2robot.commands.options import (
     world_of,
 )
 from nl2robot.errors import UserError
+from nl2robot.garbage import swept
 from nl2robot.operator import Operator
 from nl2robot.paths import pictures_folder
 from nl2robot.robots import Chosen, reached, zones_of
@@ -148,12 +149,14 @@ def _station(
             )
             # Who is spoken to in German answers so.
             simulated.simulation.set_language(options.lang)
+            stack.enter_context(swept(lambda: simulated.server.dispatcher.moves))
             yield simulated
             return
         here = sound(time.monotonic) if sound else SILENT
         driver = stack.enter_context(reached(robot, world, here))
         real = robot_station(driver, world, log, zones=lambda: zones_of(world), sound=here)
-        station, _ = stack.enter_context(real)
+        station, server = stack.enter_context(real)
+        stack.enter_context(swept(lambda: server.dispatcher.moves))
         yield station
 
 
