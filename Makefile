@@ -19,25 +19,27 @@ voices: $(VOICES)
 test: lint types tests
 
 # What a file of locks/ names, and nothing else: a package that is not the one that was tested is
-# refused. Versions are the same in all three files, so they may follow each other in any order.
+# refused. Versions are the same in all of them, so they may follow each other in any order.
 define install
 	@$(PYTHON) -c 'import sys; sys.exit("nl2robot needs Python 3.11 or newer; this is " + sys.version.split()[0] + ". Try: make PYTHON=python3.12 ...") if sys.version_info < (3, 11) else None'
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --progress-bar on --require-hashes -r $(1)
-	$(BIN)/python -m pip install --quiet --no-deps -e .
+	@# what builds this project, and packages that are only source
+	$(BIN)/python -m pip install --quiet --require-hashes -r locks/build.txt
+	$(BIN)/python -m pip install --progress-bar on --require-hashes --no-build-isolation -r $(1)
+	$(BIN)/python -m pip install --quiet --no-build-isolation --no-deps -e .
 	@# the first start is as fast as any other, also where Python may write no bytecode later
 	@$(BIN)/python -m compileall -q grammar nl2robot robot_api sandbox sim
 endef
 
-$(RUNS): pyproject.toml locks/run.txt
+$(RUNS): pyproject.toml locks/run.txt locks/build.txt
 	$(call install,locks/run.txt)
 	@touch $@
 
 $(VOICES): $(RUNS) locks/voices.txt
-	$(BIN)/python -m pip install --progress-bar on --require-hashes -r locks/voices.txt
+	$(BIN)/python -m pip install --progress-bar on --require-hashes --no-build-isolation -r locks/voices.txt
 	@touch $@
 
-$(STAMP): pyproject.toml locks/dev.txt
+$(STAMP): pyproject.toml locks/dev.txt locks/build.txt
 	$(call install,locks/dev.txt)
 	@touch $(RUNS) $(VOICES) $@
 
@@ -45,10 +47,12 @@ $(STAMP): pyproject.toml locks/dev.txt
 # `make lock UPGRADE=1` takes the newest.
 COMPILE = $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
   --no-emit-index-url --no-header --annotation-style line $(if $(UPGRADE),--upgrade)
+BUILDS  = $(BIN)/python -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["build-system"]["requires"], sep="\n")'
 EXTRA   = $(BIN)/python -c 'import sys, tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"][sys.argv[1]], sep="\n")'
 lock: | $(BIN)/uv
 	$(COMPILE) pyproject.toml --extra dev -o locks/dev.txt >/dev/null
 	$(COMPILE) pyproject.toml $(patsubst %,--extra %,echo planner pepper ros) --no-annotate -c locks/dev.txt -o locks/run.txt >/dev/null
+	$(BUILDS) | $(COMPILE) - --no-annotate -c locks/dev.txt -o locks/build.txt >/dev/null
 	$(EXTRA) voices | $(COMPILE) - --no-annotate -c locks/dev.txt -o locks/voices.txt >/dev/null
 
 $(BIN)/uv:

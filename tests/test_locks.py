@@ -22,7 +22,9 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 EXTRAS = PROJECT["optional-dependencies"]
 UNDER_THE_GPL = {"piper-tts", "espeakng-loader"}
 EVERYTHING = [*PROJECT["dependencies"], *(each for name in EXTRAS for each in EXTRAS[name])]
+BUILDS = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["build-system"]["requires"]
 HOLDS = {
+    "build": BUILDS,
     "run": [each for each in EVERYTHING if each not in (*EXTRAS["voices"], *EXTRAS["dev"])],
     "voices": EXTRAS["voices"],
     "dev": EVERYTHING,
@@ -131,9 +133,9 @@ def test_nothing_under_the_gpl_is_installed_unasked() -> None:
 @pytest.mark.parametrize(
     ("target", "files"),
     [
-        ("run", ["locks/run.txt"]),
-        ("voices", ["locks/run.txt", "locks/voices.txt"]),
-        ("lint", ["locks/dev.txt"]),
+        ("run", ["locks/build.txt", "locks/run.txt"]),
+        ("voices", ["locks/build.txt", "locks/run.txt", "locks/voices.txt"]),
+        ("lint", ["locks/build.txt", "locks/dev.txt"]),
     ],
 )
 def test_make_installs_nothing_else(target: str, files: list[str]) -> None:
