@@ -122,7 +122,7 @@ sbom: $(STAMP) $(AUDIT)/.installed
 	@echo "nl2robot.cdx.json lists every package that is installed."
 
 audit: $(STAMP) $(AUDIT)/.installed
-	$(AUDIT)/bin/pip-audit --path $$($(BIN)/python -c 'import site; print(site.getsitepackages()[0])')
+	@$(BIN)/python docs/deploy/audit.py $(AUDIT)/bin/pip-audit $$($(BIN)/python -c 'import site; print(site.getsitepackages()[0])')
 
 $(AUDIT)/.installed:
 	$(PYTHON) -m venv $(AUDIT)
