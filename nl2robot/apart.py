@@ -90,7 +90,10 @@ class Helpers:
                 helper.close()
             if self._is_over:
                 raise Died
-            helper = _Helper()
+            try:
+                helper = _Helper()
+            except OSError as error:  # no memory, no room for a process
+                raise Died from error
             self._busy.add(helper)
             return helper
 
@@ -99,10 +102,14 @@ class Helpers:
             self._busy.discard(helper)
             helper.idle_since = time.monotonic()
             self._idle.append(helper)
-            if len(self._idle) > 1 and self._sweep is None:
-                self._sweep = threading.Timer(STAYS, self._swept)
-                self._sweep.daemon = True
-                self._sweep.start()
+            self._sweep_later()
+
+    def _sweep_later(self) -> None:
+        """Called with the lock held."""
+        if len(self._idle) > 1 and self._sweep is None:
+            self._sweep = threading.Timer(STAYS, self._swept)
+            self._sweep.daemon = True
+            self._sweep.start()
 
     def _swept(self) -> None:
         """End those that nobody has needed for long, but for the last."""
@@ -111,6 +118,7 @@ class Helpers:
             since = time.monotonic() - STAYS / 2
             old = [each for each in self._idle[:-1] if each.idle_since < since]
             self._idle = [each for each in self._idle if each not in old]
+            self._sweep_later()
         for helper in old:
             helper.close()
 

@@ -17,9 +17,11 @@ import pytest
 from nl2robot.apart import Helpers, think
 from nl2robot.knowledge import Knowledge
 from nl2robot.review import review, review_apart
+from nl2robot.sentences import told
 from nl2robot.translation import Talk, translate
 from nl2robot.work import Died, Do, TookTooLong, here
 from robot_api.drivers import simulated
+from robot_api.errors import NotPossible
 from sim.simulation import Simulation
 from sim.world import load_world
 
@@ -176,3 +178,16 @@ def test_a_sentence_without_end_is_asked_for_in_parts() -> None:
     # What is brief asks nobody else: a stop least of all.
     assert translate("stop", knowledge, "en", do=never).program == "robot.stop()\n"
     assert translate("please stop now", knowledge, "en", do=never).program == "robot.stop()\n"
+
+
+def test_where_no_process_can_be_begun_that_is_said(helpers, monkeypatch) -> None:
+    def no_room(*_: object, **__: object) -> None:
+        raise OSError(12, "Cannot allocate memory")
+
+    monkeypatch.setattr("nl2robot.apart.subprocess.Popen", no_room)
+    monkeypatch.setattr("nl2robot.review.HELPERS", helpers)
+    with pytest.raises(NotPossible, match="too little memory") as raised:
+        review_apart("robot.stop()\n", Knowledge(load_world("city-hospital")))
+    assert "zu wenig Speicher" in told(str(raised.value), "de")
+    with pytest.raises(Died):
+        helpers.call(os.getpid, LONG)
