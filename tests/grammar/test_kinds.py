@@ -4,6 +4,7 @@ the kind: no sentence here is meant for itself."""
 from __future__ import annotations
 
 import functools
+import itertools
 import tempfile
 from pathlib import Path
 
@@ -676,3 +677,49 @@ def test_a_place_that_nobody_knows_is_named_whole_and_what_is_proposed_can_be_sa
             for proposed in answer.suggestions:
                 understood = said(language, proposed)
                 assert understood.program is not None, (each, place, proposed, understood.message)
+
+
+# --- whoever is in the way
+
+
+PUSHED = {
+    "en": (
+        ("push", "pull", "drag"),
+        ("Bob", "the nurse", "that old man", "the tall lady in the blue coat", "him"),
+        ("aside", "out of the way", "over", "against the wall"),
+    ),
+    "de": (("schubs", "remple", "überfahr"), ("Bob", "die Ärztin", "den alten Mann"), ("", "weg")),
+    "fr": (("bouscule", "renverse"), ("Bob", "l'infirmière", "le vieux monsieur"), ("",)),
+}
+
+
+@pytest.mark.parametrize("language", PUSHED)
+def test_nobody_is_pushed_however_they_are_called(language: str) -> None:
+    refusal = load_language(language).phrase("no_harm")
+    for verb, whom, where in itertools.product(*PUSHED[language]):
+        words = f"{verb} {whom} {where}".strip()
+        made = said(language, words)
+        assert (made.program, made.message) == (None, refusal), words
+
+
+@pytest.mark.parametrize("verb", ["run", "drive"])
+@pytest.mark.parametrize("rest", ["to the pharmacy", "to the kitchen and wave", "and wave"])
+def test_who_only_goes_there_quickly_hurts_nobody(verb: str, rest: str) -> None:
+    made = said("en", f"{verb} over {rest}")
+    assert made.message != load_language("en").phrase("no_harm")
+
+
+@pytest.mark.parametrize(
+    ("language", "words"),
+    [
+        ("de", "sag {}, wie viele ja gesagt haben"),
+        ("de", "erklär {}, was es zu essen gibt"),
+        ("fr", "dis à {} combien ont dit oui"),
+        ("en", "tell {} how many said yes"),
+    ],
+)
+def test_a_place_that_is_told_something_is_nowhere_to_lead_somebody(
+    language: str, words: str
+) -> None:
+    kitchen = {"de": "der Küche", "fr": "la cuisine", "en": "the kitchen"}[language]
+    assert "guide" not in (said(language, words.format(kitchen)).program or "")
