@@ -171,7 +171,7 @@ class Terminal:
         if translation is not None and translation.explanation:
             explanation = _plain(translation.explanation)
             self.console.print(f"[bold]{self.words['in_words']}[/] {explanation}")
-        else:
+        elif review.reading:
             self.console.print(f"[bold]{self.words['in_words']}[/]")
         if translation is None or len(review.reading) > 1:
             for told in review.reading:

@@ -1,4 +1,5 @@
-"""`nl2robot explain`: how a sentence is read, word by word; never moves anything."""
+"""`nl2robot explain`: how a sentence is read, word by word, or what a program does, line by line;
+never moves anything."""
 
 from __future__ import annotations
 
@@ -13,7 +14,13 @@ from grammar.language import load_language
 from grammar.readings import Read
 from grammar.understand import understand
 from grammar.understanding import Understanding
-from nl2robot.commands.options import add_language, add_words, add_world, names_of
+from nl2robot.commands.options import (
+    add_language,
+    add_words,
+    add_world,
+    names_of,
+    read_program,
+)
 from nl2robot.errors import ExitStatus
 from nl2robot.knowledge import Knowledge
 from nl2robot.plain import visible
@@ -30,7 +37,7 @@ STYLES = {"ok": "green", "clarify": "yellow", "rejected": "red"}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_words(parser, "the sentence")
+    add_words(parser, "the sentence, or the file of a program (program.py)")
     parser.add_argument(
         "--json",
         action="store_true",
@@ -42,6 +49,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     knowledge = Knowledge(names_of(options), routines=open_routines())
+    if _is_file(options.words):
+        return _show_program(read_program(options.words), knowledge, options)
     understood = understand(options.words, knowledge.lexicon(options.lang), options.lang)
     translation = translate(options.words, knowledge, options.lang)
     if options.json:
@@ -52,6 +61,23 @@ def run(options: argparse.Namespace) -> int:
     else:
         _show(translation, understood, options.lang)
     return ExitStatus.OK if translation.status == "ok" else ExitStatus.NOT_UNDERSTOOD
+
+
+def _is_file(words: str) -> bool:
+    return words.endswith(".py") and not any(sign.isspace() for sign in words)
+
+
+def _show_program(program: str, knowledge: Knowledge, options: argparse.Namespace) -> int:
+    """What it does in plain words, and what is wrong with it; it is not tried."""
+    from nl2robot.review import review
+    from nl2robot.terminal import Terminal
+
+    made = review(program, knowledge, language=options.lang)
+    if options.json:
+        print(msgspec.json.encode(made).decode())
+    else:
+        Terminal(language=options.lang).show_review(made)
+    return ExitStatus.OK if made.acceptable else ExitStatus.FAILED
 
 
 def _show(translation: Translation, understood: Understanding, language: str) -> None:

@@ -8,7 +8,7 @@ import json
 import msgspec
 
 from grammar.language import languages
-from nl2robot.errors import ExitStatus
+from nl2robot.errors import ExitStatus, UserError
 from nl2robot.lint import lint, worst
 from nl2robot.terminal import Terminal
 
@@ -28,6 +28,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """The exit status is 1 if there are errors; warnings alone do not count."""
+    for each in options.worlds:
+        if each.endswith(".py"):
+            raise UserError(
+                f"{each} is a program, and lint looks at worlds. `nl2robot explain {each}` tells"
+                " what it does and what is wrong with it."
+            )
     terminal = Terminal()
     found = [finding for world in options.worlds for finding in lint(world, options.lang)]
     for finding in found:

@@ -321,3 +321,15 @@ def user_name() -> str:
         return getpass.getuser()
     except (KeyError, OSError):  # no login name in a bare container
         return "unknown"
+
+
+def read_program(file: str) -> str:
+    """The program in a file. Raises `UserError`."""
+    try:
+        return Path(file).read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise UserError(f"The program {file} is no text in UTF-8. Save it as UTF-8.") from error
+    except OSError as error:
+        raise UserError(
+            f"The program {file} cannot be read ({error.strerror}). Check its name and rights."
+        ) from error

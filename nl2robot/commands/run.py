@@ -17,6 +17,7 @@ from nl2robot.commands.options import (
     add_sound,
     add_words,
     open_log,
+    read_program,
     robot_of,
     sound_of,
     user_name,
@@ -62,7 +63,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     if (options.words is None) == (options.program is None):
         raise UserError(words_in(options.lang)["say_what"])
-    program = _read(options.program) if options.program is not None else None
+    program = read_program(options.program) if options.program is not None else None
     picture = Path(options.picture) if options.picture is not None else None
     robot = robot_of(options)
     if picture is not None:
@@ -158,14 +159,3 @@ def _station(
         station, server = stack.enter_context(real)
         stack.enter_context(swept(lambda: server.dispatcher.moves))
         yield station
-
-
-def _read(file: str) -> str:
-    try:
-        return Path(file).read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise UserError(f"The program {file} is no text in UTF-8. Save it as UTF-8.") from error
-    except OSError as error:
-        raise UserError(
-            f"The program {file} cannot be read ({error.strerror}). Check its name and rights."
-        ) from error

@@ -95,3 +95,31 @@ def test_it_tells_in_which_other_words_it_was_read(capsys) -> None:
     assert out.startswith("Keep Alice company\nin other words\nstay with Alice\n")
     main(["explain", "go to the pharmacy"])
     assert "in other words" not in capsys.readouterr().out
+
+
+ROUND = 'for place in robot.places("ward"):\n    robot.goto(place)\nrobot.say("Tea!")\n'
+
+
+def test_a_program_is_read_line_by_line(tmp_path, capsys) -> None:
+    file = tmp_path / "round.py"
+    file.write_text(ROUND, encoding="utf-8")
+    assert main(["explain", str(file)]) == 0
+    told = capsys.readouterr().out
+    assert "say “Tea!”" in told and "Error" not in told
+    assert main(["explain", str(file), "--json", "--lang", "de"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["program"] == ROUND and [each["line"] for each in data["reading"]] == [1, 2, 3]
+
+
+def test_what_is_wrong_with_a_program_is_told_with_its_line(tmp_path, capsys) -> None:
+    file = tmp_path / "round.py"
+    file.write_text(ROUND + 'robot.goto("Utopia")\n', encoding="utf-8")
+    assert main(["explain", str(file)]) == 1
+    told = capsys.readouterr().out
+    assert "line 4" in told and "Utopia" in told and "In words" not in told
+
+
+@pytest.mark.parametrize(("command", "says"), [("explain", "cannot be read"), ("lint", "explain")])
+def test_a_program_that_is_not_there_or_no_world_is_said(command: str, says: str, capsys) -> None:
+    assert main([command, "no-such-round.py"]) == 2
+    assert says in capsys.readouterr().err
