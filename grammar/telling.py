@@ -18,6 +18,7 @@ from grammar.speech import fill, fitting, gaps
 from grammar.told import Told
 from grammar.told_values import ValueTeller, as_call, signed, sort_of
 from grammar.traversal import nodes, walk
+from grammar.which_time import asks_only_which_time
 from robot_api.methods import METHODS
 
 _PEOPLE_TOO: Final = frozenset({"find", "sees", "count"})
@@ -191,6 +192,10 @@ class Teller(ValueTeller):
                 step.steps, step.variable
             ):
                 yield self.loop("repeat", step.steps, times=self.times(stop))
+            case p.ForEach(variable=number, items=p.Range(stop=stop)) if asks_only_which_time(step):
+                self.counting[number] = stop
+                yield self.loop("repeat", step.steps, times=self.times(stop))
+                del self.counting[number]
             case p.ForEach() if is_record(self.types.of(step.items)):
                 yield self.loop("for each entry", step.steps, items=self.value(step.items))
             case p.ForEach():

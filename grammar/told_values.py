@@ -12,6 +12,7 @@ from grammar.kinds import is_list, is_record
 from grammar.read_values import Code
 from grammar.speech import Speech, Words, fill, fitting, forms, gaps
 from grammar.traversal import walk
+from grammar.which_time import which_time
 from grammar.writing import OPPOSITES as COMPARED
 from robot_api.methods import METHODS
 
@@ -57,6 +58,8 @@ class ValueTeller:
     """What each remembered name is called wherever it is spoken of."""
     short: dict[str, str] = field(init=False, default_factory=dict)
     """What it may be called while it is the latest of its sort: "the answer"."""
+    counting: dict[str, p.Value] = field(init=False, default_factory=dict)
+    """The numbers of which only matters which time it is, each with how many times there are."""
     latest: dict[str, str] = field(init=False, default_factory=dict)
     """For each such short way the name that it means at this point of the plan."""
     makers: dict[str, p.Step | None] = field(init=False, default_factory=dict)
@@ -374,6 +377,9 @@ class ValueTeller:
 
     def comparison(self, compare: p.Compare, holds: bool) -> str:
         say = self.words.conditions
+        for number, stop in self.counting.items():
+            if (time := which_time(compare, number, stop)) is not None:
+                return say[f"{time[0]} time" if time[1] is holds else f"not {time[0]} time"]
         operator = compare.operator
         if not holds and operator != "in":
             operator, holds = OPPOSITES[operator], True

@@ -520,3 +520,46 @@ def test_what_a_look_came_to_is_told_as_people_would(
         program = f'seen = robot.people()\nif {test}:\n    robot.say("x")\n'
         told = explain_steps(parse_program(program, language), language)[1][1]
         assert re.search(words, told), told
+
+
+TIMES = [
+    ("en", "three times", ("it is the first time", "it is not the first time")),
+    ("de", "dreimal", ("es das erste Mal ist", "es nicht das erste Mal ist")),
+    ("fr", "trois fois", ("c'est la première fois", "ce n'est pas la première fois")),
+]
+
+
+@pytest.mark.parametrize(("language", "times", "first"), TIMES)
+def test_who_counts_only_to_know_the_first_time_is_not_told_of_numbers(
+    language: str, times: str, first: tuple[str, str]
+) -> None:
+    is_first, is_later = first
+    for condition, told in [
+        ("k == 0", is_first),
+        ("k < 1", is_first),
+        ("not k > 0", is_first),
+        ("k > 0", is_later),
+        ("k >= 1", is_later),
+        ("k != 0", is_later),
+        ("not k == 0", is_later),
+    ]:
+        wait = f"    if {condition}:\n        robot.wait(60)\n"
+        program = f'for k in range(3):\n{wait}    robot.say("Ah")\n'
+        lines = [line.text for line in explain_program(program, language)]
+        assert lines[0].startswith(times) and told in lines[1], (condition, lines)
+
+
+def test_the_last_time_is_told_as_that_and_other_numbers_as_numbers() -> None:
+    def lines(condition: str, more: str = "") -> list[str]:
+        program = (
+            f"for k in range(4):\n    if {condition}:\n        robot.wait(60)\n"
+            f'    robot.say("Ah")\n{more}'
+        )
+        return [line.text for line in explain_program(program, "en")]
+
+    assert "it is not the last time" in lines("k < 3")[1]
+    assert "it is the last time" in lines("k == 3")[1]
+    assert "number" in lines("k > 1")[1]  # the third
+    assert "number" in lines("k > 0", "    robot.say(str(k))\n")[1]
+    inner = "    for other in range(2):\n        if k == 0:\n            robot.wait(1)\n"
+    assert "first time" not in " ".join(lines("k > 0", inner))  # whose?
