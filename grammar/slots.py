@@ -56,7 +56,7 @@ class Slots:
         self._numerals = Numerals(tokens, self.language)
         self._adverb = re.compile(self.language.speech.get("adverbs", r"(?!)")).search
         self._possessive = str(self.language.speech.get("possessive", "")).strip()
-        self._no_nouns = frozenset(self.language.speech.get("no_nouns", ()))
+        self._no_nouns = self.language.words_called("no_nouns")
         self._measures = self.language.words_called("measures")
         self._behind_nouns = frozenset(self.language.speech.get("behind_nouns", ()))
         self._no_heads = frozenset(self.language.speech.get("no_heads", ()))

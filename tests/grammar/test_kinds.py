@@ -723,3 +723,14 @@ def test_a_place_that_is_told_something_is_nowhere_to_lead_somebody(
 ) -> None:
     kitchen = {"de": "der Küche", "fr": "la cuisine", "en": "the kitchen"}[language]
     assert "guide" not in (said(language, words.format(kitchen)).program or "")
+
+
+TAKING = {"en": ("move", "bring", "take"), "de": ("bring", "nimm"), "fr": ("apporte", "prends")}
+
+
+@pytest.mark.parametrize("language", TAKING)
+def test_where_something_goes_is_nothing_to_take(language: str) -> None:
+    for verb, word in itertools.product(
+        TAKING[language], load_language(language).speech["no_nouns"]
+    ):
+        assert "grab" not in (said(language, f"{verb} {word}").program or ""), (verb, word)
