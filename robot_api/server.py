@@ -160,11 +160,11 @@ class Server:
     given one is made up. `services` are further methods by their names, `events` the kinds of
     events that they publish, each with what its data says; of those `remembered` the last one is
     sent to who subscribes later. `pages` is an application whose pages
-    are served beside the wire; without one, `status_page` makes the page at `/`. `on_left` is told
-    the name of each connection that is gone, in the loop thread. `encryption`: the port also speaks
-    TLS, with this context, and plainly with this machine alone. `doors` let in who has an account.
-    `before_call` is told who is about to call which robot method with which arguments, and may
-    raise a `RobotError`; of a stop it is not told.
+    are served beside the wire, in a loop of its own; without one, `status_page` makes the page at
+    `/`. `on_left` is told the name of each connection that is gone, in the loop thread.
+    `encryption`: the port also speaks TLS, with this context, and plainly with this machine alone.
+    `doors` let in who has an account. `before_call` is told who is about to call which robot
+    method with which arguments, and may raise a `RobotError`; of a stop it is not told.
     The driver stays the caller's: the server stops the robot when it ends, and does not close it.
     """
 

@@ -56,7 +56,7 @@ from sim.world import World, load_world
 FOLDER = Path(__file__).parent
 MOST = 60
 """Sentences of a family that are drawn, always the same, unless all are asked for."""
-FEW = 15
+FEW = 8
 """Of these the first, which are tried at every change; all of them in `make soak`."""
 
 Verdict = Literal["right", "wrong", "refused"]
