@@ -28,6 +28,7 @@ class Tampered(UserError):
 _HEAD: Final = struct.Struct(">8xI")
 """Of a write-ahead log, as SQLite's file format has it; the number is the size of a page, of which
 each is kept behind a head of its own."""
+_FRAMES_BEGIN: Final = 32
 _FRAME_HEAD: Final = 24
 
 
@@ -73,13 +74,15 @@ class LogFile:
             self._touched = True
 
     def _frame(self) -> int | None:
-        """Where the last page begins now."""
+        """Where the last whole page begins now."""
         _, ahead = self._files
         with suppress(OSError), ahead.open("rb") as file:
             head = file.read(_HEAD.size)
             if len(head) == _HEAD.size:
-                page = int(_HEAD.unpack(head)[0])
-                return max(0, ahead.stat().st_size - page - _FRAME_HEAD)
+                frame = int(_HEAD.unpack(head)[0]) + _FRAME_HEAD
+                # A full disk may have left a part of one at the end.
+                whole = (ahead.stat().st_size - _FRAMES_BEGIN) // frame
+                return _FRAMES_BEGIN + (whole - 1) * frame if whole > 0 else None
         return None
 
     def _has(self, frame: int) -> bool:

@@ -8,6 +8,7 @@ seconds as stand in the file. The clock that nobody sets, `time.monotonic`, goes
 
 from __future__ import annotations
 
+import copyreg
 import datetime
 import mmap
 import struct
@@ -55,6 +56,12 @@ def _patch(file: Path) -> None:
     time.time = now
     time.time_ns = lambda: int(now() * 1e9)
     datetime.datetime = Jumping  # type: ignore[misc]
+    for kind in (other, Jumping):  # what goes to another process is looked for by its name
+        copyreg.pickle(kind, _as_text)
+
+
+def _as_text(moment: datetime.datetime) -> tuple[Any, ...]:
+    return eval, (f"__import__('datetime').datetime.fromisoformat({moment.isoformat()!r})",)
 
 
 def main() -> None:
