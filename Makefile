@@ -68,7 +68,7 @@ types: $(STAMP)
 # Most stories wait for something, so there are more of them at a time than cores; those of a file,
 # which share a console or a robot, stay together.
 tests: $(STAMP) browser systemd ros2
-	$(BIN)/pytest -n $$($(BIN)/python -c 'import os; print((os.cpu_count() or 1) + 3)') --dist loadfile
+	$(BIN)/pytest -n $$($(BIN)/python -c 'import os; print((os.cpu_count() or 1) + 1)') --dist loadfile
 
 # What takes too long for every change: whole samples of what people say, and all attacks, an hour of
 # them unless MINUTES says otherwise.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import threading
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -13,7 +12,8 @@ import websockets.sync.client
 from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response, StreamingResponse
-from starlette.routing import Route, WebSocketRoute
+from starlette.routing import Mount, Route, WebSocketRoute
+from starlette.types import Receive, Scope, Send
 from starlette.websockets import WebSocket
 
 from robot_api.client import Robot
@@ -36,7 +36,7 @@ class Pages:
                 Route("/slow", self._slow),
                 Route("/broken", self._broken),
                 Route("/parts", self._parts),
-                Route("/endless", self._endless),
+                Mount("/endless", self._endless),
                 Route("/echo", self._echo, methods=["POST"]),
                 WebSocketRoute("/talk", self._talk),
             ],
@@ -64,16 +64,15 @@ class Pages:
 
         return StreamingResponse(parts())
 
-    async def _endless(self, request: Request) -> Response:
-        async def parts() -> AsyncIterator[str]:
-            try:
-                while True:
-                    yield "more "
-                    await asyncio.sleep(0.01)
-            finally:
-                self.left.set()
-
-        return StreamingResponse(parts())
+    async def _endless(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """What it has for its reader comes some time."""
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+        await send({"type": "http.response.body", "body": b"more ", "more_body": True})
+        try:
+            while (await receive())["type"] != "http.disconnect":
+                pass
+        finally:
+            self.left.set()
 
     async def _echo(self, request: Request) -> Response:
         return Response(await request.body())
@@ -150,7 +149,7 @@ def test_a_page_with_a_fault_harms_nothing_else(pages) -> None:
 
 def test_who_leaves_a_page_that_never_ends_is_noticed(pages) -> None:
     with Server(emulated(), port=0, pages=pages.app) as server:
-        with httpx.stream("GET", f"http://{server.address}/endless", timeout=SOON) as answer:
+        with httpx.stream("GET", f"http://{server.address}/endless/", timeout=SOON) as answer:
             assert next(answer.iter_text()).startswith("more")
         assert pages.left.wait(SOON)
 
@@ -158,7 +157,7 @@ def test_who_leaves_a_page_that_never_ends_is_noticed(pages) -> None:
 def test_a_server_ends_while_somebody_reads_on(pages) -> None:
     with (
         Server(emulated(), port=0, pages=pages.app) as server,
-        httpx.stream("GET", f"http://{server.address}/endless", timeout=SOON) as answer,
+        httpx.stream("GET", f"http://{server.address}/endless/", timeout=SOON) as answer,
     ):
         next(answer.iter_text())
         server.close()

@@ -6,6 +6,7 @@ from nl2robot.hearing import Ear
 from nl2robot.knowledge import Knowledge
 from nl2robot.speech.recogniser import Heard
 from nl2robot.speech.sounding_like import respelled, sounds
+from nl2robot.work import here
 from sim.world import load_world
 
 
@@ -13,6 +14,7 @@ from sim.world import load_world
 def ear():
     """An ear in the kitchen that has heard already: what it hears with is of no matter here."""
     ear = Ear.__new__(Ear)
+    ear._think = here
     ear.knowledge = Knowledge(load_world("household"))
     ear.language = "en"
     return ear

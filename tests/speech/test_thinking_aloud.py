@@ -19,6 +19,7 @@ from nl2robot.speech.listening import COMMANDS, Listener, Manner
 from nl2robot.speech.recogniser import Heard, Reading
 from nl2robot.translation import Talk
 from nl2robot.voice_services import Microphones
+from nl2robot.work import here
 from robot_api.driver import StopFlag
 from sim.world import load_world
 
@@ -50,7 +51,7 @@ class GoodEar(Ear):
 
     def __init__(self) -> None:
         self.knowledge, self.language = Knowledge(load_world("ward", names_only=True)), "en"
-        self.text, self.doubtful = WISH, False
+        self.text, self.doubtful, self._think = WISH, False, here
 
     def listener(self, manner: Manner = COMMANDS, also: Sequence[str] = ()) -> Listener:
         words = Words(self.text, self.doubtful)
@@ -64,7 +65,7 @@ class Bedside:
         self.ear, self.talk = GoodEar(), Talk()
         self.published: list[tuple[str, str, str | None]] = []
         monkeypatch.setattr(voice_services, "need", lambda language: None)
-        monkeypatch.setattr("nl2robot.hearing.Ear", lambda knowledge, language: self.ear)
+        monkeypatch.setattr("nl2robot.hearing.Ear", lambda knowledge, language, think: self.ear)
         self.microphones = Microphones(
             lambda: self.ear.knowledge, lambda name: self.talk, publish=self._publish
         )
