@@ -294,6 +294,6 @@ def test_the_simulated_robot_conforms(robot: SimulatedDriver) -> None:
 
 
 def test_the_simulated_robot_conforms_while_its_clock_runs() -> None:
-    driver = simulated(Simulation(load_world("ward"), seed=2, speed=50))
+    driver = simulated(Simulation(load_world("ward"), seed=2, speed=10))
     assert check_driver(driver) == []
     driver.close()
