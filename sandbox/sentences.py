@@ -180,6 +180,10 @@ _TYPES: Final[tuple[tuple[str, Said], ...]] = (
         _wrong_argument,
     ),
     (
+        r"Unary operator `?([-+~]|not)`? is not supported for object of type `?(.*?)`?",
+        lambda match: f"{match[1]} does not work with {_kind(match[2])}. Put a number there.",
+    ),
+    (
         rf"Too many positional arguments to {_CALLEE}: .*",
         lambda match: f"{match[1]} was given too much. Take something out of the brackets.",
     ),

@@ -163,6 +163,12 @@ def _build(events: Iterable[Any], sort: Sort) -> Node | None:
         line = event.start_mark.line + 1
         if isinstance(event, yaml.NodeEvent):
             node = _node(event, line, anchors)
+            if isinstance(event, yaml.AliasEvent) and any(node is outer for outer, _ in around):
+                raise Hopeless(
+                    line,
+                    f'"*{short(str(event.anchor))}" repeats something that it is itself a part of,'
+                    " without end. Write out what is meant.",
+                )
             if event.anchor is not None and not isinstance(event, yaml.AliasEvent):
                 anchors[event.anchor] = node
             if isinstance(event, yaml.CollectionStartEvent):

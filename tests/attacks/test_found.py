@@ -22,7 +22,7 @@ from robot_api.schema import is_oversize, read_arguments
 from robot_api.stub import stub
 from sandbox.check import check
 from sim.map_image import ImageError, image_size
-from sim.world import load_world
+from sim.world import WorldError, load_world
 from tests.attacks.outcome import what_is_no_sentence
 
 
@@ -132,3 +132,18 @@ def test_a_device_whose_number_is_too_large_is_none(tmp_path: Path) -> None:
 def test_what_the_check_calls_a_type_is_told_in_words() -> None:
     [finding] = check("x = robot.objects() > list[str]\n", stub())
     assert "between a list and a type" in finding.message and "<class" not in finding.message
+
+
+@pytest.mark.parametrize("program", ["~int", "-str", "robot.battery() -~ int", "not -[1]"])
+def test_what_a_sign_does_not_fit_is_told_in_words(program: str) -> None:
+    for finding in check(program, stub()):
+        assert what_is_no_sentence(finding.message) is None, finding.message
+
+
+@pytest.mark.parametrize("text", ["name: x\nplaces: &a [*a]\n", "name: x\nzones: [&a {b: [*a]}]\n"])
+def test_what_is_a_part_of_itself_is_refused_with_its_line(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "world.yaml"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(WorldError, match="without end") as refused:
+        load_world(file)
+    assert ":2:" in str(refused.value)
