@@ -11,7 +11,6 @@ and asked once more.
 
 from __future__ import annotations
 
-import atexit
 import os
 import pickle
 import subprocess
@@ -19,13 +18,13 @@ import sys
 import threading
 import time
 import traceback
-import weakref
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
 from queue import SimpleQueue
 from typing import IO, Any, Final, ParamSpec, TypeVar, cast
 
+from nl2robot.child_processes import look_after
 from nl2robot.work import Died, TookTooLong
 from robot_api.errors import cause
 
@@ -51,7 +50,7 @@ class Helpers:
         self._busy: set[_Helper] = set()
         self._sweep: threading.Timer | None = None
         self._is_over = False
-        _ALL.add(self)
+        look_after(self)
 
     def call(self, work: Callable[[], T], seconds: float) -> T:
         """`work()`, done elsewhere: a function, or a `partial` of one. Raises what it raises,
@@ -210,23 +209,6 @@ class _Helper:
                 stream.close()
 
 
-_ALL: Final[weakref.WeakSet[Helpers]] = weakref.WeakSet()
-
-
-@atexit.register
-def _end_all() -> None:
-    for each in list(_ALL):
-        each.close_for_good()
-
-
-def _forget_all() -> None:
-    for each in list(_ALL):
-        each.forget()
-
-
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_forget_all)
-
 REVIEWS: Final = max(2, os.cpu_count() or 2)
 """How many may be at work at a time,"""
 HELPERS: Final = Helpers(REVIEWS + 2)
@@ -236,7 +218,7 @@ THINKS: Final = 10.0
 
 
 def think(function: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> T:
-    """In another one, in the time that there is for a sentence."""
+    """In another process, in the time that there is for a sentence."""
     return HELPERS.call(partial(function, *args, **kwargs), seconds=THINKS)
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, ParamSpec
 
 import msgspec
 
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from nl2robot.going_on import Recall
     from sim.simulation import Simulation
     from sim.world import World
+
+P = ParamSpec("P")
 
 MOST_SECONDS: Final = BUDGET.real_seconds + 30.0
 """For a review; its dry run breaks off by itself before."""
@@ -123,22 +125,20 @@ def _load(world: World, language: str) -> None:
     review("robot.wait(0)\n", Knowledge(world), simulation, language)
 
 
-def review_apart(
-    program: str,
-    knowledge: Knowledge,
-    simulation: Simulation | None = None,
-    language: str = "en",
-    seed: int | None = None,
-    recall: Recall | None = None,
-) -> Review:
-    """`review` in a process of its own, for who has to hear a stop meanwhile. Raises `NotPossible`
-    if that ends before it is through."""
-    try:
-        work = partial(review, program, knowledge, simulation, language, seed, recall)
-        with _AT_A_TIME:
-            return HELPERS.call(work, MOST_SECONDS)
-    except (TookTooLong, Died) as error:
-        raise NotPossible(UNFINISHED) from error
+def _apart(function: Callable[P, Review]) -> Callable[P, Review]:
+    def done(*given: P.args, **more: P.kwargs) -> Review:
+        try:
+            with _AT_A_TIME:
+                return HELPERS.call(partial(function, *given, **more), MOST_SECONDS)
+        except (TookTooLong, Died) as error:
+            raise NotPossible(UNFINISHED) from error
+
+    return done
+
+
+review_apart: Final = _apart(review)
+"""`review` in a process of its own, for who has to hear a stop meanwhile. Raises `NotPossible` if
+that ends before it is through."""
 
 
 def _tried(

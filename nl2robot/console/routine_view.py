@@ -104,12 +104,8 @@ class Viewer:
         except PlanError:
             program = ""
         steps = self._steps(plan, lexicons[-1], reader)
-        made = (
-            self._backstage.runner.review(program, self._knowledge, language=reader)
-            if program
-            else None
-        )
-        findings = made.findings if made is not None else ()
+        review = self._backstage.runner.review
+        findings = review(program, self._knowledge, language=reader).findings if program else ()
         errors = [found for found in findings if found.severity == "error"]
         if errors:
             line = f"{texts('desk', reader)['line']} {errors[0].line}"

@@ -10,15 +10,12 @@ whoever began it, however that ends. Who stops asking is free at once, whatever 
 
 from __future__ import annotations
 
-import atexit
 import itertools
 import json
-import os
 import subprocess
 import sys
 import threading
 import time
-import weakref
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from io import FileIO
@@ -26,6 +23,8 @@ from pathlib import Path
 from queue import Empty, SimpleQueue
 from struct import Struct
 from typing import Any, Final, NamedTuple, cast
+
+from nl2robot.child_processes import look_after
 
 WORKER: Final = Path(__file__).with_name("voice_worker.py")
 ATTEMPTS: Final = 2
@@ -67,7 +66,7 @@ class VoiceProcess:
         self._numbers = itertools.count(1)
         self._not_before = 0.0
         self._is_over = False
-        _ALL.add(self)
+        look_after(self)
 
     @property
     def pid(self) -> int | None:
@@ -259,21 +258,3 @@ class _Worker:
         for stream in (self._orders, self._source):
             with suppress(OSError):
                 stream.close()
-
-
-_ALL: Final[weakref.WeakSet[VoiceProcess]] = weakref.WeakSet()
-
-
-@atexit.register
-def _end_all() -> None:
-    for each in list(_ALL):
-        each.close_for_good()
-
-
-def _forget_all() -> None:
-    for each in list(_ALL):
-        each.forget()
-
-
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_forget_all)
