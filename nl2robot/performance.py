@@ -333,12 +333,13 @@ class Performance:
             message = str(error)
             if outcome.status == "done":  # of which nobody will ever read
                 outcome = dataclasses.replace(outcome, status="failed")
+        self._message = message
         try:
-            # Those who watch hear of the end before those who wait are told.
-            self._tell("state", state=outcome.status, message=message)
+            # Those who watch hear of the end before those who wait are told, and may ask why.
+            self._tell("state", state=outcome.status)
         finally:
             # In this order: who finds it over may begin the next run.
-            self._message, self._ended = message, outcome.status
+            self._ended = outcome.status
             self._present.happened(happenings.Ended(self.run, outcome.status, message))
             self.over.set()
 

@@ -37,7 +37,7 @@ STANDS_WITHIN = 3.0
 """Seconds in which the robot must stand by itself when nobody can reach it any more."""
 _SLOW = 0.2
 """Seconds that a slow link takes, each way."""
-_TRIES = 3
+_TRIES = 6
 _PAUSE = 0.1
 """Seconds between two attempts of the same."""
 _NEWS = 1.0

@@ -20,7 +20,7 @@ from robot_api.driver import StopFlag
 from robot_api.errors import RobotError, Stopped
 from robot_api.methods import METHODS
 
-_TRIES = 3
+_TRIES = 6
 """How often it may be late before it counts: a busy machine is late at times, a bad driver always.
 """
 _BUSY = 0.5

@@ -420,3 +420,20 @@ def test_a_program_that_is_stopped_before_its_first_line_was_stopped(
     assert (status.state, status.message) == ("stopped", "The nurse pressed stop.")
     assert log.run(status.run).status == "stopped" and not log.calls(status.run)
     assert not recwarn.list  # nobody reads a traceback of it
+
+
+def test_who_hears_that_a_run_was_stopped_may_ask_why_at_once(
+    slow_station, slow_operator, monkeypatch
+) -> None:
+    heard, asked = slow_station.note, []
+
+    def note(run: int, state: str) -> bool:
+        if state == "stopped":
+            asked.append(slow_operator.robot.request("program.state")["message"])
+        return heard(run, state)
+
+    monkeypatch.setattr(slow_station, "note", note)
+    run = start(slow_operator, ENDLESS)
+    slow_operator.stop()
+    slow_operator.wait(run)
+    assert asked == ["The robot was stopped."]
