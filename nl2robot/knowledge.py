@@ -12,7 +12,7 @@ from nl2robot.errors import UserError
 from sim.world import World
 
 if TYPE_CHECKING:
-    from nl2robot.routines import Routines
+    from nl2robot.translate.routines import Routines
     from robot_api.driver import Capabilities
 
 DEFAULT_WORLD = "city-hospital"

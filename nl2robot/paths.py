@@ -5,8 +5,12 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import Final
 
 from nl2robot.errors import UserError
+
+PACKAGED: Final = Path(__file__).parent / "data"
+"""What comes with the package: sentences, models' heads, lists."""
 
 
 def data_folder() -> Path:
@@ -22,7 +26,7 @@ def data_file(name: str) -> Path:
 
 def authority_file() -> Path:
     """The certificate of the authority that a server on this machine is certified by
-    (`nl2robot.certificates`); need not be there."""
+    (`nl2robot.station.certificates`); need not be there."""
     return data_file("certificates") / "authority.crt"
 
 

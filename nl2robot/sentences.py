@@ -17,15 +17,15 @@ from __future__ import annotations
 import functools
 import re
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Final
 
 from grammar.language import Language, UnknownLanguage, load_language
 from grammar.lexicon import Lexicon
 from grammar.naming import joined_up, listed, naming, the
+from nl2robot.paths import PACKAGED
 from nl2robot.words import words_in
 
-DATA: Final = Path(__file__).parent / "data" / "sentences"
+DATA: Final = PACKAGED / "sentences"
 GAP: Final = re.compile(r"\{(\w+)\}")
 _OF_A_FILE: Final = re.compile(r"(\s*(?:\S+?:(?:\d+:)? )?)(.*)", re.DOTALL)
 DEEPEST: Final = 6

@@ -5,14 +5,15 @@ from __future__ import annotations
 import functools
 import os
 from collections.abc import Iterator, Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-if TYPE_CHECKING:
-    from nl2robot.rehearsal import DryRun
-    from nl2robot.translation import Translation
+from nl2robot.paths import PACKAGED
 
-DATA: Final = Path(__file__).parent / "data" / "terminal.yaml"
+if TYPE_CHECKING:
+    from nl2robot.review.rehearsal import DryRun
+    from nl2robot.translate.translation import Translation
+
+DATA: Final = PACKAGED / "terminal.yaml"
 
 
 @functools.cache

@@ -1,5 +1,5 @@
 """What computes for more than a moment, and who does it: a function that calls it, here or in
-another process (`nl2robot.apart`)."""
+another process (`nl2robot.review.apart`)."""
 
 from __future__ import annotations
 

@@ -11,9 +11,9 @@ import pytest
 from hypothesis import settings
 
 from grammar.planning.model.planner import ModelPlanner
-from nl2robot import planners
 from nl2robot.deliberation import confidence
 from nl2robot.language_model.scripted import ScriptedWriter
+from nl2robot.translate import planners
 
 # A busy machine with two cores takes its time; how fast things are is measured, not tested.
 # In CI the examples are the same every time: what lands does not hang on luck; at home they are new

@@ -11,7 +11,8 @@ from typing import NoReturn
 
 import pytest
 
-from nl2robot import download, models
+from nl2robot.models import catalogue as models
+from nl2robot.models import download
 from nl2robot.paths import data_folder
 
 

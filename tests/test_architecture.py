@@ -111,7 +111,7 @@ def test_the_modules_of_the_grammar_know_each_other_without_a_circle() -> None:
 def test_translate_starts_without_the_heavy_libraries() -> None:
     program = (
         "import sys\n"
-        "from nl2robot.cli import main\n"
+        "from nl2robot.cli.main import main\n"
         "main(['translate', 'go to the pharmacy'])\n"
         f"print('HEAVY', sorted(set(sys.modules) & {HEAVY!r}))\n"
     )

@@ -79,7 +79,9 @@ def test_the_unit_runs_serve_as_a_user_of_its_own_and_starts_it_again() -> None:
     assert command[1] == "serve"
     options = [word for word in command if word.startswith("--")]
     usage = subprocess.run(
-        [sys.executable, "-m", "nl2robot.cli", "serve", "--help"], capture_output=True, text=True
+        [sys.executable, "-m", "nl2robot.cli.main", "serve", "--help"],
+        capture_output=True,
+        text=True,
     ).stdout
     assert all(re.search(rf"{option}\b", usage) for option in options)
     assert unit["User"] not in ("", "root")

@@ -31,7 +31,7 @@ STEADY = 5.0
 def served(arguments: Sequence[str]) -> Iterator[tuple[subprocess.Popen[str], str]]:
     """A server in a process of its own, and the address of its page once it says it."""
     server = subprocess.Popen(
-        [sys.executable, "-m", "nl2robot.cli", "serve", "--port", "0", *arguments],
+        [sys.executable, "-m", "nl2robot.cli.main", "serve", "--port", "0", *arguments],
         stdout=subprocess.PIPE,
         text=True,
     )

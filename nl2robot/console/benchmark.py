@@ -72,7 +72,7 @@ def _served() -> Iterator[tuple[int, str]]:
     """The number of the server's process, and its address."""
     with tempfile.TemporaryDirectory() as home:
         process = subprocess.Popen(
-            [sys.executable, "-m", "nl2robot.cli", "serve", "--port", "0"],
+            [sys.executable, "-m", "nl2robot.cli.main", "serve", "--port", "0"],
             stdout=subprocess.PIPE,
             text=True,
             env={**os.environ, "NL2ROBOT_HOME": home},

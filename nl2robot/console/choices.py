@@ -14,11 +14,11 @@ import msgspec
 
 from grammar.language import load_language
 from nl2robot.console.visitor import LANGUAGES
-from nl2robot.runlog import LogError
+from nl2robot.run.runlog import LogError
 from sim.world import name_in
 
 if TYPE_CHECKING:
-    from nl2robot.runner import Runner
+    from nl2robot.run.runner import Runner
     from sim.world import World
 
 _PLAIN = ("yes", "no")

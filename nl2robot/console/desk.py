@@ -25,8 +25,8 @@ from nl2robot.console.run_view import run_view
 from nl2robot.console.thought_view import ThoughtView
 from nl2robot.console.visitor import texts
 from nl2robot.paths import data_folder
-from nl2robot.translation import Translation
-from nl2robot.wire import service
+from nl2robot.station.wire import service
+from nl2robot.translate.translation import Translation
 
 if TYPE_CHECKING:
     from nicegui.events import GenericEventArguments

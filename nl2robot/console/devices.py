@@ -12,10 +12,10 @@ from typing import Any, Final
 
 import msgspec
 
-from nl2robot.accounts import LONGEST_NAME, Session
 from nl2robot.console.part import Backstage, Part
-from nl2robot.entrance import PAGES_AT, Entrance
-from nl2robot.wire import service_of_call
+from nl2robot.station.accounts import LONGEST_NAME, Session
+from nl2robot.station.entrance import PAGES_AT, Entrance
+from nl2robot.station.wire import service_of_call
 from robot_api.errors import AccessDenied, NotPossible
 from robot_api.roles import PAIRED, may
 from robot_api.server import Context, Service
@@ -66,7 +66,7 @@ def _services(entrance: Entrance) -> dict[str, Service]:
         return {**told, "accounts": accounts.accounts()} if administers else told
 
     def paired(p: Mapping[str, Any], context: Context) -> Any:
-        from nl2robot.qr_code import as_svg
+        from nl2robot.station.qr_code import as_svg
 
         if entrance.local:
             raise NotPossible(HERE_ONLY)

@@ -15,11 +15,11 @@ from typing import Any, Final
 
 import msgspec
 
-from nl2robot.archive import state_of
 from nl2robot.console.dialogue import Dialogue, Draft, Line
 from nl2robot.console.part import STOP, Backstage
-from nl2robot.state import GOING, Reviewing
-from nl2robot.translation import Translation
+from nl2robot.run.archive import state_of
+from nl2robot.run.state import GOING, Reviewing
+from nl2robot.translate.translation import Translation
 
 IN_MEMORY: Final = 50
 IN_FILES: Final = 200

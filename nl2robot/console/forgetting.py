@@ -18,7 +18,7 @@ import threading
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
-from nl2robot.state import GOING
+from nl2robot.run.state import GOING
 from robot_api.driver import Driver, Event, StopFlag
 from robot_api.errors import RobotError, Stopped
 

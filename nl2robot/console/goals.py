@@ -20,7 +20,7 @@ from grammar.naming import joined_up, place_called
 from nl2robot.console.part import Backstage, Part
 from nl2robot.console.visitor import LANGUAGES, texts
 from nl2robot.errors import UserError
-from nl2robot.wire import service
+from nl2robot.station.wire import service
 
 if TYPE_CHECKING:
     from sim.world import World

@@ -15,12 +15,12 @@ from typing import Any, Final
 
 import msgspec
 
-from nl2robot.by_hand import BUSY, ByHand
 from nl2robot.console.helm import HOLDS, Helm, State
 from nl2robot.console.localising import localise
 from nl2robot.console.part import Backstage, Part
-from nl2robot.state import Driven
-from nl2robot.wire import an_object
+from nl2robot.run.by_hand import BUSY, ByHand
+from nl2robot.run.state import Driven
+from nl2robot.station.wire import an_object
 from robot_api.dispatch import Lane
 from robot_api.driver import Event, StopFlag
 from robot_api.errors import InvalidCall, NotPossible, RobotError, Stopped

@@ -9,8 +9,8 @@ from typing import Any, Final, Literal
 from grammar.language import load_language
 from grammar.naming import naming
 from nl2robot.knowledge import Knowledge
-from nl2robot.review import Review
-from nl2robot.trouble import told
+from nl2robot.review.review import Review
+from nl2robot.run.trouble import told
 from nl2robot.words import foreseen
 
 MOST_PLACES: Final = 12

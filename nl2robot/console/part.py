@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Final
 
 from starlette.routing import BaseRoute
 
-from nl2robot.stops import Stops
+from nl2robot.run.stops import Stops
 from robot_api.driver import Driver, Event
 from robot_api.server import Publish, Service
 
 if TYPE_CHECKING:
-    from nl2robot.entrance import Entrance
-    from nl2robot.runner import Runner
-    from nl2robot.talks import Talks
+    from nl2robot.run.runner import Runner
+    from nl2robot.station.entrance import Entrance
+    from nl2robot.translate.talks import Talks
     from robot_api.capabilities.camera import Camera
     from robot_api.robots.places import Places
     from sim.simulation import Simulation

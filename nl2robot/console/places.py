@@ -1,7 +1,8 @@
 """Places that people name on the map: kept, told to whoever looks, known at once to translation and
 to the robot.
 
-Where they are kept `nl2robot.named_places` says. Those of the world's own file stay as they are.
+Where they are kept `nl2robot.station.named_places` says. Those of the world's own file stay as they
+are.
 """
 
 from __future__ import annotations
@@ -20,9 +21,9 @@ from nl2robot.console.goals import free_spot
 from nl2robot.console.part import Backstage, Part
 from nl2robot.console.zones import DrawnZones
 from nl2robot.errors import UserError
-from nl2robot.named_places import NamedByHand, NamedPlaces, not_in, with_places
 from nl2robot.paths import data_file
-from nl2robot.wire import service
+from nl2robot.station.named_places import NamedByHand, NamedPlaces, not_in, with_places
+from nl2robot.station.wire import service
 from sim.world import Aliases, Place, World, WorldError, key, load_world
 from sim.world_checks import kind_of
 
@@ -140,7 +141,7 @@ class Naming:
         return {"places": self.listed(), "moved": 0.0}
 
     def exported(self) -> dict[str, str]:
-        from nl2robot.world_file import exported
+        from nl2robot.station.world_file import exported
 
         zones = DrawnZones(data_file("zones.yaml")).of(self._bare)
         text = exported(self._bare, self._named, zones)

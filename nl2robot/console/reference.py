@@ -9,7 +9,7 @@ import sys
 from collections.abc import Mapping
 from typing import Any
 
-from nl2robot.services import EVENTS
+from nl2robot.station.services import EVENTS
 from robot_api.client import Robot
 from robot_api.driver import EVENTS as ROBOT_EVENTS
 

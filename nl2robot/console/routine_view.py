@@ -19,16 +19,16 @@ from grammar.plan import Plan
 from grammar.program import write_program
 from grammar.summary import summary
 from grammar.writing import PlanError
-from nl2robot.archive import Archive
 from nl2robot.console.highlight import highlighted
 from nl2robot.console.outlook import outlook
 from nl2robot.console.part import Backstage
 from nl2robot.console.visitor import texts
-from nl2robot.review import Review
-from nl2robot.routines import Routine
-from nl2robot.runlog import LogError
-from nl2robot.teaching import Teacher
-from nl2robot.trouble import told
+from nl2robot.review.review import Review
+from nl2robot.run.archive import Archive
+from nl2robot.run.runlog import LogError
+from nl2robot.run.trouble import told
+from nl2robot.translate.routines import Routine
+from nl2robot.translate.teaching import Teacher
 from sim.world import World
 
 CARDS_KNOWN: Final = 500

@@ -4,8 +4,8 @@ tested, changed, handed on and run from there.
     /routines/cards           the cards anew, for a page that is open
     /routines/export.yaml     all routines as a file, or ?name=tea%20round&in=en
 
-They are those of the store (`nl2robot.routines`), which what is said uses as well. Nothing here
-moves a robot: to run one lays it before you at the desk.
+They are those of the store (`nl2robot.translate.routines`), which what is said uses as well.
+Nothing here moves a robot: to run one lays it before you at the desk.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 from starlette.routing import Route
 
-from nl2robot import routine_files
-from nl2robot.archive import Archive
 from nl2robot.console import routine_view, slow_pages
 from nl2robot.console.part import Backstage, Part
 from nl2robot.console.rendering import rendered
 from nl2robot.console.routine_view import Body, Card, Viewer
 from nl2robot.console.visitor import LANGUAGES, LONGEST_NAME, texts, visitor_of
 from nl2robot.errors import UserError
-from nl2robot.routine_files import Choice
-from nl2robot.routines import Routine, Routines, spelled
-from nl2robot.teaching import Teacher, tidied
-from nl2robot.wire import an_object, service
+from nl2robot.run.archive import Archive
+from nl2robot.station.wire import an_object, service
+from nl2robot.translate import routine_files
+from nl2robot.translate.routine_files import Choice
+from nl2robot.translate.routines import Routine, Routines, spelled
+from nl2robot.translate.teaching import Teacher, tidied
 from robot_api.methods import MAX_TEXT
 from robot_api.server import Service
 from sandbox.limits import MAX_PROGRAM

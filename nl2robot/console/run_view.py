@@ -8,8 +8,8 @@ import msgspec
 
 from nl2robot.console.highlight import highlighted
 from nl2robot.console.part import Backstage
-from nl2robot.review import reading
-from nl2robot.trouble import call_trouble, told
+from nl2robot.review.review import reading
+from nl2robot.run.trouble import call_trouble, told
 
 
 def run_view(backstage: Backstage, language: str) -> dict[str, Any] | None:

@@ -19,14 +19,14 @@ from typing import Any
 
 from starlette.requests import Request
 
-from nl2robot.archive import Archive
 from nl2robot.console import runs_files, runs_view, slow_pages
 from nl2robot.console.part import Backstage, Part
 from nl2robot.console.runs_asked import PROPERTIES, Asked, BadDay, asked
 from nl2robot.console.visitor import texts, visitor_of
 from nl2robot.errors import UserError
-from nl2robot.kept_record import Recorder
-from nl2robot.wire import service
+from nl2robot.run.archive import Archive
+from nl2robot.run.kept_record import Recorder
+from nl2robot.station.wire import service
 from robot_api.errors import NotPossible
 from robot_api.server import Service
 

@@ -9,8 +9,8 @@ from urllib.parse import urlencode
 
 import msgspec
 
-from nl2robot.archive import LONGEST, STATES, State, Wanted
 from nl2robot.errors import UserError
+from nl2robot.run.archive import LONGEST, STATES, State, Wanted
 
 PROPERTIES: Mapping[str, Any] = {
     "words": {"type": "string", "maxLength": LONGEST},

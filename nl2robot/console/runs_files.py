@@ -24,14 +24,14 @@ from starlette.responses import (
 )
 from starlette.routing import Route
 
-from nl2robot.archive import Archive, Brief
 from nl2robot.console import runs_view
 from nl2robot.console.part import Backstage
 from nl2robot.console.runs_asked import BadDay, asked
 from nl2robot.console.visitor import LANGUAGES, texts, visitor_of
 from nl2robot.errors import UserError
-from nl2robot.kept_record import unpacked
-from nl2robot.runlog import Run, RunLog
+from nl2robot.run.archive import Archive, Brief
+from nl2robot.run.kept_record import unpacked
+from nl2robot.run.runlog import Run, RunLog
 
 MOST_EXPORTED: Final = 100_000
 """Runs in a file."""

@@ -12,18 +12,18 @@ from starlette.requests import Request
 from grammar.explain import LineTold, explain_program
 from grammar.language import load_language
 from grammar.naming import naming
-from nl2robot.answers import answer
-from nl2robot.archive import STATES, Page, state_of
-from nl2robot.changes import changes
 from nl2robot.console.highlight import highlighted
 from nl2robot.console.rendering import rendered
 from nl2robot.console.runs_asked import Asked
 from nl2robot.console.visitor import texts, visitor_of
-from nl2robot.going_on import unfinished
 from nl2robot.knowledge import Knowledge
-from nl2robot.pausing import PAUSED
-from nl2robot.runlog import LoggedCall, Run, RunLog
-from nl2robot.trouble import call_trouble, told
+from nl2robot.run.answers import answer
+from nl2robot.run.archive import STATES, Page, state_of
+from nl2robot.run.going_on import unfinished
+from nl2robot.run.pausing import PAUSED
+from nl2robot.run.runlog import LoggedCall, Run, RunLog
+from nl2robot.run.trouble import call_trouble, told
+from nl2robot.translate.changes import changes
 
 CALLS_SHOWN: Final = 500
 """Of a run; the newest."""

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from nl2robot.console.forgetting import IDLE, READ_FOR, Later, later
-from nl2robot.state import GOING
+from nl2robot.run.state import GOING
 from robot_api.errors import RobotError, Stopped
 
 

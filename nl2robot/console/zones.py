@@ -1,8 +1,8 @@
 """Keep-out zones drawn on the map: kept for each world, and told to the simulated robot.
 
-They are in `zones.yaml` in the data folder (see `nl2robot.drawn`), beside those that a world's own
-file has, which hold for good. The file is read at the start. Who drew and removed what is in
-`zone-changes.yaml`, so that it can be undone.
+They are in `zones.yaml` in the data folder (see `nl2robot.station.drawn`), beside those that a
+world's own file has, which hold for good. The file is read at the start. Who drew and removed what is
+in `zone-changes.yaml`, so that it can be undone.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from typing import Any, Final, Literal
 import msgspec
 
 from nl2robot.console.part import Backstage, Part
-from nl2robot.drawn import Drawn
 from nl2robot.errors import UserError
 from nl2robot.paths import data_file
-from nl2robot.wire import service
+from nl2robot.station.drawn import Drawn
+from nl2robot.station.wire import service
 from sim.world import Polygon, Zone, key
 from sim.zones import trouble_with
 

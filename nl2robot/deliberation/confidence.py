@@ -12,17 +12,17 @@ import functools
 import json
 import math
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from grammar.checking.words import content
 from grammar.planning.turn import Turn
+from nl2robot.paths import PACKAGED
 
 if TYPE_CHECKING:  # trying drafts needs the sandbox, which takes a moment to load
     from nl2robot.deliberation.considering import Considered
     from nl2robot.deliberation.voting import Count, Vote
 
-WEIGHTS: Final = Path(__file__).parents[1] / "data" / "confidence.json"
+WEIGHTS: Final = PACKAGED / "confidence.json"
 
 
 def features(turn: Turn, vote: Vote, count: Count) -> dict[str, float]:

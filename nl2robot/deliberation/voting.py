@@ -24,7 +24,7 @@ from nl2robot.deliberation.paper_robot import Event, Scene
 from nl2robot.deliberation.playing import Course, played
 from nl2robot.deliberation.staging import scenes
 from nl2robot.knowledge import Knowledge
-from nl2robot.policy import violations
+from nl2robot.review.policy import violations
 
 SPOKEN: Final = frozenset({"says", "asks", "shows"})
 ALIKE: Final = 60.0

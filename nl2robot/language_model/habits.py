@@ -9,12 +9,13 @@ corpus (`nl2robot.training.planner.habits`); and the sentence itself, which prog
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Final
 
 import msgspec
 
-FILE: Final = Path(__file__).parents[1] / "data" / "learned" / "habits.msgpack"
+from nl2robot.paths import PACKAGED
+
+FILE: Final = PACKAGED / "learned" / "habits.msgpack"
 LONGEST: Final = 4
 """Tokens that are looked back on for a habit."""
 REPEATED: Final = 2

@@ -15,12 +15,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import exp, log
-from pathlib import Path
 from typing import Any, Final
 
 import yaml
 
 from nl2robot.errors import UserError
+from nl2robot.paths import PACKAGED
 from nl2robot.speech import digits
 from nl2robot.speech.audio import Audio
 from nl2robot.speech.recogniser import PUNCTUATION, Heard, Recogniser
@@ -420,6 +420,6 @@ def _words(text: str) -> Words:
 
 @cache
 def _sayings(language: str) -> dict[str, Any]:
-    path = Path(__file__).parents[1] / "data" / "answers.yaml"
+    path = PACKAGED / "answers.yaml"
     sayings: dict[str, dict[str, Any]] = yaml.safe_load(path.read_text("utf-8"))
     return sayings.get(language, sayings["en"])

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import statistics
 import time
-from pathlib import Path
 
-from nl2robot.models import need
+from nl2robot.models.catalogue import need
+from nl2robot.paths import PACKAGED
 from nl2robot.speech import audio
 from nl2robot.speech.recogniser import Recogniser
 
-RECORDINGS = Path(__file__).parents[1] / "data" / "recordings"
+RECORDINGS = PACKAGED / "recordings"
 # Enough words that the limited decoder has to choose, as with a real grammar.
 PHRASES = (
     "go to the pharmacy and say good morning",

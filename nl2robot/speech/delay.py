@@ -20,10 +20,11 @@ from pathlib import Path
 import numpy as np
 
 from nl2robot.errors import UserError
-from nl2robot.hearing import Ear
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
+from nl2robot.paths import PACKAGED
 from nl2robot.speech.audio import RATE, Audio, Samples, read
 from nl2robot.speech.listening import COMMANDS, FRAME, Listener, SpeechEnded, voice_detector
+from nl2robot.voice.hearing import Ear
 from sim.world import load_world
 
 BLOCK = RATE // 50  # 20 ms, as a microphone gives them
@@ -89,7 +90,7 @@ def _detector(recordings: Sequence[Audio]) -> float:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Of these files, or of the recordings of commands that come with nl2robot."""
-    shown = sorted((Path(__file__).parents[1] / "data" / "recordings").glob("*.wav"))
+    shown = sorted((PACKAGED / "recordings").glob("*.wav"))
     parser = argparse.ArgumentParser(description="How long after a command its text is there.")
     parser.add_argument("files", nargs="*", type=Path, default=shown)
     parser.add_argument("--lang", default="en")

@@ -20,6 +20,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from nl2robot.paths import PACKAGED
 from nl2robot.speech.audio import RATE, Audio
 from nl2robot.speech.digits_encoder import encoder
 from nl2robot.speech.embeddings import WINDOW, embed_windows
@@ -160,7 +161,7 @@ def placed(sound: Sound, at: float) -> Sound:
 
 
 def weights(language: str) -> Path:
-    return Path(__file__).parents[1] / "data" / f"digits-{language}.npz"
+    return PACKAGED / f"digits-{language}.npz"
 
 
 @lru_cache(maxsize=3)

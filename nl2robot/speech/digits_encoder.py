@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from nl2robot.models import find
+from nl2robot.models.catalogue import find
 from nl2robot.speech.audio import RATE
 
 _log = logging.getLogger(__name__)

@@ -17,7 +17,6 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from nl2robot.hearing import Ear
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.speech import scenes
 from nl2robot.speech.audio import RATE, Audio, Samples
@@ -29,6 +28,7 @@ from nl2robot.speech.loudspeaker import LATENCY
 from nl2robot.speech.scenes import Signal
 from nl2robot.speech.trials import Speaker, spoken
 from nl2robot.speech.voices import espeak, voice
+from nl2robot.voice.hearing import Ear
 from sim.world import load_world
 
 TEXTS: Final = (

@@ -20,9 +20,9 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from nl2robot.benchmark import megabytes
+from nl2robot.bench.benchmark import megabytes
 from nl2robot.errors import UserError
-from nl2robot.models import find
+from nl2robot.models.catalogue import find
 from nl2robot.speech import scenes
 from nl2robot.speech.audio import RATE, Samples
 from nl2robot.speech.embeddings import STEP, Embeddings, embed

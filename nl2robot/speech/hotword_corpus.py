@@ -12,12 +12,12 @@ import zlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Final
 
 import numpy as np
 import yaml
 
+from nl2robot.paths import PACKAGED
 from nl2robot.speech import scenes
 from nl2robot.speech.audio import RATE
 from nl2robot.speech.hotword_voices import Cast, Half, Takes
@@ -31,7 +31,7 @@ EVERYDAY: Final = 0.4
 PROSE: Final = 0.75
 """Up to where, in English, they come from a book."""
 NONSENSE: Final = 0.35
-_TALK: Final = Path(__file__).parents[1] / "data" / "hotwords-talk.yaml"
+_TALK: Final = PACKAGED / "hotwords-talk.yaml"
 
 
 @dataclass

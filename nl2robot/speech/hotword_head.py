@@ -15,10 +15,10 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from nl2robot.paths import data_file
+from nl2robot.paths import PACKAGED, data_file
 from nl2robot.speech.embeddings import SIZE, Embeddings
 
-SHIPPED: Final = Path(__file__).parents[1] / "data" / "hotwords"
+SHIPPED: Final = PACKAGED / "hotwords"
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Final, Literal
 
 import msgspec
 import yaml
 
-_FILE: Final = Path(__file__).parents[1] / "data" / "hotwords.yaml"
+from nl2robot.paths import PACKAGED
+
+_FILE: Final = PACKAGED / "hotwords.yaml"
 
 
 class Opinion(msgspec.Struct, frozen=True):

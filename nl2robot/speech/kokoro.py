@@ -20,7 +20,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from nl2robot.models import ModelError, find
+from nl2robot.models.catalogue import ModelError, find
 from nl2robot.speech.voices import Sound, VoiceError, never, phonemes, piecewise
 
 RATE: Final = 24_000

@@ -19,7 +19,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from nl2robot.models import ModelError, find
+from nl2robot.models.catalogue import ModelError, find
 from nl2robot.speech.audio import RATE, Samples
 from nl2robot.speech.expectation import Expectation
 from nl2robot.speech.search import Sound

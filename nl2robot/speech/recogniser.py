@@ -29,7 +29,7 @@ import numpy as np
 import vosk
 
 from nl2robot.errors import UserError
-from nl2robot.models import ModelError, find, need
+from nl2robot.models.catalogue import ModelError, find, need
 from nl2robot.speech.audio import RATE, Audio, Samples
 from nl2robot.speech.levels import Silence, gain_for
 from nl2robot.speech.second_ear import Evidence, SecondEar, second_ear

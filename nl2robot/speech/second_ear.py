@@ -8,7 +8,7 @@ word by word.
 It says how likely any words are, given the sound, so it also judges what others have heard. Which
 of that is to be believed is told by four things: how likely the words are by the sound alone, how
 long they are, how likely they are to be said here at all, and whether the other recogniser heard
-the same (`nl2robot.belief_benchmark` compares this with other ways, and fits the weights).
+the same (`nl2robot.bench.belief` compares this with other ways, and fits the weights).
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class Evidence:
 
 
 WEIGHTS: Final = (3.36, -0.378, 0.144, -0.553, 3.49)
-"""Of a logistic regression, fitted in the way of `nl2robot.belief_benchmark` to English trials of
+"""Of a logistic regression, fitted in the way of `nl2robot.bench.belief` to English trials of
 seeds 1 and 2; on trials of seed 5 they do no worse than weights fitted to these, and they hold for
 Whisper as well (docs/voice.md)."""
 _LEAST_ODDS: Final = 700.0  # their logarithm against; more would be too much for a float

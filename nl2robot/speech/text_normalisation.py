@@ -14,12 +14,12 @@ from __future__ import annotations
 import functools
 import re
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import Any, Final
 
+from nl2robot.paths import PACKAGED
 from nl2robot.speech.numbers_aloud import Numbers
 
-DATA: Final = Path(__file__).parents[1] / "data" / "text_normalisation.yaml"
+DATA: Final = PACKAGED / "text_normalisation.yaml"
 LONGEST_WORD: Final = 12
 """Letters of a word before a number that may say what the number is of."""
 _MOST_ROUNDS: Final = 5

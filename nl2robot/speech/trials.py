@@ -12,12 +12,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 import yaml
 
+from nl2robot.paths import PACKAGED
 from nl2robot.speech import kokoro, scenes
 from nl2robot.speech.audio import RATE, Audio, from_float
 from nl2robot.speech.scenes import Signal
@@ -157,7 +157,7 @@ def spoken(language: str) -> dict[str, list[str]]:
 
 @cache
 def _data() -> dict[str, Any]:
-    path = Path(__file__).parents[1] / "data" / "spoken.yaml"
+    path = PACKAGED / "spoken.yaml"
     data: dict[str, Any] = yaml.safe_load(path.read_text("utf-8"))
     return data
 

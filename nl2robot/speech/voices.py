@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nl2robot.errors import UserError
-from nl2robot.models import models_folder
+from nl2robot.models.catalogue import models_folder
 from nl2robot.speech.sentences import pieces
 from nl2robot.speech.voice_process import Answer, CannotSpeak, VoiceProcess
 

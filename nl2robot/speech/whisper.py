@@ -22,8 +22,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from nl2robot.model_sources import load_registry
-from nl2robot.models import ModelError, find
+from nl2robot.models.catalogue import ModelError, find
+from nl2robot.models.sources import load_registry
 from nl2robot.speech.audio import RATE, Samples
 from nl2robot.speech.byte_pairs import BytePairs
 from nl2robot.speech.ct2_file import read

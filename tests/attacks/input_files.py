@@ -18,7 +18,7 @@ import yaml
 
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
-from nl2robot.routine_files import exported, read
+from nl2robot.translate.routine_files import exported, read
 from robot_api.robots.reading import read_robot_file
 from robot_api.robots.registry import RobotKind, known
 from sim.errors import SimError

@@ -20,10 +20,10 @@ import yaml
 
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
-from nl2robot.review import review
+from nl2robot.review.review import review
 from nl2robot.speech.audio import AudioError, Converter, read_bytes
 from nl2robot.speech.recording import opened
-from nl2robot.translation import Talk, translate
+from nl2robot.translate.translation import Talk, translate
 from robot_api.stub import stub
 from sandbox.check import check
 from sim.world import load_world

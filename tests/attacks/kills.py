@@ -28,8 +28,8 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any, Final
 
-from nl2robot.operator import Operator
-from nl2robot.runlog import RunLog
+from nl2robot.run.runlog import RunLog
+from nl2robot.station.operator import Operator
 from robot_api.client import Robot
 from robot_api.errors import RobotError, Stopped
 from tests.attacks.outcome import Row, report, what_is_no_sentence
@@ -270,7 +270,7 @@ def kill_command_line(
     home: Path, program: Path, chance: random.Random, row: Row, early: bool = False
 ) -> str | None:
     """`early`: at any moment from its very start; else when it has told of some calls."""
-    command = [sys.executable, "-m", "nl2robot.cli", "run", "-y", "--speed", "20"]
+    command = [sys.executable, "-m", "nl2robot.cli.main", "run", "-y", "--speed", "20"]
     with tempfile.TemporaryFile("w+", encoding="utf-8") as errors:
         process = subprocess.Popen(
             [*command, "--program", str(program)],

@@ -10,7 +10,7 @@ from typing import Final
 
 from rich.table import Table
 
-from nl2robot.terminal import Terminal
+from nl2robot.cli.terminal import Terminal
 
 LONGEST: Final = 2500
 """Letters of a line of what somebody is told."""

@@ -19,7 +19,7 @@ from robot_api.client import Robot
 from tests.attacks.outcome import Row
 
 ROOT: Final = Path(__file__).parents[2]
-SERVE: Final = ("-m", "nl2robot.cli", "serve")
+SERVE: Final = ("-m", "nl2robot.cli.main", "serve")
 STANDS: Final = 0.01
 """Metres per second, and less."""
 

@@ -21,7 +21,7 @@ from typing import Final
 
 from rich.table import Table
 
-from nl2robot.terminal import Terminal
+from nl2robot.cli.terminal import Terminal
 from robot_api.client import Robot
 from robot_api.errors import RobotError, Stopped
 from tests.attacks.attackers import ATTACKS

@@ -72,7 +72,7 @@ def serving(
     home: Path,
     *options: str,
     models: bool = False,
-    program: Sequence[str] = ("-m", "nl2robot.cli", "serve"),
+    program: Sequence[str] = ("-m", "nl2robot.cli.main", "serve"),
 ) -> Iterator[Served]:
     """Serve with these options of `nl2robot serve`; `models`: with the speech models there are."""
     environment = {**os.environ, "NL2ROBOT_HOME": str(home)}

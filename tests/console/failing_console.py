@@ -9,7 +9,7 @@ import threading
 
 from starlette.requests import Request
 
-from nl2robot.cli import main
+from nl2robot.cli.main import main
 from nl2robot.console import app
 from nl2robot.console.part import Backstage, Part
 

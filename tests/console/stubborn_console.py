@@ -7,7 +7,7 @@ from __future__ import annotations
 import sys
 from typing import Any
 
-from nl2robot.cli import main
+from nl2robot.cli.main import main
 from robot_api.capabilities.face import SimulatedFace
 from robot_api.capabilities.speech import SimulatedSpeech
 from robot_api.driver import StopFlag

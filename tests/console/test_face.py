@@ -19,9 +19,9 @@ from starlette.applications import Starlette
 
 from nl2robot.console import choices, face, tablet
 from nl2robot.console.part import Backstage
-from nl2robot.operator import Operator
-from nl2robot.present import Present
-from nl2robot.state import on_wire
+from nl2robot.run.present import Present
+from nl2robot.run.state import on_wire
+from nl2robot.station.operator import Operator
 from robot_api import Robot, Server
 from robot_api.capabilities.sound import Asked, Sound
 from robot_api.driver import StopFlag

@@ -16,9 +16,9 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 from nl2robot.console.helm import HOLDS, IDLE, Helm, Operator, State
 from nl2robot.console.helm_services import part
 from nl2robot.console.part import Backstage
-from nl2robot.present import Present
-from nl2robot.runlog import RunLog
-from nl2robot.state import Began, Halted, PauseAsked, on_wire
+from nl2robot.run.present import Present
+from nl2robot.run.runlog import RunLog
+from nl2robot.run.state import Began, Halted, PauseAsked, on_wire
 from robot_api import Robot, Server
 from robot_api.driver import StopFlag
 from robot_api.drivers import simulated

@@ -16,8 +16,8 @@ from PIL import Image
 from nl2robot.console import places, zones
 from nl2robot.console.part import Backstage
 from nl2robot.knowledge import Knowledge
-from nl2robot.named_places import with_named_places
-from nl2robot.translation import translate
+from nl2robot.station.named_places import with_named_places
+from nl2robot.translate.translation import translate
 from robot_api.driver import StopFlag
 from robot_api.errors import InvalidCall
 from robot_api.robots.places import Places

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from nl2robot.accounts import Accounts
+from nl2robot.station.accounts import Accounts
 from robot_api import roles
 from robot_api.client import Robot
 from robot_api.errors import AccessDenied, RobotError

@@ -14,9 +14,9 @@ from pathlib import Path
 
 from grammar.planning.model.planner import ModelPlanner
 from grammar.planning.model.request import Request, Written
-from nl2robot import planners
-from nl2robot.cli import main
+from nl2robot.cli.main import main
 from nl2robot.language_model.scripted import ScriptedWriter
+from nl2robot.translate import planners
 
 TEA = "wheel the tea round to the lobby, would you"
 JOKE = "pop round to the lobby and crack a joke"

@@ -21,8 +21,8 @@ from grammar.planning.planner import Drafts, Watch
 from grammar.planning.turn import Turn
 from nl2robot.deliberation.confidence import features
 from nl2robot.deliberation.voting import Vote, count
-from nl2robot.planners import planner
-from nl2robot.translation import translate
+from nl2robot.translate.planners import planner
+from nl2robot.translate.translation import translate
 from tests.errands.families import Family, carried_out, families, knowledge, misses
 
 

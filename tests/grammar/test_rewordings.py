@@ -11,7 +11,7 @@ import pytest
 from grammar import rewordings
 from grammar.language import load_language
 from grammar.network import RuleError
-from nl2robot.translation import translate
+from nl2robot.translate.translation import translate
 from tests.errands.families import knowledge
 
 BUILDING = {"en": "building.yaml", "de": "building_de.yaml", "fr": "building_fr.yaml"}

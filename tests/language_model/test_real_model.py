@@ -18,7 +18,7 @@ from grammar.planning.model.request import Interrupted
 from grammar.planning.turn import Turn
 from nl2robot.language_model.client import Process
 from nl2robot.language_model.model import Branch, OnnxModel
-from nl2robot.models import PLANNER
+from nl2robot.models.catalogue import PLANNER
 from tests.deliberation.drafting import WARD
 from tests.fetched import fetched
 

@@ -13,10 +13,10 @@ from pathlib import Path
 
 import pytest
 
-from nl2robot import download, models
 from nl2robot.language_model.files import FILES
-from nl2robot.model_sources import File, Model, Single, Split, load_registry
-from nl2robot.models import ModelError
+from nl2robot.models import catalogue as models
+from nl2robot.models.catalogue import ModelError, download
+from nl2robot.models.sources import File, Model, Single, Split, load_registry
 from tests.language_model.tiny import Tiny
 from tests.models.test_models import Publisher
 

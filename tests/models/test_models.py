@@ -20,10 +20,10 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from nl2robot import download, models
-from nl2robot.download import CHUNK
-from nl2robot.model_sources import Model, Npm, Parts, Pypi, Source, Zip
-from nl2robot.models import ModelError
+from nl2robot.models import catalogue as models
+from nl2robot.models.catalogue import ModelError, download
+from nl2robot.models.download import CHUNK
+from nl2robot.models.sources import Model, Npm, Parts, Pypi, Source, Zip
 
 FILES = {
     "am/final.mdl": os.urandom(600_000),  # does not shrink, so a cut falls inside the download

@@ -15,10 +15,10 @@ from collections.abc import Sequence
 
 import pytest
 
-from nl2robot import cli
-from nl2robot.operator import Operator
-from nl2robot.runlog import RunLog
-from nl2robot.station import simulated_station
+from nl2robot.cli.main import main as cli
+from nl2robot.run.runlog import RunLog
+from nl2robot.station.operator import Operator
+from nl2robot.station.station import simulated_station
 from sim.world import load_world
 
 
@@ -74,7 +74,7 @@ def slow_operator(slow_station, sit_down):
 
 # --- the commands ----------------------------------------------------------------------------
 
-NL2ROBOT = [sys.executable, "-m", "nl2robot.cli"]
+NL2ROBOT = [sys.executable, "-m", "nl2robot.cli.main"]
 SOON = 30.0
 """Seconds in which even a busy machine has done what it does at once."""
 

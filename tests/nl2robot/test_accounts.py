@@ -11,11 +11,11 @@ from types import SimpleNamespace
 import pytest
 from PIL import Image
 
-from nl2robot import passwords
-from nl2robot.accounts import INVITED_FOR, SHIFT, YEAR, Accounts, TooSoon
 from nl2robot.console.codes import read_codes
 from nl2robot.errors import ExitStatus, UserError
-from nl2robot.qr_code import HALVES, in_terminal
+from nl2robot.station import passwords
+from nl2robot.station.accounts import INVITED_FOR, SHIFT, YEAR, Accounts, TooSoon
+from nl2robot.station.qr_code import HALVES, in_terminal
 
 PASSWORD = "correct horse battery"
 HERE = ("10.0.0.7", "Firefox, Android")

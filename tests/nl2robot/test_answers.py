@@ -4,8 +4,8 @@ from queue import Queue
 
 import pytest
 
-from nl2robot.session import Session
-from nl2robot.terminal import Terminal
+from nl2robot.cli.session import Session
+from nl2robot.cli.terminal import Terminal
 from tests.nl2robot.test_history import Nurse
 
 

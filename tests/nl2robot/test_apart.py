@@ -14,11 +14,11 @@ from pathlib import Path
 
 import pytest
 
-from nl2robot.apart import Helpers, think
 from nl2robot.knowledge import Knowledge
-from nl2robot.review import review, review_apart
+from nl2robot.review.apart import Helpers, think
+from nl2robot.review.review import review, review_apart
 from nl2robot.sentences import told
-from nl2robot.translation import Talk, translate
+from nl2robot.translate.translation import Talk, translate
 from nl2robot.work import Died, Do, TookTooLong, here
 from robot_api.drivers import simulated
 from robot_api.errors import NotPossible
@@ -104,7 +104,7 @@ def test_it_ends_with_whoever_began_it_in_the_middle_of_its_work() -> None:
     program = (
         "import os, time, threading\n"
         "from functools import partial\n"
-        "from nl2robot.apart import HELPERS\n"
+        "from nl2robot.review.apart import HELPERS\n"
         "print(HELPERS.call(os.getpid, 60), flush=True)\n"
         "HELPERS.call(partial(time.sleep, 600), 600)\n"
     )
@@ -184,8 +184,8 @@ def test_where_no_process_can_be_begun_that_is_said(helpers, monkeypatch) -> Non
     def no_room(*_: object, **__: object) -> None:
         raise OSError(12, "Cannot allocate memory")
 
-    monkeypatch.setattr("nl2robot.apart.subprocess.Popen", no_room)
-    monkeypatch.setattr("nl2robot.review.HELPERS", helpers)
+    monkeypatch.setattr("nl2robot.review.apart.subprocess.Popen", no_room)
+    monkeypatch.setattr("nl2robot.review.review.HELPERS", helpers)
     with pytest.raises(NotPossible, match="too little memory") as raised:
         review_apart("robot.stop()\n", Knowledge(load_world("city-hospital")))
     assert "zu wenig Speicher" in told(str(raised.value), "de")

@@ -6,9 +6,9 @@ from datetime import date, datetime
 
 import pytest
 
-from nl2robot.archive import Archive, Wanted
-from nl2robot.process import lives
-from nl2robot.runlog import LogError, RunLog
+from nl2robot.run.archive import Archive, Wanted
+from nl2robot.run.process import lives
+from nl2robot.run.runlog import LogError, RunLog
 
 NOBODY = 2**22 + 7
 """The number of a process that there is not."""
@@ -108,7 +108,7 @@ def test_pages_follow_each_other(log, archive, monkeypatch) -> None:
     second = archive.page(Wanted(words="say"), before=first.runs[-1].id, size=4)
     assert ([run.id for run in second.runs], second.more) == (runs[3::-1], False)
     assert [run.id for run in archive.all(Wanted(), 5)] == [8, 7, 6, 5, 4]
-    monkeypatch.setattr("nl2robot.archive.READ_AT_ONCE", 3)
+    monkeypatch.setattr("nl2robot.run.archive.READ_AT_ONCE", 3)
     assert [run.id for run in archive.all(Wanted(), 500)] == [8, 7, 6, 5, 4, 3, 2, 1]
     assert archive.neighbours(1) == (None, 2)
     assert archive.neighbours(8) == (7, None)
@@ -146,7 +146,7 @@ def test_a_log_that_cannot_be_read_is_told_in_a_sentence(log, archive) -> None:
 
 
 def test_a_locked_log_is_told_in_a_sentence(log, monkeypatch) -> None:
-    monkeypatch.setattr("nl2robot.archive.WAITS", 10)
+    monkeypatch.setattr("nl2robot.run.archive.WAITS", 10)
     ran(log, "say hello")
     other = sqlite3.connect(log.path, isolation_level=None)
     log.close()

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from nl2robot.errors import ExitStatus
-from nl2robot.runlog import RunLog
+from nl2robot.run.runlog import RunLog
 from robot_api.client import Robot
 from robot_api.errors import AccessDenied, InvalidCall, LostConnection
 
@@ -97,7 +97,7 @@ def test_debug_shows_the_traceback_and_the_same_status(nl2robot) -> None:
 
 
 def test_a_fault_of_our_own_is_told_as_such(nl2robot, monkeypatch) -> None:
-    monkeypatch.setattr("nl2robot.commands.translate.run", lambda options: 1 / 0)
+    monkeypatch.setattr("nl2robot.cli.commands.translate.run", lambda options: 1 / 0)
     status, _, err = nl2robot("translate", "wave")
     assert status == ExitStatus.INTERNAL
     assert "ZeroDivisionError" in err

@@ -17,8 +17,8 @@ from cryptography import x509
 from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.hazmat.primitives.serialization import Encoding, load_pem_private_key
 
-from nl2robot.certificates import CERTIFICATE_LASTS, LocalCertificate, given
 from nl2robot.errors import ExitStatus, UserError
+from nl2robot.station.certificates import CERTIFICATE_LASTS, LocalCertificate, given
 from robot_api.client import Robot
 from robot_api.drivers import emulated
 from robot_api.errors import AccessDenied, InvalidCall, LostConnection, NotTrusted

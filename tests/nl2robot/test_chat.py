@@ -4,9 +4,9 @@ import io
 
 import pytest
 
+from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus
-from nl2robot.runlog import RunLog
-from nl2robot.terminal import Terminal
+from nl2robot.run.runlog import RunLog
 
 CHAT = ("chat", "--world", "ward")
 CTRL_C, CTRL_D = "\x03", "\x04"

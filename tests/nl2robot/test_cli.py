@@ -6,9 +6,9 @@ import signal
 import pytest
 
 from nl2robot import __version__
-from nl2robot.cli import COMMANDS
+from nl2robot.cli.main import COMMANDS
 from nl2robot.errors import ExitStatus
-from nl2robot.runlog import RunLog
+from nl2robot.run.runlog import RunLog
 
 ROUND = ("run", "--world", "ward", "--speed", "1", "go to ward a and then to ward b")
 INTERRUPTS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]

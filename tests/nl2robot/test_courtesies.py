@@ -3,7 +3,7 @@
 import pytest
 
 from nl2robot.knowledge import Knowledge
-from nl2robot.translation import Talk, Translation, translate
+from nl2robot.translate.translation import Talk, Translation, translate
 from sim.world import load_world
 
 

@@ -2,7 +2,7 @@
 
 import importlib.util
 
-from nl2robot.commands.demo import how_to_hear
+from nl2robot.cli.commands.demo import how_to_hear
 
 
 def test_without_a_voice_it_is_said_why_and_how_to_get_one(monkeypatch) -> None:

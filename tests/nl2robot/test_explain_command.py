@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from nl2robot.cli import main
+from nl2robot.cli.main import main
 
 
 @pytest.fixture

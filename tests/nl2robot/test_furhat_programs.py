@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 
 from nl2robot.knowledge import Knowledge
-from nl2robot.operator import Operator
-from nl2robot.review import review
-from nl2robot.runlog import RunLog
-from nl2robot.station import robot_station
+from nl2robot.review.review import review
+from nl2robot.run.runlog import RunLog
+from nl2robot.station.operator import Operator
+from nl2robot.station.station import robot_station
 from robot_api.robots.address import Address
 from robot_api.robots.furhat import FURHAT
 from robot_api.robots.registry import Setup

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from nl2robot import garbage
-from nl2robot.garbage import DUE, OVERDUE, swept
+from nl2robot.station import garbage
+from nl2robot.station.garbage import DUE, OVERDUE, swept
 
 SOON = 20.0
 

@@ -5,10 +5,10 @@ import math
 import msgspec
 import pytest
 
-from nl2robot.going_on import DoneCall, Recall, asks_to_go_on, unfinished
-from nl2robot.rehearsal import watched
-from nl2robot.rounds_left import rounds
-from nl2robot.station import simulated_station
+from nl2robot.review.rehearsal import watched
+from nl2robot.run.going_on import DoneCall, Recall, asks_to_go_on, unfinished
+from nl2robot.run.rounds_left import rounds
+from nl2robot.station.station import simulated_station
 from robot_api.errors import Blocked, NotPossible, Stopped
 from sim.simulation import Simulation
 from sim.world import load_world

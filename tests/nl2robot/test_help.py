@@ -5,9 +5,9 @@ import json
 import pytest
 
 from grammar.language import languages
-from nl2robot.cli import main
+from nl2robot.cli.main import main
 from nl2robot.knowledge import Knowledge
-from nl2robot.translation import translate
+from nl2robot.translate.translation import translate
 from sim.world import builtin_worlds, load_world
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from nl2robot.translation import Translation
+from nl2robot.translate.translation import Translation
 
 
 class Nurse:

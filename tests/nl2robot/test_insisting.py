@@ -4,11 +4,11 @@ import time
 
 import pytest
 
-from nl2robot import review
+from nl2robot.cli.session import Session
+from nl2robot.cli.terminal import Terminal
 from nl2robot.console.dialogue import Dialogue
-from nl2robot.session import Session
-from nl2robot.station import simulated_station
-from nl2robot.terminal import Terminal
+from nl2robot.review import review
+from nl2robot.station.station import simulated_station
 from robot_api.errors import AccessDenied
 from sim.world import load_world
 
@@ -74,7 +74,7 @@ def test_what_came_through_elsewhere_is_tried_again_here(operator, tries) -> Non
 def test_a_review_from_long_ago_holds_no_more(operator, tries, monkeypatch) -> None:
     checked = operator.check(AHEAD)
     now = time.monotonic()
-    monkeypatch.setattr("nl2robot.reviews.time.monotonic", lambda: now + 3600)
+    monkeypatch.setattr("nl2robot.review.reviews.time.monotonic", lambda: now + 3600)
     operator.approve(checked)
     assert tries == [AHEAD, AHEAD]
 

@@ -2,9 +2,16 @@
 
 import pytest
 
-from nl2robot import kept_record
-from nl2robot.kept_record import MOST_HAPPENINGS, MOST_POSES, Happening, Pose, Recorder, unpacked
-from nl2robot.runlog import RunLog
+from nl2robot.run import kept_record
+from nl2robot.run.kept_record import (
+    MOST_HAPPENINGS,
+    MOST_POSES,
+    Happening,
+    Pose,
+    Recorder,
+    unpacked,
+)
+from nl2robot.run.runlog import RunLog
 
 
 @pytest.fixture

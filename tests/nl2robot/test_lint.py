@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grammar.language import languages
-from nl2robot import lint as linter
-from nl2robot.cli import main
-from nl2robot.lint import alike, lint
+from nl2robot.cli.main import main
+from nl2robot.translate import lint as linter
+from nl2robot.translate.lint import alike, lint
 from sim.world import WorldError, builtin_worlds
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from nl2robot.errors import ExitStatus
 from nl2robot.paths import data_file
-from nl2robot.runlog import RunLog
+from nl2robot.run.runlog import RunLog
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from nl2robot.log_file import LogFile, Tampered
+from nl2robot.run.log_file import LogFile, Tampered
 
 
 class Log:

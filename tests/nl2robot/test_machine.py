@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from nl2robot.machine import OPEN_FILES, outdated_python
+from nl2robot.station.machine import OPEN_FILES, outdated_python
 
 
 @pytest.mark.parametrize(
@@ -33,7 +33,7 @@ def test_a_python_with_known_faults_is_told_of(monkeypatch, version, told) -> No
 def test_a_server_may_open_as_many_files_as_the_system_allows() -> None:
     code = """
 import resource
-from nl2robot.machine import allow_open_files
+from nl2robot.station.machine import allow_open_files
 _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
 resource.setrlimit(resource.RLIMIT_NOFILE, (64, most))
 allow_open_files()

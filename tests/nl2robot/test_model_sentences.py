@@ -14,12 +14,12 @@ from grammar.language import load_language
 from grammar.planning.model.planner import LONGEST
 from grammar.planning.model.request import Written
 from grammar.planning.planner import Interrupted, Watch
-from nl2robot import planners
 from nl2robot.deliberation import confidence
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.language_model.scripted import ScriptedWriter
-from nl2robot.translation import Talk, Translation, translate
+from nl2robot.translate import planners
+from nl2robot.translate.translation import Talk, Translation, translate
 from robot_api.driver import Capabilities
 from robot_api.methods import METHODS
 from sim.world import load_world

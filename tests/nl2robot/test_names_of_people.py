@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from nl2robot.knowledge import Knowledge
-from nl2robot.translation import translate
+from nl2robot.translate.translation import translate
 from sim.world import load_world
 
 ROOMS = """

@@ -12,12 +12,12 @@ import yaml
 from grammar.language import known_by_word, languages
 from nl2robot.console.dialogue import Dialogue
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
-from nl2robot.other_language import accepted, language_of, question
-from nl2robot.present import Present
-from nl2robot.review import Review, review
-from nl2robot.sightings import Sightings
-from nl2robot.talks import Talks
-from nl2robot.translation import Talk, translate
+from nl2robot.review.review import Review, review
+from nl2robot.run.present import Present
+from nl2robot.run.sightings import Sightings
+from nl2robot.translate.other_language import accepted, language_of, question
+from nl2robot.translate.talks import Talks
+from nl2robot.translate.translation import Talk, translate
 from nl2robot.words import words_in
 from nl2robot.work import here
 from sim.world import load_world

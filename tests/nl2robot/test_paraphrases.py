@@ -5,10 +5,10 @@ import json
 import pytest
 
 from grammar.understand import understand
-from nl2robot.cli import main
-from nl2robot.frames import frames_of_form, frames_of_plan, parsed
+from nl2robot.cli.main import main
 from nl2robot.knowledge import Knowledge
-from nl2robot.paraphrases import Row, load, score
+from nl2robot.translate.frames import frames_of_form, frames_of_plan, parsed
+from nl2robot.translate.paraphrases import Row, load, score
 from sim.world import load_world
 
 TEA = '( is_a $1 " <object> " )'

@@ -6,10 +6,10 @@ import threading
 
 import pytest
 
-from nl2robot import performance
-from nl2robot.pausing import Odometer, comes_to_rest, rest_of
-from nl2robot.runlog import RunLog
-from nl2robot.station import robot_station, simulated_station
+from nl2robot.run import performance
+from nl2robot.run.pausing import Odometer, comes_to_rest, rest_of
+from nl2robot.run.runlog import RunLog
+from nl2robot.station.station import robot_station, simulated_station
 from robot_api.robots.wire import WireDriver
 from robot_api.values import Location
 from sim.world import load_world
@@ -167,7 +167,7 @@ def test_whoever_looks_late_whether_the_robot_stands_stops_nothing(
         assert looks.wait(60)
         return rests(robot, within, goes_on)
 
-    monkeypatch.setattr("nl2robot.performance.comes_to_rest", comes_to_rest)
+    monkeypatch.setattr("nl2robot.run.performance.comes_to_rest", comes_to_rest)
     watch, request = Watching(slow_operator), slow_operator.robot.request
     run = start(slow_operator, DRIVE)
     watch.until_fast()
@@ -203,7 +203,7 @@ def test_a_robot_at_another_server_is_paused_as_well(log, tmp_path, sit_down) ->
 def test_a_robot_that_does_not_come_to_rest_is_stopped(
     slow_operator, slow_station, monkeypatch
 ) -> None:
-    monkeypatch.setattr("nl2robot.performance.comes_to_rest", lambda *_: False)
+    monkeypatch.setattr("nl2robot.run.performance.comes_to_rest", lambda *_: False)
     watch, request = Watching(slow_operator), slow_operator.robot.request
     run = start(slow_operator, DRIVE)
     watch.until_fast()

@@ -4,7 +4,7 @@ import msgspec
 import pytest
 
 from nl2robot.knowledge import Knowledge
-from nl2robot.policy import violations
+from nl2robot.review.policy import violations
 from robot_api.driver import Capabilities
 from robot_api.methods import METHODS
 from sim.world import load_world

@@ -10,9 +10,9 @@ import pytest
 import yaml
 
 from nl2robot.knowledge import Knowledge
-from nl2robot.policy import violations
+from nl2robot.review.policy import violations
+from nl2robot.run.trouble import told
 from nl2robot.sentences import DATA, in_language
-from nl2robot.trouble import told
 from robot_api.drivers import simulated
 from robot_api.errors import NotFound
 from robot_api.stub import stub

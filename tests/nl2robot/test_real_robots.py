@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from nl2robot.errors import ExitStatus
-from nl2robot.runlog import RunLog
+from nl2robot.run.runlog import RunLog
 from robot_api.client import Robot
 from robot_api.errors import StopNotConfirmed
 from tests.robots.far_robot import SOON, FarPackage
@@ -290,7 +290,7 @@ def test_an_emulator_can_be_served(nl2robot) -> None:
 
 def test_no_heavy_library_is_loaded_to_list_the_robots() -> None:
     program = (
-        "import sys\nfrom nl2robot.cli import main\nmain(['robots'])\n"
+        "import sys\nfrom nl2robot.cli.main import main\nmain(['robots'])\n"
         "print(sorted(set(sys.modules) & {'pymunk', 'shapely', 'numpy', 'starlette', 'qi'}))\n"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)

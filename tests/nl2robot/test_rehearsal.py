@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from grammar.language import languages
 from grammar.program import write_program
 from grammar.sampler import sensible
-from nl2robot import rehearsal
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
-from nl2robot.rehearsal import Budget, rehearse, watched
+from nl2robot.review import rehearsal
+from nl2robot.review.rehearsal import Budget, rehearse, watched
 from sim.simulation import Simulation
 from sim.world import load_world
 

@@ -7,9 +7,9 @@ import sqlite3
 import pytest
 
 from nl2robot.errors import ExitStatus
-from nl2robot.going_on import recall_of
-from nl2robot.replay import Replay, replay
-from nl2robot.runlog import Run, RunLog
+from nl2robot.run.going_on import recall_of
+from nl2robot.run.replay import Replay, replay
+from nl2robot.run.runlog import Run, RunLog
 from sim.simulation import Simulation
 from sim.world import BUILTIN, load_world
 from tests.nl2robot.test_pausing import Watching

@@ -11,12 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rich.console import Console
 
+from nl2robot.cli.terminal import Terminal
 from nl2robot.knowledge import Knowledge
-from nl2robot.rehearsal import MANY_POINTS, rehearse, watched
-from nl2robot.review import Review, review
-from nl2robot.risks import DATA, Risk, Situation, Tried, risks
-from nl2robot.terminal import Terminal
-from nl2robot.translation import translate
+from nl2robot.review.rehearsal import MANY_POINTS, rehearse, watched
+from nl2robot.review.review import Review, review
+from nl2robot.review.risks import DATA, Risk, Situation, Tried, risks
+from nl2robot.translate.translation import translate
 from robot_api.drivers import simulated
 from sim.simulation import Simulation
 from sim.world import Zone, load_world

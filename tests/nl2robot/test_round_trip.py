@@ -16,7 +16,7 @@ from grammar.naming import naming
 from grammar.program import write_program
 from grammar.sampler import sensible
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
-from nl2robot.rehearsal import Budget, rehearse
+from nl2robot.review.rehearsal import Budget, rehearse
 from robot_api import errors
 from robot_api.stub import stub
 from sandbox.check import check

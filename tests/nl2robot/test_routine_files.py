@@ -9,12 +9,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from nl2robot.cli import main
+from nl2robot.cli.main import main
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
-from nl2robot.routine_files import Choice, exported, read, state_of, take_over
-from nl2robot.routines import Routine, Routines
-from nl2robot.translation import Talk, translate
+from nl2robot.translate.routine_files import Choice, exported, read, state_of, take_over
+from nl2robot.translate.routines import Routine, Routines
+from nl2robot.translate.translation import Talk, translate
 from sim.world import load_world
 
 TEA = 'robot.goto("lobby")\nrobot.say("Tea!")\n'

@@ -9,11 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grammar.language import languages
-from nl2robot.cli import main
+from nl2robot.cli.main import main
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
-from nl2robot.routines import Routines, open_routines
-from nl2robot.translation import Talk, translate
+from nl2robot.translate.routines import Routines, open_routines
+from nl2robot.translate.translation import Talk, translate
 from sim.world import load_world
 
 ROUND = "go to every ward and say good night"
@@ -363,7 +363,7 @@ def test_a_full_or_forbidden_disk_leaves_what_there_was(routines, monkeypatch) -
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("nl2robot.routines.os.fsync", full)
+    monkeypatch.setattr("nl2robot.translate.routines.os.fsync", full)
     with pytest.raises(UserError, match="No space left"):
         routines.put("evening round", ROUND, "en")
     monkeypatch.undo()

@@ -11,10 +11,10 @@ import time
 
 import pytest
 
-from nl2robot.by_hand import ByHand
-from nl2robot.process import lives, own_process
-from nl2robot.retention import kept_for
-from nl2robot.runlog import LogError, RunLog
+from nl2robot.run.by_hand import ByHand
+from nl2robot.run.process import lives, own_process
+from nl2robot.run.retention import kept_for
+from nl2robot.run.runlog import LogError, RunLog
 
 ROUND = {
     "program": 'robot.say("Good night.")\n',
@@ -61,7 +61,7 @@ def test_a_killed_program_loses_nothing_that_was_done(tmp_path) -> None:
     path = tmp_path / "runs.sqlite"
     script = textwrap.dedent(f"""
         import time
-        from nl2robot.runlog import RunLog
+        from nl2robot.run.runlog import RunLog
         log = RunLog({str(path)!r})
         run = log.begin(**{ROUND!r})
         log.call_begins(run, 1, 1, "say", "{{}}")

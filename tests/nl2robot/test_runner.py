@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from nl2robot.operator import Operator
-from nl2robot.runlog import LogError
+from nl2robot.run.runlog import LogError
+from nl2robot.station.operator import Operator
 from robot_api.errors import AccessDenied, NotPossible, Stopped
 from sandbox.execution import DIED
 from sim.world import Zone
@@ -91,7 +91,7 @@ def test_an_edit_voids_the_approval(operator) -> None:
 def test_an_approval_is_good_for_ten_minutes(operator, monkeypatch) -> None:
     approval = operator.approve(operator.check('robot.say("Good morning.")\n'))
     later = time.monotonic() + 601
-    monkeypatch.setattr("nl2robot.runner.time.monotonic", lambda: later)
+    monkeypatch.setattr("nl2robot.run.runner.time.monotonic", lambda: later)
     with pytest.raises(AccessDenied, match="no approval that is still good"):
         operator.run(approval)
 
@@ -287,7 +287,7 @@ def test_what_goes_into_a_log_that_nobody_will_read_is_not_done(
 
 
 def test_a_run_ends_before_it_fills_the_disk(operator, monkeypatch) -> None:
-    monkeypatch.setattr("nl2robot.performance.LETTERS_LOGGED", 100_000)
+    monkeypatch.setattr("nl2robot.run.performance.LETTERS_LOGGED", 100_000)
     page = 'while True:\n    robot.show(html="a" * 30000)\n'
     status = operator.wait(start(operator, page))
     assert status.state == "stopped" and "more than the log of one run holds" in status.message
@@ -415,7 +415,7 @@ def test_a_program_that_is_stopped_before_its_first_line_was_stopped(
     def stopped(*_: object) -> None:
         raise Stopped("The nurse pressed stop.")
 
-    monkeypatch.setattr("nl2robot.spoken_language.SpokenLanguage.adopt", stopped)
+    monkeypatch.setattr("nl2robot.run.spoken_language.SpokenLanguage.adopt", stopped)
     status = operator.wait(start(operator, 'robot.say("Good morning.")\n'))
     assert (status.state, status.message) == ("stopped", "The nurse pressed stop.")
     assert log.run(status.run).status == "stopped" and not log.calls(status.run)

@@ -15,11 +15,11 @@ from types import SimpleNamespace
 import pytest
 import yaml
 
-from nl2robot.cli import main
+from nl2robot.cli.main import main
 from nl2robot.errors import ExitStatus
 from nl2robot.knowledge import Knowledge
+from nl2robot.run.trouble import error_told, told
 from nl2robot.sentences import DATA, GAP, entries, in_language
-from nl2robot.trouble import error_told, told
 from robot_api import errors
 from robot_api.errors import RobotError
 from sim.errors import SimError
@@ -45,14 +45,14 @@ SAYING = {
     "nl2robot/console/helm.py": WHILE_IT_WORKS | {"AccessDenied"},
     "nl2robot/console/video.py": WHILE_IT_WORKS,
     "nl2robot/commands": {"UserError", "ArgumentTypeError"},
-    "nl2robot/accounts.py": {"UserError"},
-    "nl2robot/certificates.py": {"UserError"},
-    "nl2robot/canned.py": {"UserError"},
-    "nl2robot/world_file.py": {"UserError"},
-    "nl2robot/robots.py": {"UserError"},
-    "nl2robot/station.py": {"UserError"},
-    "nl2robot/models.py": {"ModelError"},
-    "nl2robot/planners.py": {"UserError"},
+    "nl2robot/station/accounts.py": {"UserError"},
+    "nl2robot/station/certificates.py": {"UserError"},
+    "nl2robot/translate/canned.py": {"UserError"},
+    "nl2robot/station/world_file.py": {"UserError"},
+    "nl2robot/station/robots.py": {"UserError"},
+    "nl2robot/station/station.py": {"UserError"},
+    "nl2robot/models/catalogue.py": {"ModelError"},
+    "nl2robot/translate/planners.py": {"UserError"},
     "nl2robot/speech/audio.py": {"AudioError"},
     "nl2robot/speech/microphone.py": {"AudioError"},
     "nl2robot/speech/voices.py": {"VoiceError"},
@@ -292,10 +292,10 @@ def test_what_the_commands_say_is_in_the_language_asked_for_else_the_terminals(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.setenv("LC_ALL", "fr_FR.UTF-8")
-    monkeypatch.setattr("nl2robot.commands.listen.need", lambda code: None)
-    monkeypatch.setattr("nl2robot.commands.listen.lacking_beside", lambda code: ())
+    monkeypatch.setattr("nl2robot.cli.commands.listen.need", lambda code: None)
+    monkeypatch.setattr("nl2robot.cli.commands.listen.lacking_beside", lambda code: ())
     hearing = SimpleNamespace(recording=None)
-    monkeypatch.setattr("nl2robot.commands.listen._hearing", lambda options: hearing)
+    monkeypatch.setattr("nl2robot.cli.commands.listen._hearing", lambda options: hearing)
     with contextlib.suppress(SystemExit):
         assert main(arguments) == ExitStatus.BAD_INPUT
     err = capsys.readouterr().err

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from nl2robot.errors import ExitStatus
-from nl2robot.runlog import RunLog
+from nl2robot.run.runlog import RunLog
 from robot_api.client import Robot
 from robot_api.drivers import emulated
 from robot_api.server import Server
@@ -166,7 +166,7 @@ def test_a_robot_that_is_lost_half_way(start, last_run, number) -> None:
 def test_what_is_no_robot_is_not_waited_for(nl2robot, monkeypatch) -> None:
     from websockets.sync.server import serve
 
-    monkeypatch.setattr("nl2robot.station.ANSWERS_WITHIN", 0.3)
+    monkeypatch.setattr("nl2robot.station.station.ANSWERS_WITHIN", 0.3)
 
     def echo(connection) -> None:
         for message in connection:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from nl2robot.sightings import GOOD_FOR, Sightings
+from nl2robot.run.sightings import GOOD_FOR, Sightings
 from tests.nl2robot.test_history import Nurse
 
 
@@ -22,7 +22,7 @@ class Clock:
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     """To be asked for before the station is."""
     clock = Clock()
-    monkeypatch.setattr("nl2robot.runner.Sightings", lambda: Sightings(clock))
+    monkeypatch.setattr("nl2robot.run.runner.Sightings", lambda: Sightings(clock))
     return clock
 
 

@@ -3,9 +3,9 @@
 from contextlib import closing
 from pathlib import Path
 
-from nl2robot.operator import Operator
-from nl2robot.runlog import RunLog
-from nl2robot.station import robot_station
+from nl2robot.run.runlog import RunLog
+from nl2robot.station.operator import Operator
+from nl2robot.station.station import robot_station
 from robot_api.drivers import emulated
 from robot_api.robots.robot_file import Limits, RobotFile
 from sim.world import load_world

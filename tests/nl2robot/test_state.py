@@ -5,8 +5,8 @@ from hypothesis import settings
 from hypothesis import strategies as some
 from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
 
-from nl2robot.present import Present
-from nl2robot.state import (
+from nl2robot.run.present import Present
+from nl2robot.run.state import (
     FOLLOWS,
     AtLine,
     Began,
@@ -77,7 +77,7 @@ def test_a_day_at_the_ward(happenings, states) -> None:
 
 
 def test_the_table_of_the_docs_is_the_one_of_the_program() -> None:
-    from nl2robot import state
+    from nl2robot.run import state
 
     rows = [line.split("|")[1:-1] for line in state.__doc__.splitlines() if line.startswith("|")]
     told, name = {}, ""

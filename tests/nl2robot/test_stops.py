@@ -1,6 +1,6 @@
 """Which event of a stop is its first."""
 
-from nl2robot.stops import Stops
+from nl2robot.run.stops import Stops
 
 
 def told(*kinds: str) -> list[bool]:

@@ -6,7 +6,7 @@ import pytest
 
 from grammar.language import languages
 from nl2robot.errors import ExitStatus
-from nl2robot.trouble import _meanings, told
+from nl2robot.run.trouble import _meanings, told
 from nl2robot.words import decimal, words_in
 from robot_api import errors
 

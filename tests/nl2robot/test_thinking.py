@@ -11,12 +11,12 @@ import pytest
 from rich.console import Console
 
 from grammar.planning.planner import Interrupted
+from nl2robot.cli.session import Session
+from nl2robot.cli.terminal import Terminal
+from nl2robot.cli.waiting import Waiting
 from nl2robot.errors import ExitStatus
-from nl2robot.session import Session
-from nl2robot.terminal import Terminal
-from nl2robot.thinking import Progress, Thought, published
-from nl2robot.translation import Translation
-from nl2robot.waiting import Waiting
+from nl2robot.translate.thinking import Progress, Thought, published
+from nl2robot.translate.translation import Translation
 from robot_api.errors import Stopped
 from tests.nl2robot.conftest import SOON
 

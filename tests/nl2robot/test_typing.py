@@ -10,12 +10,12 @@ from rich.console import Console
 from grammar.language import load_language
 from grammar.naming import joined_up
 from grammar.samples import samples
-from nl2robot.cli import COMMANDS
-from nl2robot.completing import Named, completions, named_here, names_said
+from nl2robot.cli.live_line import LiveLine
+from nl2robot.cli.main import COMMANDS
+from nl2robot.cli.on_the_way import OnTheWay
 from nl2robot.errors import ExitStatus
 from nl2robot.knowledge import Knowledge
-from nl2robot.live_line import LiveLine
-from nl2robot.on_the_way import OnTheWay
+from nl2robot.translate.completing import Named, completions, named_here, names_said
 from sim.world import load_world
 
 CHAT = ("chat", "--world", "ward")

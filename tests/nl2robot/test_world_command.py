@@ -14,8 +14,8 @@ from PIL import Image
 
 from nl2robot.console.zones import DrawnZones
 from nl2robot.errors import ExitStatus
-from nl2robot.named_places import NamedByHand, NamedPlaces
 from nl2robot.paths import data_file
+from nl2robot.station.named_places import NamedByHand, NamedPlaces
 from robot_api.errors import LostConnection
 from sim.maps import occupancy
 from sim.world import Zone, load_world

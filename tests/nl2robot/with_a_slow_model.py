@@ -4,8 +4,9 @@ import sys
 from pathlib import Path
 
 from grammar.planning.model.planner import ModelPlanner
-from nl2robot import cli, planners
+from nl2robot.cli.main import main as cli
 from nl2robot.language_model.scripted import ScriptedWriter
+from nl2robot.translate import planners
 
 writer = ScriptedWriter({"ward a might do with a wave from you": ['goto("ward a")\n']})
 writer.held.set()

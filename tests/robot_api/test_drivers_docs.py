@@ -82,7 +82,7 @@ def nl2robot(site: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
         "NL2ROBOT_HOME": str(site.parent / "home"),
     }
     return subprocess.run(
-        [sys.executable, "-m", "nl2robot.cli", *arguments],
+        [sys.executable, "-m", "nl2robot.cli.main", *arguments],
         capture_output=True,
         text=True,
         env=environment,

@@ -6,8 +6,8 @@ import json
 
 import pytest
 
-from nl2robot import robots_benchmark
-from nl2robot.cli import main
+from nl2robot.bench import robots as robots_benchmark
+from nl2robot.cli.main import main
 from nl2robot.errors import ExitStatus
 from robot_api.driver import Driver
 from robot_api.drivers import emulated, simulated

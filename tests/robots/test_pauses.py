@@ -14,9 +14,9 @@ from typing import Any
 
 import pytest
 
-from nl2robot.operator import Operator
-from nl2robot.runlog import RunLog
-from nl2robot.station import robot_station
+from nl2robot.run.runlog import RunLog
+from nl2robot.station.operator import Operator
+from nl2robot.station.station import robot_station
 from robot_api.driver import Driver
 from robot_api.robots.ros.settings import RosSettings
 from tests.robots.errand import PLACES, ward_in

@@ -9,8 +9,8 @@ import msgspec
 import pytest
 
 from nl2robot.knowledge import Knowledge
-from nl2robot.policy import violations
-from nl2robot.risks import risks
+from nl2robot.review.policy import violations
+from nl2robot.review.risks import risks
 from robot_api.driver import StopFlag
 from robot_api.drivers import emulated
 from robot_api.errors import InvalidCall

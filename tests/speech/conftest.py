@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from nl2robot import models
+from nl2robot.models import catalogue as models
 from nl2robot.speech.recogniser import Recogniser, load
 from tests.fetched import fetched
 

@@ -14,7 +14,7 @@ import pytest
 import soundfile
 from numpy.typing import NDArray
 
-from nl2robot import cli
+from nl2robot.cli.main import main as cli
 from nl2robot.errors import ExitStatus
 from nl2robot.speech.aloud import Wishes, aloud
 from nl2robot.speech.browser import PIECE, Browsers

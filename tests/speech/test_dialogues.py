@@ -15,8 +15,9 @@ import pytest
 import soundfile
 from numpy.typing import NDArray
 
-from nl2robot import cli, models
+from nl2robot.cli.main import main as cli
 from nl2robot.errors import UserError
+from nl2robot.models import catalogue as models
 from nl2robot.speech.aloud import RobotVoice, Wishes, aloud
 from nl2robot.speech.audio import RATE
 from nl2robot.speech.loudspeaker import Handed

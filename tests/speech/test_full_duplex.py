@@ -14,8 +14,8 @@ import miniaudio
 import numpy as np
 import pytest
 
-from nl2robot.commands import chat
-from nl2robot.commands.options import robot_of
+from nl2robot.cli.commands import chat
+from nl2robot.cli.commands.options import robot_of
 from nl2robot.speech import aloud as aloud_module
 from nl2robot.speech import full_duplex as module
 from nl2robot.speech.aloud import RobotVoice, Wishes, aloud

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nl2robot.belief_benchmark import WAYS, Case, counted, fitted
-from nl2robot.hearing_benchmark import CONDITIONS, Outcome, Tally, word_errors
+from nl2robot.bench.belief import WAYS, Case, counted, fitted
+from nl2robot.bench.hearing import CONDITIONS, Outcome, Tally, word_errors
 from nl2robot.speech import scenes
 from nl2robot.speech.audio import RATE, Audio
 from nl2robot.speech.second_ear import Evidence

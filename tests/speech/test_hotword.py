@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import soundfile
 
-from nl2robot.cli import main
+from nl2robot.cli.main import main
 from nl2robot.errors import UserError
 from nl2robot.speech import scenes
 from nl2robot.speech.audio import RATE, Samples, read

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from nl2robot.commands.listen import live
+from nl2robot.cli.commands.listen import live
 from nl2robot.errors import UserError
 from nl2robot.speech import levels, scenes, streaming
 from nl2robot.speech.audio import RATE, Audio, Samples, read
@@ -424,7 +424,7 @@ def test_a_recording_of_music_is_nothing_heard(
 ) -> None:
     import soundfile
 
-    from nl2robot.cli import main
+    from nl2robot.cli.main import main
 
     soundfile.write(tmp_path / "piano.wav", music(5), RATE)
     main(["listen", "--wav", str(tmp_path / "piano.wav"), *options])

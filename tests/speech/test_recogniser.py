@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import soundfile
 
-from nl2robot.models import ModelError, need
+from nl2robot.models.catalogue import ModelError, need
 from nl2robot.speech import benchmark
 from nl2robot.speech.audio import RATE, Audio, read
 from nl2robot.speech.levels import gain_for

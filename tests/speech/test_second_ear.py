@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nl2robot.models import ModelError
+from nl2robot.models.catalogue import ModelError
 from nl2robot.speech.audio import RATE, read
 from nl2robot.speech.expectation import ANYTHING, Expectation
 from nl2robot.speech.moonshine import Moonshine

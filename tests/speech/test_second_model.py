@@ -7,7 +7,7 @@ from pathlib import Path
 import onnxruntime
 import pytest
 
-from nl2robot import models
+from nl2robot.models import catalogue as models
 
 
 @pytest.mark.parametrize(

@@ -2,10 +2,10 @@
 
 import pytest
 
-from nl2robot.hearing import Ear
 from nl2robot.knowledge import Knowledge
 from nl2robot.speech.recogniser import Heard
 from nl2robot.speech.sounding_like import respelled, sounds
+from nl2robot.voice.hearing import Ear
 from nl2robot.work import here
 from sim.world import load_world
 

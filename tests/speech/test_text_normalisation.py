@@ -9,9 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.language import languages
-from nl2robot.robots import _of_its_own
 from nl2robot.speech.aloud import Wishes, aloud
 from nl2robot.speech.text_normalisation import as_spoken
+from nl2robot.station.robots import _of_its_own
 from robot_api.capabilities.base import Hub
 from robot_api.capabilities.sound import Sound
 from robot_api.capabilities.speech import LoudspeakerSpeech

@@ -11,14 +11,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from nl2robot import voice_services
-from nl2robot.hearing import Ear
 from nl2robot.knowledge import Knowledge
 from nl2robot.speech.audio import RATE, Samples
 from nl2robot.speech.listening import COMMANDS, Listener, Manner
 from nl2robot.speech.recogniser import Heard, Reading
-from nl2robot.translation import Talk
-from nl2robot.voice_services import Microphones
+from nl2robot.translate.translation import Talk
+from nl2robot.voice.hearing import Ear
+from nl2robot.voice.services import Microphones
+from nl2robot.voice.voice import services as voice_services
 from nl2robot.work import here
 from robot_api.driver import StopFlag
 from sim.world import load_world
@@ -65,7 +65,9 @@ class Bedside:
         self.ear, self.talk = GoodEar(), Talk()
         self.published: list[tuple[str, str, str | None]] = []
         monkeypatch.setattr(voice_services, "need", lambda language: None)
-        monkeypatch.setattr("nl2robot.hearing.Ear", lambda knowledge, language, think: self.ear)
+        monkeypatch.setattr(
+            "nl2robot.voice.hearing.Ear", lambda knowledge, language, think: self.ear
+        )
         self.microphones = Microphones(
             lambda: self.ear.knowledge, lambda name: self.talk, publish=self._publish
         )

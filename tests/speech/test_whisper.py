@@ -12,9 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nl2robot.errors import UserError
-from nl2robot.hearing import Ear
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
-from nl2robot.models import ModelError
+from nl2robot.models.catalogue import ModelError
 from nl2robot.speech import ct2_file
 from nl2robot.speech.answers import expect, hear_answer
 from nl2robot.speech.audio import RATE, Audio, read
@@ -24,6 +23,7 @@ from nl2robot.speech.recogniser import LEAST_BELIEF, Recogniser, load
 from nl2robot.speech.second_ear import SecondEar
 from nl2robot.speech.spotting import Spotter
 from nl2robot.speech.whisper import Whisper
+from nl2robot.voice.hearing import Ear
 from sim.world import load_world
 from tests.speech.conftest import RECORDED
 

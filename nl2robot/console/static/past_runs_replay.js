@@ -1,6 +1,6 @@
 /**
  * A run watched again: the robot moves over the floor as it did, while time passes or a slider is
- * drawn. What is kept of a movement is in nl2robot/kept_record.py.
+ * drawn. What is kept of a movement is in nl2robot/run/kept_record.py.
  */
 
 import {filled} from '/static/page.js';

@@ -35,9 +35,9 @@ from nl2robot.deliberation.confidence import WEIGHTS, features
 from nl2robot.deliberation.considering import consider
 from nl2robot.deliberation.deciding import ACCEPTED
 from nl2robot.deliberation.voting import count, same
-from nl2robot.planners import planner
 from nl2robot.training.planner.corpus import Item, files, knowledge, load
 from nl2robot.training.planner.examples import is_held_out
+from nl2robot.translate.planners import planner
 
 USED: Final = {
     "model": ("surest", "score", "branches", "hardly asked"),

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from nl2robot.cli import main
+from nl2robot.cli.main import main
 from robot_api.errors import (
     AccessDenied,
     InternalError,

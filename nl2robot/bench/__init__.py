@@ -1,0 +1,1 @@
+"""How fast and how well, measured: commands and modules that nothing else imports."""

@@ -1,0 +1,195 @@
+"""`nl2robot log`: past runs; one in detail; replayed in the simulator."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from nl2robot.cli.commands.options import open_log, whole
+from nl2robot.cli.terminal import Terminal
+from nl2robot.errors import ExitStatus, UserError
+from nl2robot.plain import visible
+from nl2robot.run.retention import DAY
+from nl2robot.run.runlog import Run, RunLog
+from nl2robot.translate.changes import difference
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "run", nargs="?", type=whole(1), help="the number of a run, to see all of it"
+    )
+    parser.add_argument(
+        "--last", type=whole(1), default=20, metavar="N", help="how many (default: 20)"
+    )
+    parser.add_argument("--replay", action="store_true", help="run it again in the simulator")
+    parser.add_argument(
+        "--picture", metavar="FILE", help="with --replay: save its picture (.svg, .png, .webp)"
+    )
+    parser.add_argument("--json", action="store_true", help="one JSON object a run")
+    parser.add_argument(
+        "--by-hand", action="store_true", help="what people had the robot do without a program"
+    )
+    parser.add_argument("--delete", action="store_true", help="delete what is known of that run")
+    parser.add_argument(
+        "--delete-older-than",
+        type=whole(0),
+        metavar="DAYS",
+        help="delete what is known of all runs that are older",
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    log = open_log()
+    terminal = Terminal()
+    if options.picture is not None and not options.replay:
+        raise UserError("A picture is made of a replay. Add --replay.")
+    if options.delete_older_than is not None:
+        log.delete_by_hand(options.delete_older_than * DAY)
+        return _delete(log, terminal, log.older_than(options.delete_older_than * DAY))
+    if options.by_hand:
+        _by_hand(log, terminal, options)
+        return ExitStatus.OK
+    if options.run is None:
+        if options.replay:
+            raise UserError("Say which run to replay: nl2robot log NUMBER --replay.")
+        if options.delete:
+            raise UserError("Say which run to delete: nl2robot log NUMBER --delete.")
+        _list(log, terminal, options)
+        return ExitStatus.OK
+    row = log.run(options.run)
+    if row is None:
+        raise UserError(f"There is no run {options.run}. `nl2robot log` lists those there are.")
+    if options.delete:
+        if row.going_on:
+            raise UserError(f"Run {row.id} is going on. Stop it, or wait for its end.")
+        return _delete(log, terminal, [row.id])
+    if options.json:
+        print(json.dumps(log.whole(row), ensure_ascii=False))
+    elif options.replay:
+        return _replay(log, row, terminal, options.picture)
+    else:
+        _show(log, row, terminal)
+    return ExitStatus.OK
+
+
+def _delete(log: RunLog, terminal: Terminal, runs: list[int]) -> int:
+    log.delete(runs)
+    told = "One run was" if len(runs) == 1 else f"{len(runs)} runs were"
+    terminal.console.print(f"{told} deleted: what was said, done and seen, and the pictures.")
+    return ExitStatus.OK
+
+
+def _list(log: RunLog, terminal: Terminal, options: argparse.Namespace) -> None:
+    runs = log.runs(options.last)
+    if options.json:
+        for row in runs:
+            print(json.dumps(log.whole(row), ensure_ascii=False))
+        return
+    if not runs:
+        terminal.console.print('Nothing was run yet. Try: nl2robot run "say hello"')
+        return
+    table = terminal.table("run", "when", "who", "how", "what")
+    for row in reversed(runs):
+        what = row.utterance or row.program.strip().partition("\n")[0]
+        table.add_row(str(row.id), _when(row.started), row.approved_by, _how(row), visible(what))
+    terminal.console.print(table, markup=False)
+
+
+def _by_hand(log: RunLog, terminal: Terminal, options: argparse.Namespace) -> None:
+    done = log.done_by_hand(options.last)
+    if options.json:
+        for each in done:
+            about = {**msgspec.to_builtins(each), "arguments": json.loads(each.arguments)}
+            print(json.dumps(about, ensure_ascii=False))
+        return
+    if not done:
+        terminal.console.print("Nobody had the robot do anything without a program yet.")
+        return
+    table = terminal.table("when", "who", "what")
+    for each in reversed(done):
+        table.add_row(_when(each.time), visible(each.who), _call(each.method, each.arguments))
+    terminal.console.print(table, markup=False)
+
+
+def _call(method: str, arguments: str) -> str:
+    values = json.loads(arguments).items()
+    given = ", ".join(f"{name}={value!r}" for name, value in values if value is not None)
+    return visible(f"{method}({given})")
+
+
+def _show(log: RunLog, row: Run, terminal: Terminal) -> None:
+    about = {
+        "run": f"{row.id}, {_how(row)}",
+        "heard": row.heard,
+        "understood": row.utterance,
+        "approved": f"by {row.approved_by} at {_when(row.approved_at)}",
+        "changed": f"by hand by {row.changed_by}" if row.changed_by else None,
+        "robot": f"{row.robot} in {row.world}",
+        "message": row.message,
+        "picture": row.picture,
+        "program": f"SHA-256 {row.sha256[:16]}…",
+    }
+    for name, value in about.items():
+        if value:
+            line = visible(f"{name + ':':<12}{value}")
+            terminal.console.print(line, markup=False, soft_wrap=True)
+    if row.proposed is not None:
+        changed = difference(row.proposed, row.program, "proposed", "approved")
+        terminal.console.print(visible(changed), markup=False, soft_wrap=True)
+    terminal.show_program(row.program)
+    table = terminal.table("", "line", "call", "result", "seconds")
+    for call in log.calls(row.id):
+        result = call.error or ("" if call.result in (None, "null") else call.result)
+        seconds = "never came back" if call.seconds is None else f"{call.seconds:.2f}"
+        told = _call(call.method, call.arguments)
+        table.add_row(str(call.number), str(call.line), told, result, seconds)
+    terminal.console.print(table, markup=False)
+    for text in log.output(row.id):
+        terminal.console.print(f"printed: {visible(text).rstrip()}", markup=False)
+
+
+def _replay(log: RunLog, row: Run, terminal: Terminal, picture: str | None) -> int:
+    from nl2robot.run.going_on import recall_of
+    from nl2robot.run.replay import replay
+    from nl2robot.station.station import check_picture, draw
+    from sim.simulation import Simulation
+    from sim.world import load_world
+
+    if row.seed is None or row.world is None:
+        raise UserError(
+            f"Run {row.id} was not simulated, so it cannot be replayed."
+            f" See what happened in it with: nl2robot log {row.id}."
+        )
+    if picture is not None:
+        check_picture(Path(picture))
+    world = load_world(row.world)
+    simulation = Simulation(world, seed=row.seed)
+
+    def on_call(line: int, method: str, arguments: dict[str, Any]) -> None:
+        about = {"what": "call", "line": line, "method": method, "arguments": arguments}
+        terminal.show_event("program", about)
+
+    recall = recall_of(log, row.continues)
+    again = replay(row, log.calls(row.id), simulation, on_call, recall)
+    terminal.show_end(again.status, again.message)
+    for each in again.differences:
+        terminal.console.print(each, style="yellow", markup=False)
+    if not again.differences:
+        terminal.console.print("Every call came out as it did the first time.")
+    if picture is not None:
+        draw(simulation.record, world, Path(picture))
+        terminal.console.print(f"Picture: {picture}", soft_wrap=True, markup=False)
+    return ExitStatus.OK if not again.differences else ExitStatus.FAILED
+
+
+def _how(row: Run) -> str:
+    return row.status or ("running" if row.going_on else "interrupted")
+
+
+def _when(seconds: float) -> str:
+    return datetime.fromtimestamp(seconds).strftime("%Y-%m-%d %H:%M:%S")

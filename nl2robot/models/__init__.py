@@ -1,0 +1,1 @@
+"""Models for speech and language: which there are, fetching one, checking it."""

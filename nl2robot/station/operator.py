@@ -1,0 +1,193 @@
+"""The operator's side of the wire: translate, check, approve, run and watch programs."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
+
+import msgspec
+
+from nl2robot.review.review import Review
+from nl2robot.run.answers import Sentence
+from nl2robot.run.runs import Approval, Status
+from nl2robot.run.state import GOING
+from nl2robot.translate.thinking import EVENT, OnProgress, Progress
+from nl2robot.translate.translation import Translation
+from robot_api.client import Robot
+from robot_api.errors import InvalidCall, RobotError, Stopped
+
+T = TypeVar("T")
+
+
+class Left(msgspec.Struct, frozen=True):
+    """What is left of a run that was broken off."""
+
+    run: int
+    program: str
+    utterance: str | None
+    told: list[str]
+    """What is done and what is left, in sentences."""
+
+
+def _continuing(run: int | None) -> dict[str, int]:
+    return {} if run is None else {"continues": run}  # which older servers do not know
+
+
+# Learned before there are threads, see `robot_api.schema`.
+msgspec.json.Decoder(tuple[Translation, Review, Approval, Status, Sentence, Left])
+
+
+class Operator:
+    """Somebody who has programs reviewed and run, over a client's connection."""
+
+    def __init__(self, robot: Robot, name: str) -> None:
+        self.robot = robot
+        self.name = name
+        # Who is told how far a language model is, by conversation and sentence.
+        self._waiting: dict[tuple[str | None, str], OnProgress] = {}
+        self._is_told = False
+
+    def translate(
+        self,
+        utterance: str,
+        language: str = "en",
+        planner: str = "auto",
+        talk: str | None = None,
+        on_progress: OnProgress | None = None,
+    ) -> Translation:
+        """`talk` names a conversation: "no, the pharmacy" refers to what was said in it. A language
+        model may take seconds: `on_progress` is told, from another thread, and Ctrl-C or `give_up`
+        ends it. Raises `Stopped` then, and where somebody stops the robot meanwhile."""
+        parameters = {
+            "utterance": utterance,
+            "language": language,
+            "planner": planner,
+            "talk": talk,
+        }
+        if on_progress is None:
+            return self._request("program.translate", parameters, Translation)
+        self._have_me_told()
+        self._waiting[talk, utterance] = on_progress
+        try:
+            return self._request("program.translate", parameters, Translation)
+        finally:
+            self._waiting.pop((talk, utterance), None)
+
+    def give_up(self) -> None:
+        """Wait no longer for what was asked of the server. From any thread; returns at once."""
+        self.robot.cancel()
+
+    def _have_me_told(self) -> None:
+        """Of what language models are at, from now on."""
+        if not self._is_told:
+            with contextlib.suppress(InvalidCall):  # a server that has none to tell of
+                self.robot.subscribe(EVENT, self._tell)
+            self._is_told = True
+
+    def _tell(self, kind: str, data: Mapping[str, Any]) -> None:
+        waiting = self._waiting.get((data.get("talk"), data.get("utterance", "")))
+        if waiting is not None:
+            waiting(Progress(data["what"], data.get("text", "")))
+
+    def phrases(self, language: str = "en") -> dict[str, list[str]]:
+        """What can be said here: sentences by topic."""
+        return self._request("program.phrases", {"language": language}, dict[str, list[str]])
+
+    def check(self, program: str, language: str = "en", continues: int | None = None) -> Review:
+        """Review a program, or what is left of it after a run; nothing moves."""
+        parameters = {"program": program, "language": language, **_continuing(continues)}
+        return self._request("program.check", parameters, Review)
+
+    def unfinished(self, language: str = "en") -> Left | None:
+        """What is left of the last run, if it was broken off."""
+        try:
+            left = self.robot.request("program.unfinished", {"language": language})
+        except InvalidCall:  # a server that cannot go on
+            return None
+        return None if left is None else msgspec.convert(left, Left)
+
+    def pause(self) -> None:
+        self.robot.request("program.pause")
+
+    def resume(self) -> None:
+        self.robot.request("program.resume")
+
+    def state(self) -> str:
+        """How the robot and its program stand, see `nl2robot.run.state`."""
+        state: str = self.robot.request("station.state")["state"]
+        return state
+
+    def reviewing(self, lies: bool) -> None:
+        """Tell that a program lies before somebody here who decides on it, or no longer."""
+        with contextlib.suppress(RobotError):  # a server that shows it nobody
+            self.robot.request("program.reviewing", {"lies": lies})
+
+    def approve(
+        self,
+        review: Review,
+        translation: Translation | None = None,
+        heard: str | None = None,
+        continues: int | None = None,
+        by: str | None = None,
+        proposed: str | None = None,
+        insists: bool = False,
+        language: str | None = None,
+    ) -> Approval:
+        """Approve exactly the program that was reviewed; with `continues`, what is left of it.
+        `by`: how the log calls whoever does. `proposed`: the program from before, if it was changed
+        here by hand. `insists`: somebody wants it run though it did not come to its end when it
+        was tried. `language`: theirs, in which the run reports and speaks."""
+        parameters: dict[str, Any] = {
+            "program": review.program,
+            "sha256": review.sha256,
+            "by": by or self.name,
+            "heard": heard,
+            "language": language,
+            **_continuing(continues),
+        }
+        if translation is not None:
+            proposed = proposed or translation.program
+            parameters["utterance"] = translation.utterance
+            if review.program == translation.program:  # edited, it is no longer what was planned
+                parameters["plan"] = msgspec.json.encode(translation.plan).decode()
+        if proposed is not None and proposed != review.program:
+            parameters |= {"proposed": proposed, "changed_by": self.name}
+        if insists:
+            parameters["insists"] = True
+        return self._request("program.approve", parameters, Approval)
+
+    def run(self, approval: Approval) -> int:
+        """Start it; returns the run's number."""
+        number: int = self.robot.request("program.run", {"approval": approval.id})
+        return number
+
+    def wait(self, run: int) -> Status:
+        """Wait until the run is over."""
+        while True:
+            # A stop of the robot breaks off every call, this one too; the run is about to be over.
+            with contextlib.suppress(Stopped):
+                status = self._request("program.wait", {"run": run}, Status)
+                if status.state not in GOING:
+                    return status
+
+    def answer(self, run: int, language: str = "en") -> list[Sentence]:
+        """What came of a run, for whoever asked for it; nothing from a server that cannot say."""
+        about = {"run": run, "language": language}
+        try:
+            return self._request("program.answer", about, list[Sentence])
+        except InvalidCall:
+            return []
+        except Stopped:  # as in `wait`
+            return self._request("program.answer", about, list[Sentence])
+
+    def stop(self) -> None:
+        """Stop the robot and the program."""
+        self.robot.stop()
+
+    def watch(self, listener: Callable[[str, Mapping[str, Any]], None], *kinds: str) -> None:
+        """Be told of events: `program` and those of `robot_api.driver.EVENTS`."""
+        self.robot.subscribe(kinds, listener)
+
+    def _request(self, method: str, parameters: dict[str, Any], kind: type[T]) -> T:
+        return msgspec.convert(self.robot.request(method, parameters), kind)

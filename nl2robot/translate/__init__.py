@@ -1,0 +1,1 @@
+"""From words to a program: sentences, conversations, routines, and the planners behind."""

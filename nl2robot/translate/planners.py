@@ -1,0 +1,143 @@
+"""The planners there are: the rules, the language model, and whatever else is registered.
+
+    --planner grammar|model|auto      auto: the rules for what they know, the model for the rest
+
+To add one, write a class with `name` and `plan` (`grammar.planning.planner.Planner`) and register
+it here or, from another package, as an entry point of the group `nl2robot.planners`.
+"""
+
+from __future__ import annotations
+
+import atexit
+import functools
+import importlib.util
+import os
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from grammar.planning.planner import Planner
+from nl2robot.errors import UserError
+from nl2robot.paths import PACKAGED
+
+if TYPE_CHECKING:
+    from nl2robot.language_model.client import Process
+
+AUTO: Final = "auto"
+GROUP: Final = "nl2robot.planners"
+"""Of entry points of other packages."""
+CHOSEN: Final = "NL2ROBOT_LANGUAGE_MODEL"
+"""The environment variable that names the model to use, or "none"."""
+
+
+def _rules() -> Planner:
+    from grammar.planning.rules import RulesPlanner
+
+    return RulesPlanner()
+
+
+def _model() -> Planner:
+    from grammar.planning.model.planner import ModelPlanner
+    from nl2robot.deliberation.sufficing import will_do
+
+    return ModelPlanner(language_model(), will_do)
+
+
+PLANNERS: Final[dict[str, Callable[[], Planner]]] = {"grammar": _rules, "model": _model}
+
+
+def names() -> list[str]:
+    """What `--planner` may be."""
+    return [AUTO, *PLANNERS, *(each for each in _others() if each not in PLANNERS)]
+
+
+@functools.cache
+def planner(name: str) -> Planner:
+    """The planner of this name, made once. Raises `UserError` if there is none, or none that can be
+    used here."""
+    make = PLANNERS.get(name) or _others().get(name)
+    if make is None:
+        raise UserError(f"There is no planner “{name}”. There are: {', '.join(names())}.")
+    return make()
+
+
+@functools.cache
+def _others() -> dict[str, Callable[[], Planner]]:
+    from importlib.metadata import entry_points
+
+    def loaded(point: object) -> Callable[[], Planner]:
+        return lambda: point.load()()  # type: ignore[attr-defined]
+
+    return {point.name: loaded(point) for point in entry_points(group=GROUP)}
+
+
+def available(name: str) -> bool:
+    """Whether a planner can be used here."""
+    return name != "model" or (installed_model() is not None and _has_runtime())
+
+
+def _has_runtime() -> bool:
+    return importlib.util.find_spec("tiktoken") is not None
+
+
+def installed_model() -> Path | None:
+    """The folder of the language model that is used here: the one that was chosen, else the largest
+    that is installed and has learned what programs are."""
+    from nl2robot.models.catalogue import LARGE, PLANNER, find
+
+    chosen = os.environ.get(CHOSEN)
+    if chosen == "none":
+        return None
+    codes = [chosen] if chosen else [code for code in (LARGE, PLANNER) if learned(code)]
+    return next(_found(codes, find), None)
+
+
+def _found(codes: list[str], find: Callable[[str], Path | None]) -> Iterator[Path]:
+    for code in codes:
+        folder = find(code)
+        if folder is not None:
+            yield folder
+
+
+def learned(code: str) -> Path | None:
+    """What this model has learned for this project: a file of `language_model.changes`."""
+    path = PACKAGED / "learned" / f"{code}.npz"
+    return path if path.exists() else None
+
+
+def get_ready() -> None:
+    """Load the language model, if there is one, in the background: the first sentence that needs it
+    shall not wait for that."""
+
+    def load() -> None:
+        from grammar.planning.model.prompt import PREFIX
+        from grammar.planning.model.request import Interrupted, Unavailable
+
+        with suppress(Interrupted, Unavailable, UserError):  # told when it is needed
+            language_model().get_ready(PREFIX)
+
+    if available("model"):
+        threading.Thread(target=load, name="getting ready", daemon=True).start()
+
+
+@functools.cache
+def language_model() -> Process:
+    """The language model's process, which begins when it is first asked to write."""
+    folder = installed_model()
+    if folder is None:
+        raise UserError(
+            "There is no language model here. Run `nl2robot models get planner-large` to fetch it"
+            " (1.1 GB), or say it as in `nl2robot phrases`."
+        )
+    if not _has_runtime():
+        raise UserError(
+            "The language model is here, but not what runs it. Run `pip install"
+            " 'nl2robot[planner]'`."
+        )
+    from nl2robot.language_model.client import Process
+
+    process = Process(folder, learned(folder.name))
+    atexit.register(process.close)
+    return process
