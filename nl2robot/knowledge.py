@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from grammar.lexicon import Lexicon, Name, Question, Routine
 from grammar.owners import with_owners
 from nl2robot.errors import UserError
-from sim.world import World
+from sim.world.model import World
 
 if TYPE_CHECKING:
     from nl2robot.translate.routines import Routines

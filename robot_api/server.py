@@ -31,10 +31,7 @@ from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
-from robot_api import access, protocol, roles
-from robot_api.beside import Beside
-from robot_api.connections import REMEMBERED, UNCONFIRMED, Client
-from robot_api.dispatch import Dispatcher, Job, Lane
+from robot_api import protocol
 from robot_api.driver import EVENTS, Driver, Event, StopFlag
 from robot_api.errors import (
     InternalError,
@@ -43,15 +40,19 @@ from robot_api.errors import (
     StopNotConfirmed,
     Stopped,
 )
-from robot_api.guard import OPEN_TO_ALL, Doors, Guard
 from robot_api.methods import METHODS
 from robot_api.openrpc import openrpc
-from robot_api.port import CannotListen as CannotListen
-from robot_api.port import listen, on_signals
 from robot_api.schema import is_oversize, read_arguments, with_whole_numbers
-from robot_api.status import HEADERS, Status, status_page
-from robot_api.two_way_port import TwoWayServer
-from robot_api.watchdog import Watchdog
+from robot_api.serving import access, roles
+from robot_api.serving.beside import Beside
+from robot_api.serving.connections import REMEMBERED, UNCONFIRMED, Client
+from robot_api.serving.dispatch import Dispatcher, Job, Lane
+from robot_api.serving.guard import OPEN_TO_ALL, Doors, Guard
+from robot_api.serving.port import CannotListen as CannotListen
+from robot_api.serving.port import listen, on_signals
+from robot_api.serving.status import HEADERS, Status, status_page
+from robot_api.serving.two_way_port import TwoWayServer
+from robot_api.serving.watchdog import Watchdog
 
 CALLER: Final = ("who", "by", "changed_by")
 """Parameters of services in which callers say who they are. Who has signed in need not be believed:

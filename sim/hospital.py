@@ -17,14 +17,14 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from sim.errors import NotPossible, UnknownPlace
-from sim.navigation import Chart, Spot
-from sim.people import Home, Human
-from sim.physics import BORDER_WIDTH, STEP, Physics
-from sim.placing import Item, free_spot, people_at_start, things_at_start
+from sim.people.crowd import Home, Human
+from sim.physics.bodies import BORDER_WIDTH, STEP, Physics
+from sim.physics.navigation import Chart, Spot
+from sim.physics.placing import Item, free_spot, people_at_start, things_at_start
+from sim.physics.robot import Robot, RobotState
 from sim.record import Happening, Record, Sample
-from sim.robot import Robot, RobotState
 from sim.snapshot import Snapshot
-from sim.world import GridMap, Person, Place, Segment, World, Zone, map_corners
+from sim.world.model import GridMap, Person, Place, Segment, World, Zone, map_corners
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
@@ -488,7 +488,7 @@ def _floor(grid: GridMap, drawn: tuple[Segment, ...]) -> BaseGeometry:
     is unknown is no floor."""
     import shapely
 
-    from sim.maps import free_floor
+    from sim.world.maps import free_floor
 
     shown = free_floor(grid)
     if not drawn:

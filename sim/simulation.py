@@ -19,18 +19,19 @@ from typing import Any, TypeVar
 
 import msgspec
 
-from sim import company, driving, handling, likely, perception, searching, talking
 from sim.hospital import Hospital, Listener, chart_of
-from sim.navigation import Chart
-from sim.perception import Seen
-from sim.physics import STEP
+from sim.people import company, likely, perception, searching, talking
+from sim.people.perception import Seen
+from sim.people.talking import Reply
+from sim.physics import driving, handling
+from sim.physics.bodies import STEP
+from sim.physics.navigation import Chart
+from sim.physics.robot import RobotState
 from sim.record import Record
-from sim.robot import RobotState
 from sim.runner import Behaviour, Runner, Stop
 from sim.snapshot import Snapshot, snapshot
-from sim.talking import Reply
 from sim.view import View, view
-from sim.world import Place, World, Zone
+from sim.world.model import Place, World, Zone
 
 __all__ = ["Behaviour", "Reply", "RobotState", "Seen", "Simulation", "Stop", "View"]
 
@@ -275,8 +276,8 @@ class Simulation:
 
     def set_zones(self, zones: Iterable[Zone]) -> None:
         """Keep the robot out of these zones and no others; `world.zones` is these from now on.
-        Their outlines must be sound (`sim.zones.trouble_with`). A robot that is in one may leave
-        it; one on its way somewhere looks for another way."""
+        Their outlines must be sound (`sim.world.zones.trouble_with`). A robot that is in one may
+        leave it; one on its way somewhere looks for another way."""
         drawn = tuple(zones)
         # Time passes while the floor is charted.
         chart = chart_of(msgspec.structs.replace(self.world, zones=drawn))

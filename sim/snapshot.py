@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import TYPE_CHECKING, Any, Final, cast
 
-from sim.people import Human
-from sim.placing import Item
-from sim.robot import Robot
-from sim.world import World
+from sim.people.crowd import Human
+from sim.physics.placing import Item
+from sim.physics.robot import Robot
+from sim.world.model import World
 
 if TYPE_CHECKING:
     from sim.hospital import Hospital
-    from sim.navigation import Spot
-    from sim.physics import Motion
+    from sim.physics.bodies import Motion
+    from sim.physics.navigation import Spot
 
 _BODILESS: Final = cast(Any, None)
 """Bodies are of one physics only; how they moved is kept beside who had them."""

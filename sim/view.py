@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Final
 
 import msgspec
 
-from sim.placing import ROBOT, Item
-from sim.robot import RobotState
+from sim.physics.placing import ROBOT, Item
+from sim.physics.robot import RobotState
 
 if TYPE_CHECKING:
     from sim.hospital import Hospital

@@ -58,7 +58,7 @@ def test_only_the_simulated_side_of_robot_api_knows_the_simulator() -> None:
     """How a file is read, everybody may know."""
     for file in sorted((ROOT / "robot_api").rglob("*.py")):
         if any(
-            module.split(".")[0] == "sim" and not module.startswith("sim.yaml_nodes")
+            module.split(".")[0] == "sim" and not module.startswith("sim.world.yaml_nodes")
             for module in imports_of(file)
         ):
             place = file.relative_to(ROOT / "robot_api")

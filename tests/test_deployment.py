@@ -21,7 +21,7 @@ from dockerfile_parse import DockerfileParser
 
 from nl2robot.errors import ExitStatus
 from robot_api.client import DEFAULT_PORT
-from robot_api.guard import OPEN_TO_ALL
+from robot_api.serving.guard import OPEN_TO_ALL
 
 ROOT = Path(__file__).parents[1]
 DEPLOY = ROOT / "docs" / "deploy"
@@ -247,7 +247,7 @@ def test_a_computer_without_a_sound_card_library_says_what_to_do(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     from nl2robot.speech.audio import AudioError
-    from nl2robot.speech.microphone import devices
+    from nl2robot.speech.hear.microphone import devices
 
     monkeypatch.setitem(sys.modules, "miniaudio", None)  # as where it is not installed
     with pytest.raises(AudioError, match="pip install miniaudio"):

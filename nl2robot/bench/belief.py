@@ -4,7 +4,7 @@ Commands, remarks and noise are heard in several voices and noises, and each way
 believe gives the likeliest program of each and how sure it is. How sure it must be is settled with
 half of the voices, for the most (right - wrong - 2 x remarks acted on), and counted with the other
 half; then the other way round. The weights of the belief are fitted the same way, and then with all
-voices, and printed: they are `nl2robot.speech.second_ear.WEIGHTS`.
+voices, and printed: they are `nl2robot.speech.hear.rescorer.WEIGHTS`.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from grammar.samples import all_samples, samples
+from nl2robot.bench.trials import Stage, Trial, spoken
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.models.catalogue import find
-from nl2robot.speech.listening import has_speech
-from nl2robot.speech.recogniser import Heard, Recogniser
-from nl2robot.speech.second_ear import WEIGHTS, Evidence
-from nl2robot.speech.trials import Stage, Trial, spoken
+from nl2robot.speech.hear.listening import has_speech
+from nl2robot.speech.hear.recogniser import Heard, Recogniser
+from nl2robot.speech.hear.rescorer import WEIGHTS, Evidence
 from nl2robot.voice.hearing import Ear
-from sim.world import load_world
+from sim.world.model import load_world
 
 EACH = 100  # trials of each kind
 NOBODY = 40

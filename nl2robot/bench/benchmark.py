@@ -44,7 +44,7 @@ def _translate() -> Iterator[Figure]:
     from grammar.samples import samples
     from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
     from nl2robot.translate.translation import translate
-    from sim.world import load_world
+    from sim.world.model import load_world
 
     knowledge = Knowledge(load_world(DEFAULT_WORLD))
     lexicon = knowledge.lexicon("en")
@@ -120,8 +120,8 @@ def _sandbox() -> Iterator[Figure]:
 
 
 def _voice() -> Iterator[Figure]:
+    from nl2robot.bench.recognition import measure
     from nl2robot.models.catalogue import find
-    from nl2robot.speech.benchmark import measure
 
     if find("en") is None:
         return
@@ -130,7 +130,7 @@ def _voice() -> Iterator[Figure]:
 
 
 def _hotword() -> Iterator[Figure]:
-    from nl2robot.speech.hotword_benchmark import measure
+    from nl2robot.bench.hotword import measure
 
     for what, value, unit, aim in measure():
         yield Figure("hotword", what, value, unit, aim)

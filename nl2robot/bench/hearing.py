@@ -16,15 +16,15 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from grammar.samples import all_samples, samples
+from nl2robot.bench.trials import LEVELS, Stage, Trial, spoken
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
-from nl2robot.speech.answers import expect, hear_answer
-from nl2robot.speech.levels import gain_for
-from nl2robot.speech.recogniser import PUNCTUATION
-from nl2robot.speech.trials import LEVELS, Stage, Trial, spoken
-from nl2robot.speech.vocabulary import number_words, spell_numbers
-from nl2robot.speech.vosk_decoder import BLOCK
+from nl2robot.speech.hear.answers import expect, hear_answer
+from nl2robot.speech.hear.levels import gain_for
+from nl2robot.speech.hear.recogniser import PUNCTUATION
+from nl2robot.speech.hear.vocabulary import number_words, spell_numbers
+from nl2robot.speech.hear.vosk_decoder import BLOCK
 from nl2robot.voice.hearing import Ear
-from sim.world import load_world
+from sim.world.model import load_world
 
 CONDITIONS = ("quiet", *(f"{level:g} dB" for level in LEVELS))
 MOST = {"quick": 15, "full": 100}

@@ -22,7 +22,7 @@ from nl2robot.language_model.model import Branch, OnnxModel
 from nl2robot.language_model.worker import Reading
 from nl2robot.translate.planners import AUTO, installed_model, learned
 from nl2robot.translate.translation import translate
-from sim.world import load_world
+from sim.world.model import load_world
 
 T = TypeVar("T")
 

@@ -166,7 +166,7 @@ def _explained(error: BaseException) -> tuple[str, ExitStatus]:
     """What an error of the layers below means to a user, and to a script."""
     from robot_api.errors import InvalidCall, LostConnection, RobotError, StopNotConfirmed
     from sim.errors import SimError
-    from sim.yaml_nodes import FileProblems
+    from sim.world.yaml_nodes import FileProblems
 
     match error:
         case KeyboardInterrupt():

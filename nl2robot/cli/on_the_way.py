@@ -12,7 +12,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
-from sim.world import World
+from sim.world.model import World
 
 OFF: Final = 1.5
 """Metres from the path of the dry run at which it drives another way."""

@@ -41,7 +41,7 @@ from robot_api.methods import MAX_TEXT
 from sandbox.limits import MAX_PROGRAM
 
 if TYPE_CHECKING:
-    from sim.world import World
+    from sim.world.model import World
 
 T = TypeVar("T")
 

@@ -43,7 +43,7 @@ from robot_api.errors import InvalidCall, RobotError
 if TYPE_CHECKING:
     from nl2robot.run.answers import Sentence
     from nl2robot.station.operator import Operator
-    from sim.world import World
+    from sim.world.model import World
 
 Decision = Literal["approve", "edit", "reject"]
 _ELSE: Final[tuple[Decision, ...]] = ("edit", "reject")
@@ -107,7 +107,7 @@ class Terminal:
 
     def called(self, place: str) -> str:
         """A place by the name that it has in the language spoken."""
-        from sim.world import name_in
+        from sim.world.model import name_in
 
         known = self.world.place(place) if self.world is not None else None
         return name_in(known, self.language) if known is not None else place

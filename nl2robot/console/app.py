@@ -20,8 +20,9 @@ from robot_api.server import Service
 
 STATIC: Final = Path(__file__).parent / "static"
 PARTS: Final = (
-    *("desk", "scene", "zones", "places", "goals", "localising", "helm_services", "codes"),
-    *("camera", "drive", "face", "runs", "routines", "door", "devices"),
+    *("desk.page", "floor.scene", "floor.zones", "floor.places", "floor.goals"),
+    *("floor.localising", "drive.services", "face.codes", "face.camera", "drive.page"),
+    *("face.page", "runs.page", "routines.page", "door", "devices"),
 )
 """The modules of the parts; each has `part(backstage) -> Part`."""
 

@@ -17,8 +17,8 @@ from nl2robot.station.accounts import LONGEST_NAME, Session
 from nl2robot.station.entrance import PAGES_AT, Entrance
 from nl2robot.station.wire import service_of_call
 from robot_api.errors import AccessDenied, NotPossible
-from robot_api.roles import PAIRED, may
 from robot_api.server import Context, Service
+from robot_api.serving.roles import PAIRED, may
 
 HERE_ONLY: Final = (
     "This server answers this machine only, so no tablet can come in. Start it anew with"

@@ -23,9 +23,9 @@ from nl2robot.console.visitor import texts, visitor_of
 from nl2robot.errors import UserError
 from nl2robot.station.accounts import LONGEST_NAME, TooSoon
 from nl2robot.station.entrance import Entrance
-from robot_api.access import Guest, Refusal
-from robot_api.guard import keep
-from robot_api.roles import Right
+from robot_api.serving.access import Guest, Refusal
+from robot_api.serving.guard import keep
+from robot_api.serving.roles import Right
 
 PLAIN: Final = frozenset(
     {
@@ -49,7 +49,7 @@ _log = logging.getLogger(__name__)
 
 
 class Doors:
-    """See `robot_api.guard.Doors`."""
+    """See `robot_api.serving.guard.Doors`."""
 
     def __init__(self, entrance: Entrance) -> None:
         self._entrance = entrance

@@ -13,7 +13,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from nl2robot.console.rendering import rendered
 from nl2robot.console.visitor import LANGUAGES, texts, visitor_of
-from robot_api.guard import YEAR
+from robot_api.serving.guard import YEAR
 
 HEADERS: Final = {
     "Content-Security-Policy": (

@@ -12,7 +12,7 @@ from urllib.parse import unquote
 import yaml
 from starlette.requests import HTTPConnection
 
-from robot_api.access import Guest
+from robot_api.serving.access import Guest
 
 LANGUAGES: Final = {"en": "English", "de": "Deutsch", "fr": "Français"}
 TEXTS: Final = Path(__file__).parent / "texts"

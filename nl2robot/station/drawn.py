@@ -18,7 +18,7 @@ import msgspec
 from nl2robot.errors import UserError
 from nl2robot.paths import made
 from robot_api.errors import cause
-from sim.world import BUILTIN, World
+from sim.world.model import BUILTIN, World
 
 T = TypeVar("T")
 

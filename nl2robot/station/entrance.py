@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from robot_api import access
+from robot_api.serving import access
 
 if TYPE_CHECKING:
     from nl2robot.station.accounts import Accounts

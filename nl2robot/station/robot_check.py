@@ -14,7 +14,7 @@ from nl2robot.station.robots import (
     zones_of,
 )
 from robot_api.checker import Report, check_driver, check_robot
-from sim.world import World
+from sim.world.model import World
 
 
 def checked(robot: Chosen, world: World, password: str | None, *, move: bool) -> Report:

@@ -11,7 +11,7 @@ from typing import IO, TYPE_CHECKING
 
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.paths import data_folder, made
-from nl2robot.speech.text_normalisation import as_spoken
+from nl2robot.speech.speak.text_normalisation import as_spoken
 from robot_api.capabilities.driving import Goal
 from robot_api.capabilities.sound import SILENT, Ears, Microphone, Sound
 from robot_api.driver import Driver
@@ -24,7 +24,7 @@ from robot_api.robots.reading import Read, read_robot_file, without_file
 from robot_api.robots.registry import RobotKind, Setup, kind_of
 
 if TYPE_CHECKING:
-    from sim.world import World, Zone
+    from sim.world.model import World, Zone
 
 SIMULATED = "sim"
 SERVERS = ("ws", "wss")
@@ -153,7 +153,7 @@ def _of_its_own(sound: Sound, world: World) -> Sound:
     ready to be spoken."""
 
     def ears_at(microphone: Microphone) -> Ears:
-        from nl2robot.speech.aloud import ears_at
+        from nl2robot.speech.speak.aloud import ears_at
 
         return ears_at(world)(microphone)
 
@@ -162,7 +162,7 @@ def _of_its_own(sound: Sound, world: World) -> Sound:
 
 def zones_of(world: World) -> tuple[Zone, ...]:
     """The keep-out zones of the world's file, and those that were drawn on its map."""
-    from nl2robot.console.zones import DrawnZones
+    from nl2robot.console.floor.zones import DrawnZones
     from nl2robot.paths import data_file
 
     return (*world.zones, *DrawnZones(data_file("zones.yaml")).of(world))

@@ -44,11 +44,11 @@ from robot_api.robots.reading import Read
 from robot_api.server import CannotListen, Server
 from sim.record import Record
 from sim.simulation import Simulation
-from sim.world import World, Zone
+from sim.world.model import World, Zone
 
 if TYPE_CHECKING:
     from nl2robot.console.app import Console
-    from nl2robot.speech.aloud import SoundFor
+    from nl2robot.speech.speak.aloud import SoundFor
     from nl2robot.station.entrance import Entrance
 
 ANSWERS_WITHIN = 5.0
@@ -113,7 +113,7 @@ def check_picture(file: Path) -> None:
 
 def draw(record: Record, world: World, file: Path) -> None:
     """Draw a run; the file's ending says how. Raises `UserError`."""
-    from sim import pictures
+    from sim.pictures import drawing as pictures
 
     check_picture(file)
     with _saving(file):
@@ -156,7 +156,7 @@ def simulated_station(
 
     `speed`: simulated seconds per second; None: as fast as the machine allows, whenever somebody
     waits for the robot. `pictures`: a folder in which a picture of every run is kept. `sound`: how
-    it is heard (see `nl2robot.speech.aloud`); without it, it is only written what is said.
+    it is heard (see `nl2robot.speech.speak.aloud`); without it, it is only written what is said.
     `console`: makes the web console, `nl2robot.console.app.Console`; once in a process. `read`: the
     robot file that it keeps to.
     """

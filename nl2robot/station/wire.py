@@ -9,11 +9,11 @@ import msgspec
 
 from grammar.language import UnknownLanguage
 from nl2robot.errors import UserError
-from robot_api.dispatch import Lane
 from robot_api.errors import InvalidCall
-from robot_api.roles import Right
 from robot_api.server import Context as CallContext
 from robot_api.server import Service
+from robot_api.serving.dispatch import Lane
+from robot_api.serving.roles import Right
 
 
 def service(

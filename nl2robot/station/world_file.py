@@ -18,11 +18,11 @@ import yaml
 from nl2robot.errors import UserError
 from nl2robot.station.named_places import NamedByHand
 from robot_api.errors import cause
-from sim.map_reader import is_ros_map
-from sim.world import Place, Pose, World, WorldError, Zone, load_world
-from sim.world_checks import kind_of
-from sim.world_reader import UNITS
-from sim.world_yaml import compose
+from sim.world.checks import kind_of
+from sim.world.fields import compose
+from sim.world.map_reader import is_ros_map
+from sim.world.model import Place, Pose, World, WorldError, Zone, load_world
+from sim.world.reader import UNITS
 
 _PLAIN = re.compile(r"[^\W\d_](?:[\w ./'-]*[\w.'])?")
 _RESERVED = {"null", "true", "false", "yes", "no", "on", "off", "y", "n", "~"}

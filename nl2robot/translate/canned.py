@@ -49,8 +49,8 @@ from nl2robot.review.rehearsal import Budget, EventKind, rehearse
 from nl2robot.translate.changes import difference
 from nl2robot.translate.translation import Translation, translate
 from robot_api.errors import cause
-from sim.files import read_text
-from sim.world import World, load_world
+from sim.world.files import read_text
+from sim.world.model import World, load_world
 
 PATIENCE = Budget(seconds=7200.0, real_seconds=1800.0)
 """How far a run is followed here: nobody waits at a prompt."""

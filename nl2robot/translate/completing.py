@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
-    from sim.world import World
+    from sim.world.model import World
 
 _WORDS: Final = 3
 """How many words before a name tell best what kind of name stands there."""

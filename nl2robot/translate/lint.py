@@ -1,6 +1,6 @@
 """The names of a world, looked at by somebody who has to say them.
 
-The loader refuses a world whose names contradict each other (`sim.world`). This finds what is
+The loader refuses a world whose names contradict each other (`sim.world.model`). This finds what is
 allowed and still goes wrong when people speak: names that sound alike, names that are words of
 commands, names by which nothing can be reached, words that the speech model cannot hear.
 """
@@ -23,10 +23,10 @@ from grammar.samples import samples
 from grammar.tidy import nodes
 from grammar.understand import understand
 from nl2robot.knowledge import Knowledge
-from sim.world import BUILTIN, World, builtin_worlds, load_world
+from sim.world.model import BUILTIN, World, builtin_worlds, load_world
 
 if TYPE_CHECKING:
-    from nl2robot.speech.recogniser import Recogniser
+    from nl2robot.speech.hear.recogniser import Recogniser
 
 SHORTEST: Final = 4
 """Letters of words that may be one slip apart; in shorter ones a slip makes another word."""
@@ -103,8 +103,8 @@ def languages_of(world: World) -> list[str]:
 
 def lines_of(file: Path) -> dict[tuple[str, str], int]:
     """The line of each name and alias, by section of the file."""
-    from sim.world_yaml import compose
-    from sim.yaml_nodes import MappingNode, Node, ScalarNode, SequenceNode
+    from sim.world.fields import compose
+    from sim.world.yaml_nodes import MappingNode, Node, ScalarNode, SequenceNode
 
     lines: dict[tuple[str, str], int] = {}
 
@@ -236,7 +236,7 @@ class _Linter:
         recogniser = self.recogniser()
         if recogniser is None:
             return
-        from nl2robot.speech.vocabulary import missing_words
+        from nl2robot.speech.hear.vocabulary import missing_words
 
         for missing in missing_words(recogniser, [called.text for called in self.names]):
             spoken = re.compile(rf"\b{re.escape(missing.word)}\b", re.IGNORECASE)
@@ -261,7 +261,7 @@ class _Linter:
             return None
         if folder is None:
             return None
-        from nl2robot.speech.recogniser import Recogniser
+        from nl2robot.speech.hear.recogniser import Recogniser
 
         return Recogniser(folder, self.language.code)
 

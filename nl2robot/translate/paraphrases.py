@@ -23,7 +23,7 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.translate.frames import UNKNOWN, Frame, frames_of_form, frames_of_plan, parsed
 from nl2robot.translate.translation import translate
 from robot_api.errors import cause
-from sim.files import read_text
+from sim.world.files import read_text
 
 DEFAULT_WORLD: Final = "household"
 FILLED: Final = {

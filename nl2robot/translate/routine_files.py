@@ -28,7 +28,7 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.translate.routines import Routine, Routines, spelled, written
 from nl2robot.translate.teaching import Teacher, tidied
 from sandbox.limits import MAX_PROGRAM
-from sim.yaml_nodes import (
+from sim.world.yaml_nodes import (
     FileProblems,
     Hopeless,
     MappingNode,

@@ -23,7 +23,7 @@ from robot_api.server import Context, Service
 
 if TYPE_CHECKING:
     from nl2robot.speech.audio import Converter
-    from nl2robot.speech.hotword import Detector
+    from nl2robot.speech.hotword.detector import Detector
 
 MOST: Final = 4
 """Pages that listen at a time: each takes some of the processor all the time."""
@@ -55,8 +55,8 @@ class Attention:
         """Begin to listen; returns a number. Raises `UserError` where the hot word of a language
         cannot be heard, `NotPossible` where too many listen."""
         from nl2robot.speech.audio import Converter
-        from nl2robot.speech.hotword import HotWord, StopWord
-        from nl2robot.speech.hotword_words import WORDS
+        from nl2robot.speech.hotword.detector import HotWord, StopWord
+        from nl2robot.speech.hotword.words import WORDS
 
         stop_word = StopWord(language) if language in WORDS else None
         page = _Attentive(connection, Converter(rate, 1), HotWord(language), stop_word)

@@ -20,12 +20,12 @@ from grammar.samples import all_samples
 from grammar.vocabulary import vocabulary
 from nl2robot.knowledge import Knowledge
 from nl2robot.speech.audio import RATE, Audio, read
-from nl2robot.speech.hotword_words import WORDS
-from nl2robot.speech.listening import COMMANDS, Listener, Manner, has_speech
-from nl2robot.speech.recogniser import Decoding, Heard, choose, load
-from nl2robot.speech.sounding_like import respelled
-from nl2robot.speech.streaming import Streaming
-from nl2robot.speech.vocabulary import Missing, missing_words
+from nl2robot.speech.hear.listening import COMMANDS, Listener, Manner, has_speech
+from nl2robot.speech.hear.recogniser import Decoding, Heard, choose, load
+from nl2robot.speech.hear.sounding_like import respelled
+from nl2robot.speech.hear.streaming import Streaming
+from nl2robot.speech.hear.vocabulary import Missing, missing_words
+from nl2robot.speech.hotword.words import WORDS
 from nl2robot.translate.completing import names_said
 from nl2robot.translate.planners import AUTO
 from nl2robot.translate.translation import Talk, Translation, translate

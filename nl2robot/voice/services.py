@@ -35,9 +35,9 @@ from robot_api.server import Service
 
 if TYPE_CHECKING:
     from nl2robot.speech.audio import Converter, Samples
-    from nl2robot.speech.hotword import Detector
-    from nl2robot.speech.listening import Event, Listener
-    from nl2robot.speech.recogniser import Heard
+    from nl2robot.speech.hear.listening import Event, Listener
+    from nl2robot.speech.hear.recogniser import Heard
+    from nl2robot.speech.hotword.detector import Detector
     from nl2robot.voice.hearing import Ear
     from robot_api.server import Publish
 
@@ -136,9 +136,9 @@ class Microphones:
         told at once. `connection` is the client's. Raises `UserError` without a speech model, or
         for a rate that no voice has."""
         from nl2robot.speech.audio import Converter
-        from nl2robot.speech.hotword import StopWord
-        from nl2robot.speech.hotword_words import WORDS
-        from nl2robot.speech.listening import COMMANDS, HELD
+        from nl2robot.speech.hear.listening import COMMANDS, HELD
+        from nl2robot.speech.hotword.detector import StopWord
+        from nl2robot.speech.hotword.words import WORDS
 
         ear = self._ear(language)
         listener = ear.listener(HELD if held else COMMANDS)
@@ -240,7 +240,7 @@ class Microphones:
             return self._ears[language]
 
     def _told(self, opened: _Open, event: Event) -> dict[str, Any]:
-        from nl2robot.speech.listening import (
+        from nl2robot.speech.hear.listening import (
             NothingHeard,
             PartialText,
             SpeechBegan,

@@ -28,7 +28,7 @@ from nl2robot.voice.voice import (
 )
 
 if TYPE_CHECKING:
-    from sim.world import World
+    from sim.world.model import World
 
 LOOK_EVERY = 0.05
 """Seconds between two looks at the keyboard."""

@@ -19,8 +19,7 @@ from typing import Any, Final
 
 from nl2robot.errors import UserError
 from nl2robot.speech.audio import Samples
-from nl2robot.speech.hotword import Detector
-from nl2robot.speech.listening import (
+from nl2robot.speech.hear.listening import (
     Listener,
     NothingHeard,
     PartialText,
@@ -28,7 +27,8 @@ from nl2robot.speech.listening import (
     SpeechEnded,
     TooLong,
 )
-from nl2robot.speech.recogniser import PUNCTUATION, Heard
+from nl2robot.speech.hear.recogniser import PUNCTUATION, Heard
+from nl2robot.speech.hotword.detector import Detector
 
 _log: Final = logging.getLogger(__name__)
 

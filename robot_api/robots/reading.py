@@ -13,7 +13,7 @@ from msgspec import inspect
 
 from robot_api.robots.registry import RobotKind
 from robot_api.robots.robot_file import Limits, RobotFile, Voice
-from sim.yaml_nodes import (
+from sim.world.yaml_nodes import (
     FileProblems,
     Hopeless,
     MappingNode,

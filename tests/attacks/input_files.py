@@ -22,11 +22,11 @@ from nl2robot.translate.routine_files import exported, read
 from robot_api.robots.reading import read_robot_file
 from robot_api.robots.registry import RobotKind, known
 from sim.errors import SimError
-from sim.map_image import ImageError
 from sim.simulation import Simulation
-from sim.world import BUILTIN, World, load_world
-from sim.world_reader import _Reader
-from sim.yaml_nodes import FileProblems
+from sim.world.map_image import ImageError
+from sim.world.model import BUILTIN, World, load_world
+from sim.world.reader import _Reader
+from sim.world.yaml_nodes import FileProblems
 from tests.attacks.inputs import (
     LANGUAGES,
     Case,

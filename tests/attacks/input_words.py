@@ -22,11 +22,11 @@ from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.review.review import review
 from nl2robot.speech.audio import AudioError, Converter, read_bytes
-from nl2robot.speech.recording import opened
+from nl2robot.speech.hear.recording import opened
 from nl2robot.translate.translation import Talk, translate
 from robot_api.stub import stub
 from sandbox.check import check
-from sim.world import load_world
+from sim.world.model import load_world
 from tests.attacks.inputs import LANGUAGES, Case, Target, Unfit, file, is_chosen, sentence
 from tests.attacks.mutations import WORDS, bytes_like, text_like
 from tests.sandbox.test_check import GOOD

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from sim.yaml_nodes import FileProblems
+from sim.world.yaml_nodes import FileProblems
 from tests.attacks.outcome import what_is_no_sentence
 
 LANGUAGES: Final = ("en", "de", "fr")

@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Browser, expect
 
-from nl2robot.console.camera import LEFT_AFTER, Viewer
+from nl2robot.console.face.camera import LEFT_AFTER, Viewer
 from robot_api.capabilities.camera import Look
 from tests.console.conftest import Served, serving
 from tests.robots.ros.stand_in import StandIn

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from PIL import Image
 from starlette.applications import Starlette
 
-from nl2robot.console import codes
-from nl2robot.console.codes import Code, NoPicture, part, read_codes
+from nl2robot.console.face import codes
+from nl2robot.console.face.codes import Code, NoPicture, part, read_codes
 from robot_api import Server
 from robot_api.drivers import emulated
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, expect
 
-from nl2robot.console.codes import read_codes
+from nl2robot.console.face.codes import read_codes
 from nl2robot.station.accounts import Accounts
 from robot_api.client import Robot
 from robot_api.errors import AccessDenied

@@ -17,7 +17,8 @@ import pytest
 from playwright.sync_api import Page, expect
 from starlette.applications import Starlette
 
-from nl2robot.console import choices, face, tablet
+from nl2robot.console.face import choices, tablet
+from nl2robot.console.face import page as face
 from nl2robot.console.part import Backstage
 from nl2robot.run.present import Present
 from nl2robot.run.state import on_wire
@@ -28,7 +29,7 @@ from robot_api.driver import StopFlag
 from robot_api.drivers import simulated
 from robot_api.errors import AccessDenied, InvalidCall, NotFound, Stopped, TimedOut
 from sim.simulation import Simulation
-from sim.world import load_world
+from sim.world.model import load_world
 from tests.console.conftest import SOON, Look, Served
 
 AT_ONCE = SOON / 1000
@@ -429,7 +430,7 @@ def test_a_web_page_that_cannot_be_framed_is_found_out(
     ward: Ward, front: Tablet, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # As if this machine were the open internet.
-    monkeypatch.setattr("nl2robot.console.sites._is_public", lambda url: True)
+    monkeypatch.setattr("nl2robot.console.face.sites._is_public", lambda url: True)
     with another_site(SimpleHTTPRequestHandler) as site:
         for url, answer in (
             (f"http://{ward.server.address}/face", "refuses"),
@@ -448,7 +449,7 @@ def test_nobody_learns_by_it_what_there_is_in_the_hospital(
         for url in ("http://127.0.0.1:1/", site, "http://10.0.0.1/", "http://[::1]:1/"):
             ward.driver.call("show", {"url": url}, StopFlag())
             assert front.request("site") == "yes"
-        monkeypatch.setattr("nl2robot.console.sites._is_public", lambda url: url == site)
+        monkeypatch.setattr("nl2robot.console.face.sites._is_public", lambda url: url == site)
         ward.driver.call("show", {"url": site}, StopFlag())
         for Detour.to in ("http://127.0.0.1:1/", f"http://{ward.server.address}/face"):
             assert front.request("site") == "yes"

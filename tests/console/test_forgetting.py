@@ -11,13 +11,13 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
-from nl2robot.console.forgetting import IDLE, READ_FOR, Forgetting
-from nl2robot.console.visitor_language import VisitorLanguage
+from nl2robot.console.face.forgetting import IDLE, READ_FOR, Forgetting
+from nl2robot.console.face.visitor_language import VisitorLanguage
 from robot_api.capabilities.sound import Sound
 from robot_api.driver import StopFlag
 from robot_api.drivers import simulated
 from sim.simulation import Simulation
-from sim.world import load_world
+from sim.world.model import load_world
 from tests.console.conftest import Look, Served
 from tests.console.test_face import FORM, Tablet, Ward, end_of, start
 

@@ -7,11 +7,11 @@ import msgspec
 import pytest
 from shapely import LineString, Point
 
-from nl2robot.console.goals import Aimed, aim
+from nl2robot.console.floor.goals import Aimed, aim
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
-from sim.spots import room_near
-from sim.world import Door, World, Zone, load_world
+from sim.world.model import Door, World, Zone, load_world
+from sim.world.spots import room_near
 
 HOSPITAL = load_world("city-hospital")
 

@@ -13,8 +13,8 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
-from nl2robot.console.helm import HOLDS, IDLE, Helm, Operator, State
-from nl2robot.console.helm_services import part
+from nl2robot.console.drive.helm import HOLDS, IDLE, Helm, Operator, State
+from nl2robot.console.drive.services import part
 from nl2robot.console.part import Backstage
 from nl2robot.run.present import Present
 from nl2robot.run.runlog import RunLog
@@ -24,7 +24,7 @@ from robot_api.driver import StopFlag
 from robot_api.drivers import simulated
 from robot_api.errors import AccessDenied, InvalidCall, NotPossible, RobotError, Stopped
 from sim.simulation import Simulation
-from sim.world import load_world
+from sim.world.model import load_world
 
 SOON = 20  # seconds; what is waited for comes within milliseconds
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from nl2robot.console import places, zones
+from nl2robot.console.floor import places, zones
 from nl2robot.console.part import Backstage
 from nl2robot.knowledge import Knowledge
 from nl2robot.station.named_places import with_named_places
@@ -23,7 +23,7 @@ from robot_api.errors import InvalidCall
 from robot_api.robots.places import Places
 from robot_api.server import Context
 from sim.simulation import Simulation
-from sim.world import World, load_world
+from sim.world.model import World, load_world
 
 
 class Console:

@@ -9,10 +9,10 @@ from collections.abc import Iterator
 import pytest
 
 from nl2robot.station.accounts import Accounts
-from robot_api import roles
 from robot_api.client import Robot
 from robot_api.errors import AccessDenied, RobotError
-from robot_api.roles import ROLES, Role
+from robot_api.serving import roles
+from robot_api.serving.roles import ROLES, Role
 from tests.console.conftest import Look, Served, serving
 from tests.console.test_looks import READY
 

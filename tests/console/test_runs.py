@@ -20,10 +20,11 @@ import pytest
 from playwright.sync_api import Page, expect
 from starlette.applications import Starlette
 
-from nl2robot.console import runs, runs_view
-from nl2robot.console.highlight import highlighted
+from nl2robot.console.desk.highlight import highlighted
 from nl2robot.console.part import Backstage, Part
-from nl2robot.console.runs_asked import BadDay, asked
+from nl2robot.console.runs import page as runs
+from nl2robot.console.runs import view as runs_view
+from nl2robot.console.runs.asked import BadDay, asked
 from nl2robot.console.visitor import LANGUAGES, texts
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.run.archive import Archive
@@ -31,7 +32,7 @@ from nl2robot.run.kept_record import Happening, Movement, Pose, packed
 from nl2robot.run.runlog import RunLog
 from nl2robot.station.operator import Operator
 from robot_api.errors import NotPossible
-from sim.world import load_world
+from sim.world.model import load_world
 from tests.console.conftest import SOON, Look, Served
 
 NOT_NEEDED: Any = {item.name for item in fields(Backstage) if item.init} - {"runner", "_listeners"}

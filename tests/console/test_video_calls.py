@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
-from nl2robot.console.video import Calls
+from nl2robot.console.face.video import Calls
 from robot_api.driver import StopFlag
 from robot_api.errors import NotPossible, Stopped, TimedOut
 from robot_api.server import Context

@@ -11,7 +11,7 @@ from typing import Any, cast
 
 import pytest
 
-from nl2robot.console import zones
+from nl2robot.console.floor import zones
 from nl2robot.console.part import Backstage
 from nl2robot.knowledge import Knowledge
 from robot_api.driver import StopFlag
@@ -19,7 +19,7 @@ from robot_api.errors import InvalidCall
 from robot_api.robots.places import Places
 from robot_api.server import Context
 from sim.simulation import Simulation
-from sim.world import World, Zone, load_world
+from sim.world.model import World, Zone, load_world
 
 SQUARE = [[4, 1], [6, 1], [6, 2], [4, 2]]
 

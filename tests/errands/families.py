@@ -51,7 +51,7 @@ import yaml
 from nl2robot.deliberation.paper_robot import Event, Over, PaperRobot, Scene
 from nl2robot.knowledge import Knowledge
 from nl2robot.translate.translation import Translation, translate
-from sim.world import World, load_world
+from sim.world.model import World, load_world
 
 FOLDER = Path(__file__).parent
 MOST = 60

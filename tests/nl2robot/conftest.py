@@ -19,7 +19,7 @@ from nl2robot.cli.main import main as cli
 from nl2robot.run.runlog import RunLog
 from nl2robot.station.operator import Operator
 from nl2robot.station.station import simulated_station
-from sim.world import load_world
+from sim.world.model import load_world
 
 
 @pytest.fixture(autouse=True)

@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import pytest
 from PIL import Image
 
-from nl2robot.console.codes import read_codes
+from nl2robot.console.face.codes import read_codes
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.station import passwords
 from nl2robot.station.accounts import INVITED_FOR, SHIFT, YEAR, Accounts, TooSoon

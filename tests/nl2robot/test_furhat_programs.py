@@ -17,7 +17,7 @@ from nl2robot.station.station import robot_station
 from robot_api.robots.address import Address
 from robot_api.robots.furhat import FURHAT
 from robot_api.robots.registry import Setup
-from sim.world import load_world
+from sim.world.model import load_world
 from tests.robots.furhat.stand_in import FurhatStandIn
 
 

@@ -8,7 +8,7 @@ from grammar.language import languages
 from nl2robot.cli.main import main
 from nl2robot.knowledge import Knowledge
 from nl2robot.translate.translation import translate
-from sim.world import builtin_worlds, load_world
+from sim.world.model import builtin_worlds, load_world
 
 
 @pytest.fixture

@@ -6,11 +6,11 @@ import pytest
 
 from nl2robot.cli.session import Session
 from nl2robot.cli.terminal import Terminal
-from nl2robot.console.dialogue import Dialogue
+from nl2robot.console.desk.dialogue import Dialogue
 from nl2robot.review import review
 from nl2robot.station.station import simulated_station
 from robot_api.errors import AccessDenied
-from sim.world import load_world
+from sim.world.model import load_world
 
 FAILS = 'robot.say("Now.")\nrobot.grab("unicorn")\n'
 WAITS = 'while not robot.sees("unicorn"):\n    robot.goto("ward a")\n    robot.goto("ward b")\n'

@@ -10,7 +10,7 @@ from grammar.language import languages
 from nl2robot.cli.main import main
 from nl2robot.translate import lint as linter
 from nl2robot.translate.lint import alike, lint
-from sim.world import WorldError, builtin_worlds
+from sim.world.model import WorldError, builtin_worlds
 
 
 @pytest.fixture

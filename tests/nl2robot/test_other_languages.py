@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from grammar.language import known_by_word, languages
-from nl2robot.console.dialogue import Dialogue
+from nl2robot.console.desk.dialogue import Dialogue
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.review.review import Review, review
 from nl2robot.run.present import Present
@@ -20,7 +20,7 @@ from nl2robot.translate.talks import Talks
 from nl2robot.translate.translation import Talk, translate
 from nl2robot.words import words_in
 from nl2robot.work import here
-from sim.world import load_world
+from sim.world.model import load_world
 
 KNOWLEDGE = Knowledge(load_world(DEFAULT_WORLD))
 

@@ -9,7 +9,7 @@ from nl2robot.cli.main import main
 from nl2robot.knowledge import Knowledge
 from nl2robot.translate.frames import frames_of_form, frames_of_plan, parsed
 from nl2robot.translate.paraphrases import Row, load, score
-from sim.world import load_world
+from sim.world.model import load_world
 
 TEA = '( is_a $1 " <object> " )'
 ALEX = '( lambda $1 e ( person $1 ) ( name $1 " <name> " ) ( at $1 " <location> " ) )'

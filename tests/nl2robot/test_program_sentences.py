@@ -20,7 +20,7 @@ from sandbox.check import check
 from sandbox.execution import _LIMITS, DIED, Execution
 from sandbox.sentences import UNAVAILABLE
 from sim.simulation import Simulation
-from sim.world import load_world
+from sim.world.model import load_world
 
 HAS = simulated(Simulation(load_world("city-hospital"))).capabilities()
 ROOT = Path(__file__).parents[2]

@@ -15,7 +15,7 @@ from nl2robot.run.runlog import LogError
 from nl2robot.station.operator import Operator
 from robot_api.errors import AccessDenied, NotPossible, Stopped
 from sandbox.execution import DIED
-from sim.world import Zone
+from sim.world.model import Zone
 from tests.attacks.disasters import deleted, replaced, without_what_was_just_written
 from tests.sandbox.ward import children
 

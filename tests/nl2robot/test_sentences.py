@@ -24,7 +24,7 @@ from robot_api import errors
 from robot_api.errors import RobotError
 from sim.errors import SimError
 from sim.simulation import Simulation
-from sim.world import load_world
+from sim.world.model import load_world
 
 ROOT = Path(__file__).parents[2]
 WHILE_IT_WORKS = {"UnknownPlace", "UnknownPerson", "NotFound", "NotPossible", "Blocked", "TimedOut"}
@@ -38,12 +38,12 @@ SAYING = {
     "robot_api/robots/link.py": AT_ANY_ROBOT,
     "robot_api/robots/places.py": AT_ANY_ROBOT,
     "robot_api/robots": WHILE_IT_WORKS,
-    "nl2robot/console/zones.py": {"UserError"},
-    "nl2robot/console/places.py": {"UserError"},
-    "nl2robot/console/goals.py": {"UserError"},
-    "nl2robot/console/localising.py": {"UserError"},
-    "nl2robot/console/helm.py": WHILE_IT_WORKS | {"AccessDenied"},
-    "nl2robot/console/video.py": WHILE_IT_WORKS,
+    "nl2robot/console/floor/zones.py": {"UserError"},
+    "nl2robot/console/floor/places.py": {"UserError"},
+    "nl2robot/console/floor/goals.py": {"UserError"},
+    "nl2robot/console/floor/localising.py": {"UserError"},
+    "nl2robot/console/drive/helm.py": WHILE_IT_WORKS | {"AccessDenied"},
+    "nl2robot/console/face/video.py": WHILE_IT_WORKS,
     "nl2robot/commands": {"UserError", "ArgumentTypeError"},
     "nl2robot/station/accounts.py": {"UserError"},
     "nl2robot/station/certificates.py": {"UserError"},
@@ -54,8 +54,8 @@ SAYING = {
     "nl2robot/models/catalogue.py": {"ModelError"},
     "nl2robot/translate/planners.py": {"UserError"},
     "nl2robot/speech/audio.py": {"AudioError"},
-    "nl2robot/speech/microphone.py": {"AudioError"},
-    "nl2robot/speech/voices.py": {"VoiceError"},
+    "nl2robot/speech/hear/microphone.py": {"AudioError"},
+    "nl2robot/speech/speak/voices.py": {"VoiceError"},
 }
 BEFORE_THERE_IS_A_ROBOT = {
     "The world {} has no map to drive on. Give its places a pose, or choose another world.",

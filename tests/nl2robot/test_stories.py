@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from nl2robot.translate import canned
-from sim.world import load_world
+from sim.world.model import load_world
 
 STORIES = canned.load(Path(__file__).parents[1] / "stories" / "hospital.yaml")
 

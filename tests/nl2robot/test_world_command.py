@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from nl2robot.console.zones import DrawnZones
+from nl2robot.console.floor.zones import DrawnZones
 from nl2robot.errors import ExitStatus
 from nl2robot.paths import data_file
 from nl2robot.station.named_places import NamedByHand, NamedPlaces
 from robot_api.errors import LostConnection
-from sim.maps import occupancy
-from sim.world import Zone, load_world
+from sim.world.maps import occupancy
+from sim.world.model import Zone, load_world
 
 Command = Callable[..., tuple[int, str, str]]
 

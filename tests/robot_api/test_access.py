@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_api.access import Guest, Refusal, Tokens, admitted, is_loopback, new_token
-from robot_api.roles import Role
+from robot_api.serving.access import Guest, Refusal, Tokens, admitted, is_loopback, new_token
+from robot_api.serving.roles import Role
 
 
 def answer(

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot_api.dispatch import LANES, Dispatcher, Job, Lane, Workers
 from robot_api.driver import StopFlag
 from robot_api.drivers import emulated
+from robot_api.serving.dispatch import LANES, Dispatcher, Job, Lane, Workers
 
 SOON = 20.0
 

@@ -9,11 +9,11 @@ from collections.abc import Iterator
 
 import pytest
 
-from robot_api import two_way_port
 from robot_api.client import Robot
 from robot_api.drivers import emulated
 from robot_api.errors import InternalError
 from robot_api.server import MAX_HEAD, Server
+from robot_api.serving import two_way_port
 
 SOON = 20.0
 

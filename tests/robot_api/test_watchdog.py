@@ -13,7 +13,7 @@ from robot_api.client import Robot
 from robot_api.drivers import emulated
 from robot_api.errors import Stopped
 from robot_api.server import Server
-from robot_api.watchdog import BECAUSE, DEAF, LAGS
+from robot_api.serving.watchdog import BECAUSE, DEAF, LAGS
 
 SOON = 20.0
 

@@ -10,10 +10,10 @@ from typing import TypeVar
 
 import pytest
 
-from sim.people import Human
+from sim.people.crowd import Human
 from sim.runner import Behaviour
 from sim.simulation import Simulation
-from sim.world import World, load_world
+from sim.world.model import World, load_world
 
 T = TypeVar("T")
 

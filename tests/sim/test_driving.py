@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from sim.errors import Blocked, NotPossible, UnknownPlace
 from sim.hospital import chart_of
-from sim.robot import Pace
-from sim.world import load_world
+from sim.physics.robot import Pace
+from sim.world.model import load_world
 
 
 @pytest.mark.parametrize("seed", [1, 2])

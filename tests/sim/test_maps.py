@@ -13,10 +13,10 @@ from PIL import Image
 
 from sim.errors import Blocked, NotPossible
 from sim.hospital import chart_of
-from sim.maps import outlines, painted
-from sim.pictures import svg
+from sim.pictures.drawing import svg
 from sim.simulation import Simulation
-from sim.world import WorldError, load_world, polygon_area
+from sim.world.maps import outlines, painted
+from sim.world.model import WorldError, load_world, polygon_area
 
 Grey = npt.NDArray[np.uint8]
 FREE, WALL, UNKNOWN = 254, 0, 205

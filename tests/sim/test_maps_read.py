@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from sim.hospital import chart_of
-from sim.maps import cell_at, free_cells, middle_of, occupancy, occupied_cells
-from sim.world import GridMap, World, load_world
+from sim.world.maps import cell_at, free_cells, middle_of, occupancy, occupied_cells
+from sim.world.model import GridMap, World, load_world
 
 Cells = npt.NDArray[np.int8]
 
@@ -154,7 +154,7 @@ def test_a_picture_of_no_whole_numbers_is_refused(tmp_path: Path) -> None:
 
 
 def read_or_why(file: Path) -> GridMap:
-    from sim.world import WorldError
+    from sim.world.model import WorldError
 
     try:
         return read(file)

@@ -16,11 +16,11 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from sim.errors import Blocked, NotPossible
-from sim.maps import free_cells, middle_of, occupied_cells, to_metres
-from sim.masks import masked_areas, tolerance
 from sim.simulation import Simulation
-from sim.world import GridMap, Polygon, WorldError, contains, load_world
-from sim.zones import distance_to, trouble_with
+from sim.world.maps import free_cells, middle_of, occupied_cells, to_metres
+from sim.world.masks import masked_areas, tolerance
+from sim.world.model import GridMap, Polygon, WorldError, contains, load_world
+from sim.world.zones import distance_to, trouble_with
 
 Cells = npt.NDArray[np.bool_]
 

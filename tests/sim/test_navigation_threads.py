@@ -5,8 +5,8 @@ from __future__ import annotations
 import random
 import threading
 
-from sim.navigation import Chart
-from sim.world import World
+from sim.physics.navigation import Chart
+from sim.world.model import World
 
 
 def test_a_chart_answers_several_threads(hospital: World) -> None:

@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sim.errors import NotFound
-from sim.perception import parse
+from sim.people.perception import parse
 from sim.simulation import Simulation
-from sim.world import load_world
+from sim.world.model import load_world
 
 SHELF = """\
 name: shelf

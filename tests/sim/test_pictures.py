@@ -12,15 +12,15 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from PIL import Image, ImageDraw
 
-from sim.pictures import animate, floor_svg, png, svg
-from sim.pictures_floor import WALL, draw_floor
-from sim.pictures_png import to_image
-from sim.pictures_run import _cuts, draw_run
-from sim.pictures_scene import Area, Box, Line, Scene, Text, box_about
-from sim.pictures_story import stops_of
-from sim.pictures_text import draw_text, text_width, wrapped
+from sim.pictures.drawing import animate, floor_svg, png, svg
+from sim.pictures.floor import WALL, draw_floor
+from sim.pictures.png import to_image
+from sim.pictures.run import _cuts, draw_run
+from sim.pictures.scene import Area, Box, Line, Scene, Text, box_about
+from sim.pictures.story import stops_of
+from sim.pictures.text import draw_text, text_width, wrapped
 from sim.record import Happening, Record, Sample, from_json, to_json
-from sim.world import Place, Pose, World, builtin_worlds, load_world
+from sim.world.model import Place, Pose, World, builtin_worlds, load_world
 
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 from PIL import Image
 
-from sim.pictures import png
-from sim.world import load_world
-from sim.world_reader import _Reader
+from sim.pictures.drawing import png
+from sim.world.model import load_world
+from sim.world.reader import _Reader
 
 PAGE = (Path(__file__).parents[2] / "docs" / "worlds.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)

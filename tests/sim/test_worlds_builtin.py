@@ -7,7 +7,7 @@ import math
 import pytest
 import shapely
 
-from sim.world import World, builtin_worlds, load_world
+from sim.world.model import World, builtin_worlds, load_world
 
 CELL = 0.1
 ROBOT = 0.25

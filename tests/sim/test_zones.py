@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 
 from sim.errors import Blocked, NotPossible
 from sim.hospital import chart_of
-from sim.pictures_scene import hatching
-from sim.world import World, WorldError, Zone, load_world
-from sim.zones import MOST_CORNERS, trouble_with
+from sim.pictures.scene import hatching
+from sim.world.model import World, WorldError, Zone, load_world
+from sim.world.zones import MOST_CORNERS, trouble_with
 
 HALL = """\
 name: hall

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from nl2robot.models import catalogue as models
-from nl2robot.speech.recogniser import Recogniser, load
+from nl2robot.speech.hear.recogniser import Recogniser, load
 from tests.fetched import fetched
 
 SHOWN = Path(models.__file__).parent / "data" / "recordings"  # the two that `make run` plays

@@ -11,12 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from nl2robot.errors import UserError
-from nl2robot.speech import digits
-from nl2robot.speech.answers import answer_in, expect, expected_by, hear_answer
 from nl2robot.speech.audio import Audio, Samples, read
-from nl2robot.speech.recogniser import Heard, Reading, Recogniser
-from nl2robot.speech.second_ear import Evidence, Judged, Opinion, SecondEar
-from nl2robot.speech.vocabulary import missing_words, number_words, spell_numbers
+from nl2robot.speech.digits import classifier as digits
+from nl2robot.speech.hear.answers import answer_in, expect, expected_by, hear_answer
+from nl2robot.speech.hear.recogniser import Heard, Reading, Recogniser
+from nl2robot.speech.hear.rescorer import Evidence, Judged, Opinion, SecondEar
+from nl2robot.speech.hear.vocabulary import missing_words, number_words, spell_numbers
 from tests.speech.conftest import RECORDED, SHOWN
 
 WAYS = "radiology, pharmacy, intensive care unit"

@@ -18,21 +18,21 @@ from numpy.typing import NDArray
 from nl2robot.cli.main import main as cli
 from nl2robot.errors import UserError
 from nl2robot.models import catalogue as models
-from nl2robot.speech.aloud import RobotVoice, Wishes, aloud
 from nl2robot.speech.audio import RATE
-from nl2robot.speech.loudspeaker import Handed
-from nl2robot.speech.people import FEMALE, MALE, SimulatedVoices, person_called
-from nl2robot.speech.recogniser import Recogniser
-from nl2robot.speech.replies import AtMicrophone, Microphone, Replies
-from nl2robot.speech.speaking import Speaker
-from nl2robot.speech.voices import Sound as Samples
-from nl2robot.speech.voices import voice
+from nl2robot.speech.hear.recogniser import Recogniser
+from nl2robot.speech.hear.replies import AtMicrophone, Microphone, Replies
+from nl2robot.speech.speak.aloud import RobotVoice, Wishes, aloud
+from nl2robot.speech.speak.loudspeaker import Handed
+from nl2robot.speech.speak.people import FEMALE, MALE, SimulatedVoices, person_called
+from nl2robot.speech.speak.speaking import Speaker
+from nl2robot.speech.speak.voices import Sound as Samples
+from nl2robot.speech.speak.voices import voice
 from robot_api.capabilities.sound import Asked, Sound
 from robot_api.driver import StopFlag
 from robot_api.drivers import emulated, simulated
 from robot_api.errors import NotPossible, Stopped
 from sim.simulation import Simulation
-from sim.world import load_world
+from sim.world.model import load_world
 
 SOON = 10.0
 

@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nl2robot.speech import digits, digits_encoder
 from nl2robot.speech.audio import RATE, Audio, read
+from nl2robot.speech.digits import classifier as digits
+from nl2robot.speech.digits import encoder as digits_encoder
 from nl2robot.speech.embeddings import WINDOW
 from tests.speech.conftest import RECORDED
 

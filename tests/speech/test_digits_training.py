@@ -7,9 +7,10 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from nl2robot.speech import digits_speakers, digits_training
 from nl2robot.speech.audio import RATE
-from nl2robot.speech.voices import VoiceError, voices
+from nl2robot.speech.speak.voices import VoiceError, voices
+from nl2robot.training.digits import speakers as digits_speakers
+from nl2robot.training.digits import training as digits_training
 
 
 def test_what_can_be_told_apart_is_learned() -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from nl2robot.speech.recogniser import Recogniser
+from nl2robot.speech.hear.recogniser import Recogniser
 
 ROOT = Path(__file__).parents[2]
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nl2robot.speech.echo_benchmark import LEVEL, Session, share
+from nl2robot.bench.echo import LEVEL, Session, share
+from nl2robot.bench.trials import Speaker
 from nl2robot.speech.scenes import Signal, level
-from nl2robot.speech.trials import Speaker
-from nl2robot.speech.voices import espeak
+from nl2robot.speech.speak.voices import espeak
 
 
 @pytest.fixture

@@ -7,12 +7,19 @@ import sys
 import numpy as np
 import pytest
 
+from nl2robot.bench.trials import Speaker
 from nl2robot.speech import scenes
 from nl2robot.speech.audio import RATE, Samples
-from nl2robot.speech.echo_cancelling import KEPT, LINGERS, SLIP, EchoCanceller, EchoError, Played
+from nl2robot.speech.hear.echo_cancelling import (
+    KEPT,
+    LINGERS,
+    SLIP,
+    EchoCanceller,
+    EchoError,
+    Played,
+)
 from nl2robot.speech.scenes import Signal
-from nl2robot.speech.trials import Speaker
-from nl2robot.speech.voices import espeak
+from nl2robot.speech.speak.voices import espeak
 
 BLOCK = RATE // 50
 

@@ -16,19 +16,19 @@ import pytest
 
 from nl2robot.cli.commands import chat
 from nl2robot.cli.commands.options import robot_of
-from nl2robot.speech import aloud as aloud_module
-from nl2robot.speech import full_duplex as module
-from nl2robot.speech.aloud import RobotVoice, Wishes, aloud
 from nl2robot.speech.audio import RATE, AudioError, Samples
-from nl2robot.speech.echo_cancelling import Played
-from nl2robot.speech.full_duplex import BargeIn, FullDuplex, Over, full_duplex
-from nl2robot.speech.listening import FRAME
-from nl2robot.speech.loudspeaker import Nowhere, SoundCard
-from nl2robot.speech.open_microphone import BEFORE, OpenMicrophone
-from nl2robot.speech.speaking import Speaker
-from nl2robot.speech.voices import Sound
+from nl2robot.speech.hear import full_duplex as module
+from nl2robot.speech.hear.echo_cancelling import Played
+from nl2robot.speech.hear.full_duplex import BargeIn, FullDuplex, Over, full_duplex
+from nl2robot.speech.hear.listening import FRAME
+from nl2robot.speech.hear.open_microphone import BEFORE, OpenMicrophone
+from nl2robot.speech.speak import aloud as aloud_module
+from nl2robot.speech.speak.aloud import RobotVoice, Wishes, aloud
+from nl2robot.speech.speak.loudspeaker import Nowhere, SoundCard
+from nl2robot.speech.speak.speaking import Speaker
+from nl2robot.speech.speak.voices import Sound
 from robot_api.driver import StopFlag
-from sim.world import load_world
+from sim.world.model import load_world
 
 SOON = 10.0
 SECOND = RATE // FRAME

@@ -7,10 +7,10 @@ import pytest
 
 from nl2robot.bench.belief import WAYS, Case, counted, fitted
 from nl2robot.bench.hearing import CONDITIONS, Outcome, Tally, word_errors
+from nl2robot.bench.trials import Trial, spoken
 from nl2robot.speech import scenes
 from nl2robot.speech.audio import RATE, Audio
-from nl2robot.speech.second_ear import Evidence
-from nl2robot.speech.trials import Trial, spoken
+from nl2robot.speech.hear.rescorer import Evidence
 
 
 def outcome(kind: str, decibels: float | None, *, right: bool, asked: bool = False) -> Outcome:

@@ -11,21 +11,21 @@ import numpy as np
 import pytest
 import soundfile
 
+from nl2robot.bench.hotword_corpus import seeded, silence
+from nl2robot.bench.hotword_voices import trimmed
 from nl2robot.cli.main import main
 from nl2robot.errors import UserError
 from nl2robot.speech import scenes
 from nl2robot.speech.audio import RATE, Samples, read
 from nl2robot.speech.embeddings import STEP, EmbeddingStream, embed
-from nl2robot.speech.hotword import Detection, Heads, HotWord, StopWord
-from nl2robot.speech.hotword_corpus import seeded, silence
-from nl2robot.speech.hotword_head import Head, load_head
-from nl2robot.speech.hotword_judge import Judge, judge_of
-from nl2robot.speech.hotword_voices import trimmed
-from nl2robot.speech.hotword_words import WORDS
-from nl2robot.speech.recogniser import Recogniser
-from nl2robot.speech.search import Network
-from nl2robot.speech.spotting import Spotter
-from nl2robot.speech.voices import espeak, joined
+from nl2robot.speech.hear.recogniser import Recogniser
+from nl2robot.speech.hear.search import Network
+from nl2robot.speech.hotword.detector import Detection, Heads, HotWord, StopWord
+from nl2robot.speech.hotword.head import Head, load_head
+from nl2robot.speech.hotword.judge import Judge, judge_of
+from nl2robot.speech.hotword.spotting import Spotter
+from nl2robot.speech.hotword.words import WORDS
+from nl2robot.speech.speak.voices import espeak, joined
 from tests.speech.conftest import RECORDED, SHOWN
 
 
@@ -300,7 +300,7 @@ def test_a_recording_of_an_hour_is_heard_in_the_memory_of_a_second(
         for _ in range(minutes):
             sound.write(noise)
     ears = Counts()
-    monkeypatch.setattr("nl2robot.speech.hotword.HotWord", lambda *_: ears)
+    monkeypatch.setattr("nl2robot.speech.hotword.detector.HotWord", lambda *_: ears)
     tracemalloc.start()
     try:
         assert main(["hotword", "--wav", str(file)]) == 0

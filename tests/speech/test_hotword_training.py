@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 import soundfile
 
-from nl2robot.speech import hotword_voices
+from nl2robot.bench import hotword_voices
+from nl2robot.bench.hotword import Stage, all_said
+from nl2robot.bench.hotword_corpus import Places, Speech, seeded, words_of
+from nl2robot.bench.hotword_voices import ROBOTIC, UNSEEN, Cast, Half
 from nl2robot.speech.audio import RATE, AudioError
-from nl2robot.speech.hotword_benchmark import Stage, all_said
-from nl2robot.speech.hotword_corpus import Places, Speech, seeded, words_of
-from nl2robot.speech.hotword_head import Head
-from nl2robot.speech.hotword_training import absent, joined, main, microphone, recorded
-from nl2robot.speech.hotword_voices import ROBOTIC, UNSEEN, Cast, Half
-from nl2robot.speech.hotword_words import WORDS
+from nl2robot.speech.hotword.head import Head
+from nl2robot.speech.hotword.words import WORDS
 from nl2robot.speech.scenes import level
-from nl2robot.speech.voices import Sound
+from nl2robot.speech.speak.voices import Sound
+from nl2robot.training.hotword.training import absent, joined, main, microphone, recorded
 
 LIVELY = [
     "af_heart",

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nl2robot.speech.kept import KeptSounds
-from nl2robot.speech.voices import Sound, joined, never
+from nl2robot.speech.speak.sound_cache import KeptSounds
+from nl2robot.speech.speak.voices import Sound, joined, never
 
 
 class Parrot:

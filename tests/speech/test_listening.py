@@ -13,9 +13,10 @@ import pytest
 
 from nl2robot.cli.commands.listen import live
 from nl2robot.errors import UserError
-from nl2robot.speech import levels, scenes, streaming
+from nl2robot.speech import scenes
 from nl2robot.speech.audio import RATE, Audio, Samples, read
-from nl2robot.speech.listening import (
+from nl2robot.speech.hear import levels, streaming
+from nl2robot.speech.hear.listening import (
     ANSWERS,
     COMMANDS,
     FRAME,
@@ -28,8 +29,8 @@ from nl2robot.speech.listening import (
     TooLong,
     has_speech,
 )
-from nl2robot.speech.recogniser import Heard, Recogniser
-from nl2robot.speech.streaming import Streaming
+from nl2robot.speech.hear.recogniser import Heard, Recogniser
+from nl2robot.speech.hear.streaming import Streaming
 from tests.speech.conftest import RECORDED, SHOWN
 
 PHARMACY = read(SHOWN / "pharmacy.wav").samples

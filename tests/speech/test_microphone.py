@@ -12,9 +12,9 @@ import miniaudio
 import numpy as np
 import pytest
 
-from nl2robot.speech import microphone
 from nl2robot.speech.audio import AudioError
-from nl2robot.speech.microphone import CAPTURED, CHANNELS, Microphone, devices
+from nl2robot.speech.hear import microphone
+from nl2robot.speech.hear.microphone import CAPTURED, CHANNELS, Microphone, devices
 
 NULL = [miniaudio.Backend.NULL]  # a microphone of miniaudio's own that hears nothing
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nl2robot.speech.quantized import Product
+from nl2robot.speech.hear.quantized import Product
 
 
 @given(

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 import soundfile
 
+from nl2robot.bench import recognition as benchmark
 from nl2robot.models.catalogue import ModelError, need
-from nl2robot.speech import benchmark
 from nl2robot.speech.audio import RATE, Audio, read
-from nl2robot.speech.levels import gain_for
-from nl2robot.speech.recogniser import Heard, Reading, Recogniser, SpeechError, choose
+from nl2robot.speech.hear.levels import gain_for
+from nl2robot.speech.hear.recogniser import Heard, Reading, Recogniser, SpeechError, choose
 from tests.speech.conftest import RECORDED, SHOWN
 
 # A small ward's way of talking: more words than the recordings hold, and ones that sound alike.

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from nl2robot.models.catalogue import ModelError
 from nl2robot.speech.audio import RATE, read
-from nl2robot.speech.expectation import ANYTHING, Expectation
-from nl2robot.speech.moonshine import Moonshine
-from nl2robot.speech.recogniser import LEAST_BELIEF, Recogniser
-from nl2robot.speech.second_ear import Evidence, SecondEar
-from nl2robot.speech.subwords import BEGIN, END, Subwords
+from nl2robot.speech.hear.expectation import ANYTHING, Expectation
+from nl2robot.speech.hear.moonshine import Moonshine
+from nl2robot.speech.hear.recogniser import LEAST_BELIEF, Recogniser
+from nl2robot.speech.hear.rescorer import Evidence, SecondEar
+from nl2robot.speech.hear.subwords import BEGIN, END, Subwords
 
 SHOWN = Path(__file__).parents[2] / "nl2robot" / "data" / "recordings"
 RECORDED = Path(__file__).parent / "recordings"

@@ -3,11 +3,11 @@
 import pytest
 
 from nl2robot.knowledge import Knowledge
-from nl2robot.speech.recogniser import Heard
-from nl2robot.speech.sounding_like import respelled, sounds
+from nl2robot.speech.hear.recogniser import Heard
+from nl2robot.speech.hear.sounding_like import respelled, sounds
 from nl2robot.voice.hearing import Ear
 from nl2robot.work import here
-from sim.world import load_world
+from sim.world.model import load_world
 
 
 @pytest.fixture

@@ -12,17 +12,17 @@ import numpy as np
 import pytest
 import soundfile
 
-from nl2robot.speech import loudspeaker, speaking
-from nl2robot.speech.echo_cancelling import Played
-from nl2robot.speech.loudspeaker import (
+from nl2robot.speech.hear.echo_cancelling import Played
+from nl2robot.speech.speak import loudspeaker, speaking
+from nl2robot.speech.speak.loudspeaker import (
     RATE,
     Handed,
     SoundCard,
     SoundError,
     WavFile,
 )
-from nl2robot.speech.speaking import Speaker
-from nl2robot.speech.voices import Sound, VoiceError, never, voice
+from nl2robot.speech.speak.speaking import Speaker
+from nl2robot.speech.speak.voices import Sound, VoiceError, never, voice
 
 AT_ONCE = 0.1
 SOON = 10.0

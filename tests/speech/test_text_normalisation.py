@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.language import languages
-from nl2robot.speech.aloud import Wishes, aloud
-from nl2robot.speech.text_normalisation import as_spoken
+from nl2robot.speech.speak.aloud import Wishes, aloud
+from nl2robot.speech.speak.text_normalisation import as_spoken
 from nl2robot.station.robots import _of_its_own
 from robot_api.capabilities.base import Hub
 from robot_api.capabilities.sound import Sound
@@ -18,7 +18,7 @@ from robot_api.capabilities.speech import LoudspeakerSpeech
 from robot_api.driver import StopFlag
 from robot_api.robots.pepper.voice import PepperSpeech
 from robot_api.robots.ros.voice import RosSpeech
-from sim.world import load_world
+from sim.world.model import load_world
 
 CASES = {
     language: yaml.load(

@@ -14,10 +14,10 @@ from pathlib import Path
 
 import pytest
 
-from nl2robot.speech import voice_process, voices
-from nl2robot.speech.sounding_like import respelled
-from nl2robot.speech.voice_process import CannotSpeak, VoiceProcess
-from nl2robot.speech.voices import VoiceError, espeak, joined, never, phonemes, voice
+from nl2robot.speech.hear.sounding_like import respelled
+from nl2robot.speech.speak import voice_process, voices
+from nl2robot.speech.speak.voice_process import CannotSpeak, VoiceProcess
+from nl2robot.speech.speak.voices import VoiceError, espeak, joined, never, phonemes, voice
 
 LONG = "The night service is in the emergency room until six in the morning. " * 25
 GREETING = {"do": "speak", "voice": "en", "text": "Good morning.", "speed": 1.0, "pitch": 1.0}
@@ -52,7 +52,7 @@ def in_a_process_of_its_own(program: str, cwd: Path | None = None) -> str:
 SPEAKS = """
 import sys
 from pathlib import Path
-from nl2robot.speech.voices import joined, phonemes, voice
+from nl2robot.speech.speak.voices import joined, phonemes, voice
 
 for kind in ("piper", "espeak"):
     assert joined(voice("en", kind).speak("Good morning.")).seconds > 0.4
@@ -138,7 +138,7 @@ def test_a_stop_waits_for_no_neural_voice(monkeypatch: pytest.MonkeyPatch) -> No
 ENDS = """
 import sys
 from nl2robot.speech import voices
-from nl2robot.speech.voices import espeak, joined
+from nl2robot.speech.speak.voices import espeak, joined
 
 joined(espeak("en").speak("Hello."))
 voices.pieces = lambda text: [text]
@@ -172,7 +172,7 @@ def test_it_ends_with_whoever_began_it_in_the_middle_of_a_word(number: int) -> N
 FORKS = """
 import os
 from nl2robot.speech import voices
-from nl2robot.speech.voices import phonemes
+from nl2robot.speech.speak.voices import phonemes
 
 told = phonemes("robot", "en-us")
 ours = voices._ESPEAK.pid

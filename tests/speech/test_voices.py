@@ -13,10 +13,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from nl2robot.speech import kokoro
-from nl2robot.speech import voices as module
-from nl2robot.speech.sentences import LONGEST, cleaned, pieces
-from nl2robot.speech.voices import VoiceError, espeak, joined, phonemes, voice, voices
+from nl2robot.bench import kokoro
+from nl2robot.speech.speak import voices as module
+from nl2robot.speech.speak.sentences import LONGEST, cleaned, pieces
+from nl2robot.speech.speak.voices import VoiceError, espeak, joined, phonemes, voice, voices
 
 LONG = "The night service is in the emergency room until six in the morning. " * 25
 

@@ -14,17 +14,17 @@ from hypothesis import strategies as st
 from nl2robot.errors import UserError
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.models.catalogue import ModelError
-from nl2robot.speech import ct2_file
-from nl2robot.speech.answers import expect, hear_answer
 from nl2robot.speech.audio import RATE, Audio, read
-from nl2robot.speech.byte_pairs import BytePairs
-from nl2robot.speech.log_mel import BANDS, log_mel
-from nl2robot.speech.recogniser import LEAST_BELIEF, Recogniser, load
-from nl2robot.speech.second_ear import SecondEar
-from nl2robot.speech.spotting import Spotter
-from nl2robot.speech.whisper import Whisper
+from nl2robot.speech.hear import ct2_file
+from nl2robot.speech.hear.answers import expect, hear_answer
+from nl2robot.speech.hear.byte_pairs import BytePairs
+from nl2robot.speech.hear.log_mel import BANDS, log_mel
+from nl2robot.speech.hear.recogniser import LEAST_BELIEF, Recogniser, load
+from nl2robot.speech.hear.rescorer import SecondEar
+from nl2robot.speech.hear.whisper import Whisper
+from nl2robot.speech.hotword.spotting import Spotter
 from nl2robot.voice.hearing import Ear
-from sim.world import load_world
+from sim.world.model import load_world
 from tests.speech.conftest import RECORDED
 
 COMMANDS = ["Fahr zur Apotheke und sag guten Morgen.", "Bring die rote Tasse zu Alice."]

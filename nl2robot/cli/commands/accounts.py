@@ -14,7 +14,7 @@ from nl2robot.paths import authority_file, data_folder
 from nl2robot.station.accounts import INVITED_FOR, Accounts
 from nl2robot.station.entrance import PAGES_AT
 from nl2robot.station.passwords import SHORTEST
-from robot_api.roles import PAIRED, ROLES
+from robot_api.serving.roles import PAIRED, ROLES
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

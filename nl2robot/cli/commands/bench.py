@@ -73,7 +73,7 @@ def _planner() -> Iterator[Figure]:
 def _console(options: argparse.Namespace, terminal: Terminal) -> int:
     from rich.progress import Progress
 
-    from nl2robot.console.benchmark import measure
+    from nl2robot.bench.console import measure
 
     rows: list[tuple[str, float, str, str]] = []
     with Progress(console=terminal.console, transient=True) as progress:

@@ -34,7 +34,7 @@ from nl2robot.words import words_in
 from robot_api.errors import LostConnection, RobotError
 
 if TYPE_CHECKING:
-    from nl2robot.speech.full_duplex import FullDuplex
+    from nl2robot.speech.hear.full_duplex import FullDuplex
 
 DATA = PACKAGED / "chat.yaml"
 
@@ -108,7 +108,7 @@ def _duplex(options: argparse.Namespace, robot: Chosen) -> FullDuplex | None:
     """Where the robot's loudspeaker and the microphone are both here."""
     if not (options.voice is True and options.speak is True and not robot.is_server):
         return None
-    from nl2robot.speech.full_duplex import full_duplex
+    from nl2robot.speech.hear.full_duplex import full_duplex
 
     return full_duplex(lambda message: print(message, file=sys.stderr, flush=True))
 

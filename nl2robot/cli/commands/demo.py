@@ -19,7 +19,7 @@ from nl2robot.paths import PACKAGED
 from nl2robot.run.runlog import RunLog
 from nl2robot.station.operator import Operator
 from nl2robot.station.station import simulated_station
-from sim.world import load_world
+from sim.world.model import load_world
 
 TYPED = (
     "wait for a visitor, ask whether they want to go to radiology or to the pharmacy,"
@@ -59,7 +59,7 @@ def run(options: argparse.Namespace) -> int:
 def how_to_hear() -> str:
     """How the robot speaks aloud, which it did not here; what it needs is installed only where
     somebody asks for it."""
-    from nl2robot.speech.voices import voices
+    from nl2robot.speech.speak.voices import voices
 
     if voices("en"):
         return 'Aloud:                  [bold].venv/bin/nl2robot run "say good morning" --speak[/]'

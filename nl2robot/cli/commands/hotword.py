@@ -14,8 +14,8 @@ from nl2robot.errors import ExitStatus
 
 if TYPE_CHECKING:
     from nl2robot.speech.audio import Samples
-    from nl2robot.speech.hotword import Detector
-    from nl2robot.speech.recording import Recording
+    from nl2robot.speech.hear.recording import Recording
+    from nl2robot.speech.hotword.detector import Detector
 
 LONG = 60.0
 """Seconds of a recording from which on a bar tells how far it is."""
@@ -41,16 +41,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from nl2robot.speech.hotword import HotWord, StopWord
+    from nl2robot.speech.hotword.detector import HotWord, StopWord
 
     ears = StopWord(options.lang) if options.stop else HotWord(options.lang, options.word)
     if options.mic:
-        from nl2robot.speech.microphone import Microphone
+        from nl2robot.speech.hear.microphone import Microphone
 
         with Microphone(options.device) as microphone, contextlib.suppress(KeyboardInterrupt):
             _listen(ears, microphone.blocks(), options.json)
         return ExitStatus.OK
-    from nl2robot.speech.recording import opened
+    from nl2robot.speech.hear.recording import opened
 
     with opened(options.wav) as recording:
         _listen(ears, _in_view(recording, options.lang), options.json)

@@ -23,8 +23,8 @@ from nl2robot.words import words_in
 
 if TYPE_CHECKING:
     from nl2robot.speech.audio import Audio, Samples
-    from nl2robot.speech.listening import Event, Listener, SpeechEnded
-    from nl2robot.speech.recogniser import Heard
+    from nl2robot.speech.hear.listening import Event, Listener, SpeechEnded
+    from nl2robot.speech.hear.recogniser import Heard
 
 PATIENCE: Final = 30.0
 """Seconds without speech after which somebody may wonder whether the microphone is on."""
@@ -58,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
         print(told(sentence, options.lang), file=sys.stderr)
     if not options.mic:
         return recordings(options.wav, _hearing(options), options.lang)
-    from nl2robot.speech.microphone import Microphone
+    from nl2robot.speech.hear.microphone import Microphone
 
     microphone = Microphone(options.device)  # before the model is loaded, for it may be missing
     hearing = _hearing(options)
@@ -96,7 +96,7 @@ class _Commands:
         self._print(self._ear.hear(audio))
 
     def listener(self) -> Listener:
-        from nl2robot.speech.listening import COMMANDS
+        from nl2robot.speech.hear.listening import COMMANDS
 
         return self._ear.listener(replace(COMMANDS, patience=PATIENCE))
 
@@ -120,8 +120,8 @@ class _Commands:
 
 class _Answers:
     def __init__(self, options: argparse.Namespace) -> None:
-        from nl2robot.speech.answers import expect
-        from nl2robot.speech.recogniser import load
+        from nl2robot.speech.hear.answers import expect
+        from nl2robot.speech.hear.recogniser import load
 
         self._json = options.json
         self._words = words_in(options.lang)
@@ -129,8 +129,8 @@ class _Answers:
         self._recogniser = load(options.lang)
 
     def recording(self, audio: Audio) -> None:
-        from nl2robot.speech.answers import Answer, hear_answer
-        from nl2robot.speech.listening import has_speech
+        from nl2robot.speech.hear.answers import Answer, hear_answer
+        from nl2robot.speech.hear.listening import has_speech
 
         if has_speech(audio):
             heard = hear_answer(self._recogniser, audio, self._expected)
@@ -145,7 +145,7 @@ class _Answers:
             print(told, flush=True)
 
     def listener(self) -> Listener:
-        from nl2robot.speech.listening import ANSWERS, Listener
+        from nl2robot.speech.hear.listening import ANSWERS, Listener
 
         # So short a speech is decoded as a whole when it has ended.
         return Listener(manner=replace(ANSWERS, patience=PATIENCE))
@@ -181,7 +181,7 @@ def live(
 ) -> int:
     """Hear what is said until Ctrl-C, or until the sound ends. Partial words are shown where they
     can be overwritten, unless `quiet`; what else is told, in that language. Raises `AudioError`."""
-    from nl2robot.speech.listening import NothingHeard, PartialText, SpeechEnded, TooLong
+    from nl2robot.speech.hear.listening import NothingHeard, PartialText, SpeechEnded, TooLong
 
     texts = words_in(language)
     listener = hearing.listener()

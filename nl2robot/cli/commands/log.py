@@ -158,7 +158,7 @@ def _replay(log: RunLog, row: Run, terminal: Terminal, picture: str | None) -> i
     from nl2robot.run.replay import replay
     from nl2robot.station.station import check_picture, draw
     from sim.simulation import Simulation
-    from sim.world import load_world
+    from sim.world.model import load_world
 
     if row.seed is None or row.world is None:
         raise UserError(

@@ -18,10 +18,10 @@ from nl2robot.paths import authority_file, data_folder
 
 if TYPE_CHECKING:
     from nl2robot.run.runlog import RunLog
-    from nl2robot.speech.aloud import SoundFor
-    from nl2robot.speech.full_duplex import FullDuplex
+    from nl2robot.speech.hear.full_duplex import FullDuplex
+    from nl2robot.speech.speak.aloud import SoundFor
     from nl2robot.station.robots import Chosen
-    from sim.world import World
+    from sim.world.model import World
 
 
 def words(given: str) -> str:
@@ -67,7 +67,7 @@ def add_world(parser: argparse.ArgumentParser) -> None:
 
 def _worlds(prefix: str, **_: object) -> list[str]:
     """For the completion by Tab in a shell: the built-in worlds, and files."""
-    from sim.world import builtin_worlds
+    from sim.world.model import builtin_worlds
 
     folder = prefix[: prefix.rfind("/") + 1]
     files = [
@@ -241,7 +241,7 @@ def add_sound(parser: argparse.ArgumentParser, *, browsers: bool = False) -> Non
 
 
 def _page_or_file(given: str) -> str | Path:
-    from nl2robot.speech.aloud import IN_BROWSERS
+    from nl2robot.speech.speak.aloud import IN_BROWSERS
 
     return given if given == IN_BROWSERS else _sound_file(given)
 
@@ -264,7 +264,7 @@ def sound_of(
             raise UserError("A voice is chosen, but nothing is spoken. Add --speak.")
         yield None
         return
-    from nl2robot.speech.aloud import Wishes, aloud
+    from nl2robot.speech.speak.aloud import Wishes, aloud
 
     if options.voices and options.mic:
         raise UserError(
@@ -280,7 +280,7 @@ def sound_of(
 def names_of(options: argparse.Namespace) -> World:
     """The world as far as translating needs it: what goes by a name."""
     from nl2robot.station.named_places import with_named_places
-    from sim.world import load_world
+    from sim.world.model import load_world
 
     return with_named_places(load_world(options.world, names_only=True))
 
@@ -288,7 +288,7 @@ def names_of(options: argparse.Namespace) -> World:
 def world_of(options: argparse.Namespace) -> World:
     """The world, with the places that were named on its map."""
     from nl2robot.station.named_places import with_named_places
-    from sim.world import load_world
+    from sim.world.model import load_world
 
     return with_named_places(load_world(options.world))
 

@@ -35,7 +35,7 @@ def run(options: argparse.Namespace) -> int:
     from nl2robot.cli.terminal import Terminal
     from nl2robot.knowledge import Knowledge
     from nl2robot.translate.paraphrases import by_kind, load, score, total
-    from sim.world import load_world
+    from sim.world.model import load_world
 
     knowledge = Knowledge(load_world(options.world, names_only=True))
     rows = load(Path(options.file))

@@ -14,7 +14,7 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.translate import routine_files
 from nl2robot.translate.routines import as_data, open_routines
 from nl2robot.translate.teaching import Reply, Teacher, settle
-from sim.files import read_text
+from sim.world.files import read_text
 
 ACTIONS = (
     *("list", "explain", "learn", "change", "rename", "forget", "export", "import", "review"),

@@ -42,8 +42,8 @@ from robot_api.capabilities.sound import SILENT
 
 if TYPE_CHECKING:
     from nl2robot.run.runlog import RunLog
-    from nl2robot.speech.full_duplex import FullDuplex
-    from sim.world import World
+    from nl2robot.speech.hear.full_duplex import FullDuplex
+    from sim.world.model import World
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

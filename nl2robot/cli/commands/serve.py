@@ -35,9 +35,9 @@ from nl2robot.station.machine import allow_open_files, outdated_python
 from nl2robot.station.robots import places_of, reached, zones_of
 from nl2robot.station.station import robot_station, simulated_station
 from nl2robot.translate import planners
-from robot_api.access import LONGEST_SECRET, is_loopback
 from robot_api.capabilities.sound import SILENT
 from robot_api.server import Server
+from robot_api.serving.access import LONGEST_SECRET, is_loopback
 
 if TYPE_CHECKING:
     from nl2robot.station.certificates import Certificate

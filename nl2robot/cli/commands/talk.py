@@ -14,10 +14,10 @@ from nl2robot.cli.terminal import answers
 from nl2robot.knowledge import Knowledge
 from nl2robot.models.catalogue import lacking_beside
 from nl2robot.speech.audio import RATE, Audio, Samples, read
-from nl2robot.speech.full_duplex import FullDuplex
-from nl2robot.speech.hotword import HotWord, StopWord, default_word
-from nl2robot.speech.listening import Manner
-from nl2robot.speech.microphone import Microphone
+from nl2robot.speech.hear.full_duplex import FullDuplex
+from nl2robot.speech.hear.listening import Manner
+from nl2robot.speech.hear.microphone import Microphone
+from nl2robot.speech.hotword.detector import HotWord, StopWord, default_word
 from nl2robot.translate.routines import open_routines
 from nl2robot.voice.hearing import Ear
 from nl2robot.voice.terminal import VoiceTerminal

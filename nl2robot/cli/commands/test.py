@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from sim.world import load_world
+    from sim.world.model import load_world
 
     world = load_world(options.world) if options.world else None
     before = None

@@ -14,7 +14,7 @@ from nl2robot.cli.commands.options import words
 from nl2robot.errors import ExitStatus, UserError
 
 if TYPE_CHECKING:
-    from sim.world import World
+    from sim.world.model import World
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -110,10 +110,10 @@ def _check_new(file: Path, force: bool) -> None:
 
 def _map_alone(file: Path) -> World:
     """The world that is nothing but this map. Raises `WorldError`, `UserError`."""
-    from sim.map_reader import is_ros_map
-    from sim.world import load_world
-    from sim.world_yaml import compose
-    from sim.yaml_nodes import Hopeless
+    from sim.world.fields import compose
+    from sim.world.map_reader import is_ros_map
+    from sim.world.model import load_world
+    from sim.world.yaml_nodes import Hopeless
 
     if file.suffix.lower() in (".pgm", ".png", ".bmp"):
         raise UserError(f"{file} is an image. Give the YAML that map_server wrote beside it.")
@@ -131,8 +131,8 @@ def _map_alone(file: Path) -> World:
 def _fetch(address: str, map_file: Path) -> None:
     """Write the map of a robot with ROS. Raises `UserError`, `RobotError`."""
     from robot_api.robots.address import BadAddress, parse
-    from sim.map_image import ImageError
-    from sim.map_saving import save_map
+    from sim.world.map_image import ImageError
+    from sim.world.map_saving import save_map
 
     try:
         robot = parse(address)
@@ -170,7 +170,7 @@ def _fetch(address: str, map_file: Path) -> None:
 
 def _check(name: str) -> int:
     """The exit status is 1 if the robot could not go to some place."""
-    from sim.world import load_world
+    from sim.world.model import load_world
 
     world = load_world(name)
     _tell(world)
@@ -178,7 +178,7 @@ def _check(name: str) -> int:
         print("It has no geometry: sentences can be translated in it, but nothing driven.")
         return ExitStatus.OK
     from sim.simulation import Simulation
-    from sim.spots import troubles_with_places
+    from sim.world.spots import troubles_with_places
 
     Simulation(world).close()
     troubles = [f'"{place.name}" {why}.' for place, why in troubles_with_places(world)]
@@ -196,7 +196,7 @@ def _tell(world: World) -> None:
         f" keep-out zones: {len(world.zones)}."
     )
     if world.map is not None:
-        from sim.maps import free_cells
+        from sim.world.maps import free_cells
 
         free = free_cells(world.map).sum() * world.map.resolution**2
         print(f"Its map shows {free:.1f} m² of free floor.")
@@ -209,11 +209,11 @@ def _tell(world: World) -> None:
 
 
 def _export(options: argparse.Namespace) -> int:
-    from nl2robot.console.zones import DrawnZones
+    from nl2robot.console.floor.zones import DrawnZones
     from nl2robot.paths import data_file
     from nl2robot.station.named_places import NamedPlaces, not_in
     from nl2robot.station.world_file import exported, write_world
-    from sim.world import BUILTIN, load_world
+    from sim.world.model import BUILTIN, load_world
 
     world = load_world(options.world)
     kept_places, kept_zones = NamedPlaces(), DrawnZones(data_file("zones.yaml"))

@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from nl2robot.speech.text_normalisation import as_spoken
+from nl2robot.speech.speak.text_normalisation import as_spoken
 from robot_api import Robot, Server
 from robot_api.capabilities import screen
 from robot_api.capabilities.sound import SILENT, Asked, Sound

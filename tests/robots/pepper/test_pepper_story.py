@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from nl2robot.speech.aloud import ears_at
+from nl2robot.speech.speak.aloud import ears_at
 from robot_api.capabilities.sound import Sound
 from sandbox.execution import Outcome
 from tests.fetched import fetched

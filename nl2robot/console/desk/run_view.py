@@ -1,0 +1,49 @@
+"""The run that goes on, or the last one, as every page shows it: `desk.run`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+
+from nl2robot.console.desk.highlight import highlighted
+from nl2robot.console.part import Backstage
+from nl2robot.review.review import reading
+from nl2robot.run.trouble import call_trouble, told
+
+
+def run_view(backstage: Backstage, language: str) -> dict[str, Any] | None:
+    """The present or last run: how it stands, its lines with what they say in plain words, its
+    calls; None if there was none since the server started."""
+    runner = backstage.runner
+    status = runner.state()
+    if status is None:
+        return None
+    logged = runner.log.run(status.run)
+    lexicon = runner.knowledge.lexicon(language)
+    read = {each.line: each for each in reading(status.program, runner.knowledge, language)}
+    return {
+        **msgspec.to_builtins(status),
+        "message": told(status.error, status.message, language, lexicon)
+        if status.message
+        else None,
+        "utterance": logged.utterance if logged else None,
+        "by": logged.approved_by if logged else None,
+        "started": logged.started if logged else None,
+        "lines": [
+            {"code": str(code), "reading": read[number].text if number in read else ""}
+            for number, code in enumerate(highlighted(status.program), 1)
+        ],
+        "calls": [
+            {
+                "number": call.number,
+                "line": call.line,
+                "method": call.method,
+                "arguments": msgspec.json.decode(call.arguments),
+                "result": msgspec.json.decode(call.result) if call.result else None,
+                "error": call_trouble(call, language, lexicon),
+                "seconds": call.seconds,
+            }
+            for call in runner.log.calls(status.run)[-100:]
+        ],
+    }

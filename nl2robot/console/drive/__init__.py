@@ -1,0 +1,1 @@
+"""The page for direct control, and the helm: who drives."""

@@ -1,0 +1,1 @@
+"""The live floor map, and what is drawn on it."""

@@ -1,0 +1,1 @@
+"""Which digit a short sound is, by the sound alone."""

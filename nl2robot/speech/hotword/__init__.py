@@ -1,0 +1,1 @@
+"""Always listening: for the hot word, and for "stop"."""

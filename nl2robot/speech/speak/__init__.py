@@ -1,0 +1,1 @@
+"""From text to sound, one after the other, silent at once."""

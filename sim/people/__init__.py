@@ -1,0 +1,1 @@
+"""The people of the simulated hospital: walking, talking, being looked for."""

@@ -1,0 +1,1 @@
+"""Bodies that move: the robot, its ways, what is in them."""

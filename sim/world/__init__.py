@@ -1,0 +1,1 @@
+"""The hospital as files describe it: places, people, things, walls, maps, zones."""
