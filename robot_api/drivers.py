@@ -240,7 +240,7 @@ def simulated(simulation: Simulation, sound: Sound = SILENT) -> SimulatedDriver:
 def in_default_world(sound: Sound = SILENT) -> SimulatedDriver:
     """A simulated robot for who wants no world of their own."""
     from sim.simulation import Simulation
-    from sim.world.model import load_world
+    from sim.world.loading import load_world
 
     return simulated(Simulation(load_world("city-hospital")), sound)
 

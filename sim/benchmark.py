@@ -10,7 +10,8 @@ import msgspec
 from sim.errors import SimError
 from sim.hospital import RAYS, chart_of
 from sim.simulation import Simulation
-from sim.world.model import Person, World, load_world
+from sim.world.loading import load_world
+from sim.world.model import Person, World
 
 PEOPLE = 10
 

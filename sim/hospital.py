@@ -24,7 +24,8 @@ from sim.physics.placing import Item, free_spot, people_at_start, things_at_star
 from sim.physics.robot import Robot, RobotState
 from sim.record import Happening, Record, Sample
 from sim.snapshot import Snapshot
-from sim.world.model import GridMap, Person, Place, Segment, World, Zone, map_corners
+from sim.world.geometry import GridMap, Segment, map_corners
+from sim.world.model import Person, Place, World, Zone
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry

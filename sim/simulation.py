@@ -19,11 +19,11 @@ from typing import Any, TypeVar
 
 import msgspec
 
+from sim.behaviours import company, driving, handling, searching, talking
+from sim.behaviours.talking import Reply
 from sim.hospital import Hospital, Listener, chart_of
-from sim.people import company, likely, perception, searching, talking
+from sim.people import likely, perception
 from sim.people.perception import Seen
-from sim.people.talking import Reply
-from sim.physics import driving, handling
 from sim.physics.bodies import STEP
 from sim.physics.navigation import Chart
 from sim.physics.robot import RobotState

@@ -94,18 +94,82 @@ def test_no_module_of_the_grammar_imports_another_inside_a_function() -> None:
         assert not ours, f"{name} imports {', '.join(sorted(ours))} where nobody sees it"
 
 
-def test_the_modules_of_the_grammar_know_each_other_without_a_circle() -> None:
-    modules = modules_of("grammar")
+def knows(name: str, file: Path, modules: dict[str, Path]) -> set[str]:
+    """The modules that it imports, at its top or inside a function, but not for its types alone."""
+    found: set[str] = set()
+    for node in (each for statement in statements(file) for each in ast.walk(statement)):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            inner = {f"{node.module}.{alias.name}" for alias in node.names}
+            found |= inner if inner <= modules.keys() else inner | {node.module}
+    return (found & modules.keys()) - {name}
+
+
+@pytest.mark.parametrize("package", sorted(OURS))
+def test_no_modules_know_each_other_in_a_circle(package: str) -> None:
+    """Not even by what they import when it is needed."""
+    modules = modules_of(package)
     known: dict[str, set[str]] = {}
     for name, file in modules.items():
-        found = imported(statements(file)) & modules.keys()
+        found = knows(name, file, modules)
         # To know a module is to know what its package imports; not so inside the package.
-        around = {package for each in found for package in packages(each)}
+        around = {folder for each in found for folder in packages(each)} & modules.keys()
         known[name] = found | (around - packages(name) - {name})
     try:
         TopologicalSorter(known).prepare()
     except CycleError as circle:
         pytest.fail(" is imported by ".join(circle.args[1]))
+
+
+FLOORS = (
+    *("language_model", "models", "speech", "review", "deliberation", "run", "translate"),
+    *("checks", "voice", "station", "console", "bench", "cli", "training"),
+)
+"""The folders of `nl2robot/`, each of which knows only those before it."""
+LARGEST = 25
+"""Modules of a folder that somebody can still look over."""
+TOO_LARGE = {"grammar": 74, "grammar/meanings": 111}
+"""The rules, until a model has learned what they know: they may only become fewer."""
+
+
+def floor(module: str, modules: dict[str, Path]) -> str | None:
+    """Which of them a module is in; None for what all of them may know."""
+    parts = modules[module].relative_to(ROOT / "nl2robot").parts
+    return parts[0] if len(parts) > 1 else None
+
+
+def test_every_folder_of_the_application_knows_only_those_below() -> None:
+    modules = modules_of("nl2robot")
+    for name, file in modules.items():
+        here = floor(name, modules)
+        for known in knows(name, file, modules):
+            there = floor(known, modules)
+            if there == here or there is None:
+                continue
+            assert here is not None, f"{name} imports {known}"
+            assert FLOORS.index(there) < FLOORS.index(here), f"{name} imports {known}"
+            told = here in ("bench", "training") or name == "nl2robot.cli.commands.bench"
+            assert there != "bench" or told, f"{name} imports {known}, which only measures"
+
+
+def test_every_folder_can_be_looked_over_and_says_what_it_is_for() -> None:
+    for package in sorted(OURS):
+        for folder in {file.parent for file in (ROOT / package).rglob("*.py")}:
+            name = folder.relative_to(ROOT).as_posix()
+            if name.startswith("nl2robot/training/"):
+                continue  # a program for each thing that is learned
+            count = len(list(folder.glob("*.py")))
+            assert count <= TOO_LARGE.get(name, LARGEST), f"{name} has {count} modules"
+            if folder == ROOT / package:
+                continue
+            readme = (ROOT / package / "README.md").read_text(encoding="utf-8")
+            named = folder.relative_to(ROOT / package).as_posix()
+            if package != "grammar":  # which walks through its rooms
+                about = ast.parse((folder / "__init__.py").read_text(encoding="utf-8"))
+                said = (ast.get_docstring(about) or "").split("\n\n")[0].replace("\n", " ")
+                named = f"| `{named}/` | {said} |"
+            assert named in readme, f"{package}/README.md lacks: {named}"
 
 
 def test_translate_starts_without_the_heavy_libraries() -> None:
@@ -138,7 +202,7 @@ def test_kinds_of_robots_are_known_without_what_they_need() -> None:
 
 def test_what_stands_under_the_gpl_is_imported_by_a_program_of_its_own_alone() -> None:
     """What it says to others, and they to it, goes through pipes."""
-    apart = ROOT / "nl2robot" / "speech" / "voice_worker.py"
+    apart = ROOT / "nl2robot" / "speech" / "speak" / "voice_worker.py"
     found = {file: imports_of(file) for package in OURS for file in (ROOT / package).rglob("*.py")}
     told = {module.split(".")[0] for module in found.pop(apart)}
     assert told >= {"piper", "espeakng_loader"} and not told & OURS
@@ -150,5 +214,6 @@ def test_what_stands_under_the_gpl_is_imported_by_a_program_of_its_own_alone() -
 
 def test_yaml_nodes_know_nobody() -> None:
     assert not any(
-        module.split(".")[0] in OURS for module in imports_of(ROOT / "sim" / "yaml_nodes.py")
+        module.split(".")[0] in OURS
+        for module in imports_of(ROOT / "sim" / "world" / "yaml_nodes.py")
     )

@@ -24,7 +24,7 @@ from nl2robot.speech.hear.listening import has_speech
 from nl2robot.speech.hear.recogniser import Heard, Recogniser
 from nl2robot.speech.hear.rescorer import WEIGHTS, Evidence
 from nl2robot.voice.hearing import Ear
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 EACH = 100  # trials of each kind
 NOBODY = 40

@@ -13,22 +13,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
-import msgspec
-
-
-class Figure(msgspec.Struct, frozen=True):
-    """One thing measured."""
-
-    part: str
-    what: str
-    value: float
-    unit: str
-    aim: str = ""
-
-    @property
-    def shown(self) -> str:
-        digits = f"{self.value:,.0f}" if self.value >= 1000 else f"{self.value:.3g}"
-        return f"{digits} {self.unit}"
+from nl2robot.bench.figures import Figure, megabytes, percentile
 
 
 def measure(part: str) -> Iterator[Figure]:
@@ -44,7 +29,7 @@ def _translate() -> Iterator[Figure]:
     from grammar.samples import samples
     from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
     from nl2robot.translate.translation import translate
-    from sim.world.model import load_world
+    from sim.world.loading import load_world
 
     knowledge = Knowledge(load_world(DEFAULT_WORLD))
     lexicon = knowledge.lexicon("en")
@@ -211,19 +196,6 @@ def _stop_delay(address: str) -> float:
 def _environment(home: Path) -> dict[str, str]:
 
     return {**os.environ, "NL2ROBOT_HOME": str(home)}
-
-
-def megabytes(pid: int) -> float:
-    """Resident memory of a process, where the system tells (Linux)."""
-    try:
-        status = Path(f"/proc/{pid}/status").read_text(encoding="ascii")
-    except OSError:
-        return float("nan")
-    return int(status.split("VmRSS:")[1].split()[0]) / 1024
-
-
-def percentile(values: Sequence[float], percent: int) -> float:
-    return statistics.quantiles(values, n=100)[percent - 1]
 
 
 PARTS: dict[str, Callable[[], Iterator[Figure]]] = {

@@ -25,7 +25,7 @@ from nl2robot.paths import PACKAGED
 from nl2robot.speech.audio import RATE, Audio, Samples, read
 from nl2robot.speech.hear.listening import COMMANDS, FRAME, Listener, SpeechEnded, voice_detector
 from nl2robot.voice.hearing import Ear
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 BLOCK = RATE // 50  # 20 ms, as a microphone gives them
 QUIET = 0.02  # of the peak

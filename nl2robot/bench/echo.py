@@ -24,12 +24,13 @@ from nl2robot.speech.audio import RATE, Audio, Samples
 from nl2robot.speech.hear.echo_cancelling import EchoCanceller, Played
 from nl2robot.speech.hear.full_duplex import BargeIn, Over
 from nl2robot.speech.hear.listening import SpeechEnded
-from nl2robot.speech.hotword.detector import Detection, Detector, HotWord, StopWord
+from nl2robot.speech.hotword.detection import Detection
+from nl2robot.speech.hotword.detector import Detector, HotWord, StopWord
 from nl2robot.speech.scenes import Signal
 from nl2robot.speech.speak.loudspeaker import LATENCY
 from nl2robot.speech.speak.voices import espeak, voice
 from nl2robot.voice.hearing import Ear
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 TEXTS: Final = (
     "Good morning. I am the robot of this ward, and I can take you to any place in the hospital.",

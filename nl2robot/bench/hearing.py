@@ -24,7 +24,7 @@ from nl2robot.speech.hear.recogniser import PUNCTUATION
 from nl2robot.speech.hear.vocabulary import number_words, spell_numbers
 from nl2robot.speech.hear.vosk_decoder import BLOCK
 from nl2robot.voice.hearing import Ear
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 CONDITIONS = ("quiet", *(f"{level:g} dB" for level in LEVELS))
 MOST = {"quick": 15, "full": 100}

@@ -20,7 +20,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from nl2robot.bench.benchmark import megabytes
+from nl2robot.bench.figures import megabytes
 from nl2robot.bench.hotword_corpus import Speech, seeded, silence, talk, words_of
 from nl2robot.bench.hotword_voices import Clip, Half, Takes
 from nl2robot.errors import UserError
@@ -29,10 +29,10 @@ from nl2robot.speech import scenes
 from nl2robot.speech.audio import RATE, Samples
 from nl2robot.speech.embeddings import STEP, Embeddings, embed
 from nl2robot.speech.hear.recogniser import load
+from nl2robot.speech.hotword.detection import Detection
 from nl2robot.speech.hotword.detector import (
     SMOOTH,
     STOP_SMOOTH,
-    Detection,
     Detector,
     Heads,
     HotWord,

@@ -15,14 +15,14 @@ from grammar.planning.model.prompt import PREFIX, request
 from grammar.planning.model.recogniser import Partial
 from grammar.planning.model.request import Interrupted, Request
 from grammar.planning.turn import Turn
-from nl2robot.bench.benchmark import Figure, percentile
+from nl2robot.bench.figures import Figure, percentile
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.language_model.client import Process
 from nl2robot.language_model.model import Branch, OnnxModel
 from nl2robot.language_model.worker import Reading
 from nl2robot.translate.planners import AUTO, installed_model, learned
 from nl2robot.translate.translation import translate
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 T = TypeVar("T")
 

@@ -10,7 +10,8 @@ import contextlib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
-from nl2robot.bench.benchmark import megabytes, served
+from nl2robot.bench.benchmark import served
+from nl2robot.bench.figures import megabytes
 from nl2robot.station.robots import Chosen, chosen
 from robot_api.driver import Driver
 from robot_api.errors import RobotError

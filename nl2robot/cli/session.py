@@ -15,19 +15,19 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import msgspec
 
+from nl2robot.cli.operator import Operator
 from nl2robot.cli.terminal import Decision, Terminal
 from nl2robot.cli.waiting import GivenUp
 from nl2robot.errors import ExitStatus, UserError
-from nl2robot.review.harmless import approver, needs_no_question
 from nl2robot.review.review import Review
 from nl2robot.run.answers import Sentence
 from nl2robot.run.going_on import asks_to_go_on
 from nl2robot.run.going_on import texts as going_on_texts
 from nl2robot.run.runs import Approval, Status
 from nl2robot.run.state import GOING, HELD
-from nl2robot.station.operator import Operator
+from nl2robot.station.harmless import approver, needs_no_question
 from nl2robot.translate.other_language import accepted, hint, language_of, question
-from nl2robot.translate.translation import Translation
+from nl2robot.translate.translation import STOP, Translation
 from robot_api.errors import (
     AccessDenied,
     InvalidCall,
@@ -45,7 +45,6 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-STOP = "robot.stop()\n"
 MOST_QUESTIONS = 5
 """Questions back that are asked before the command is left alone."""
 LOOK_EVERY = 0.1

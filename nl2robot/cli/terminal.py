@@ -41,8 +41,8 @@ from nl2robot.words import authorship, foreseen, words_in
 from robot_api.errors import InvalidCall, RobotError
 
 if TYPE_CHECKING:
+    from nl2robot.cli.operator import Operator
     from nl2robot.run.answers import Sentence
-    from nl2robot.station.operator import Operator
     from sim.world.model import World
 
 Decision = Literal["approve", "edit", "reject"]

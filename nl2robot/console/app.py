@@ -13,9 +13,9 @@ from starlette.responses import Response
 from starlette.staticfiles import StaticFiles
 
 from nl2robot.console.door import Doors
-from nl2robot.console.part import Backstage, Part
 from nl2robot.console.plain import Caught, failed, missing
 from nl2robot.paths import data_folder
+from nl2robot.station.part import Backstage, Part
 from robot_api.server import Service
 
 STATIC: Final = Path(__file__).parent / "static"

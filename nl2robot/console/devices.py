@@ -12,10 +12,10 @@ from typing import Any, Final
 
 import msgspec
 
-from nl2robot.console.part import Backstage, Part
 from nl2robot.station.accounts import LONGEST_NAME, Session
 from nl2robot.station.entrance import PAGES_AT, Entrance
-from nl2robot.station.wire import service_of_call
+from nl2robot.station.part import Backstage, Part
+from nl2robot.wire import service_of_call
 from robot_api.errors import AccessDenied, NotPossible
 from robot_api.server import Context, Service
 from robot_api.serving.roles import PAIRED, may

@@ -17,12 +17,12 @@ from starlette.requests import HTTPConnection, Request
 from starlette.responses import PlainTextResponse, RedirectResponse, Response
 from starlette.routing import BaseRoute, Route
 
-from nl2robot.console.part import Backstage, Part
 from nl2robot.console.plain import HEADERS, page, wants_page
 from nl2robot.console.visitor import texts, visitor_of
 from nl2robot.errors import UserError
 from nl2robot.station.accounts import LONGEST_NAME, TooSoon
 from nl2robot.station.entrance import Entrance
+from nl2robot.station.part import Backstage, Part
 from robot_api.serving.access import Guest, Refusal
 from robot_api.serving.guard import keep
 from robot_api.serving.roles import Right

@@ -17,8 +17,8 @@ from typing import Any, Final
 import msgspec
 from nicegui import ui
 
-from nl2robot.console.part import Backstage
 from nl2robot.console.visitor import LANGUAGES, LONGEST_NAME, Seat, Visitor, texts, visitor_of
+from nl2robot.station.part import Backstage
 
 PAGES: Final = {
     "desk": ("/", "M4 5h16v11H9l-5 4z"),

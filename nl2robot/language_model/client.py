@@ -24,7 +24,7 @@ import msgspec
 
 from grammar.planning.model.request import Interrupted, Request, Unavailable, Written
 from nl2robot.language_model.messages import Cancel, Done, Failed, Growing, Ready, Report, Write
-from nl2robot.models.memory import free_megabytes, used_megabytes
+from nl2robot.memory import free_megabytes, used_megabytes
 
 STARTS_WITHIN: Final = 60.0
 """Seconds that loading the model may take."""

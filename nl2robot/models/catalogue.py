@@ -7,7 +7,7 @@ it.
 A model is a folder `<models>/en` with a manifest of its files. It is put in place by one rename
 once it is complete and checked, so a folder that is there is whole. A folder that somebody
 unpacked there by hand (a hospital without internet) is used as it is. Where models come from is
-data (`model_sources`).
+data (`sources`).
 
 A language has the model that its code names, and may have another beside it (`en-moonshine`),
 which is fetched after it: where that one cannot be had, the language is heard less well, and that

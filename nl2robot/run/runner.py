@@ -40,7 +40,8 @@ from nl2robot.work import Do, here
 from robot_api.client import Robot
 from robot_api.errors import AccessDenied, LostConnection, NotPossible, RobotError, Stopped
 from sim.simulation import Simulation
-from sim.world.model import World, builtin_worlds
+from sim.world.builtin import builtin_worlds
+from sim.world.model import World
 
 SECONDS_TO_END: Final = 3.0
 """How long a stopped run may take to be over, beside what the robot takes to stand."""

@@ -18,7 +18,8 @@ import msgspec
 from nl2robot.errors import UserError
 from nl2robot.paths import made
 from robot_api.errors import cause
-from sim.world.model import BUILTIN, World
+from sim.world.builtin import BUILTIN
+from sim.world.model import World
 
 T = TypeVar("T")
 

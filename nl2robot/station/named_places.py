@@ -20,7 +20,8 @@ import msgspec
 from nl2robot.errors import UserError
 from nl2robot.paths import data_file
 from nl2robot.station.drawn import Drawn
-from sim.world.model import Aliases, Place, Pose, World
+from sim.world.geometry import Pose
+from sim.world.model import Aliases, Place, World
 
 _log = logging.getLogger("nl2robot.station.named_places")
 

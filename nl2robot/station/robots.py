@@ -162,8 +162,8 @@ def _of_its_own(sound: Sound, world: World) -> Sound:
 
 def zones_of(world: World) -> tuple[Zone, ...]:
     """The keep-out zones of the world's file, and those that were drawn on its map."""
-    from nl2robot.console.floor.zones import DrawnZones
     from nl2robot.paths import data_file
+    from nl2robot.station.drawn_zones import DrawnZones
 
     return (*world.zones, *DrawnZones(data_file("zones.yaml")).of(world))
 

@@ -16,12 +16,12 @@ from nl2robot.run import trouble
 from nl2robot.run.answers import answer
 from nl2robot.run.runner import Runner
 from nl2robot.run.state import GOING, Reviewing
-from nl2robot.station.wire import an_object, service, service_of_call
 from nl2robot.translate.planners import names
 from nl2robot.translate.talks import Talks
 from nl2robot.translate.thinking import EVENT, Thought, published
 from nl2robot.translate.translation import Translation, translate
 from nl2robot.voice.services import Microphones, voice_services
+from nl2robot.wire import an_object, service, service_of_call
 from robot_api.driver import StopFlag
 from robot_api.errors import Stopped
 from robot_api.methods import MAX_TEXT

@@ -15,17 +15,17 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from nl2robot.console.part import STOP, Backstage
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.review.apart import think
-from nl2robot.review.harmless import ONLY_LOOKS
 from nl2robot.review.review import review, review_apart
 from nl2robot.run import present
-from nl2robot.run.by_hand import BUSY, ByHand
 from nl2robot.run.runlog import LogError, RunLog
 from nl2robot.run.runner import Runner
 from nl2robot.run.state import GOING, Charging, Reviewing, State, on_wire
+from nl2robot.station.by_hand import BUSY, ByHand
+from nl2robot.station.harmless import ONLY_LOOKS
+from nl2robot.station.part import STOP, Backstage
 from nl2robot.station.services import EVENTS, reviewer, services
 from nl2robot.translate.routines import open_routines
 from nl2robot.translate.talks import Talks

@@ -20,8 +20,10 @@ from nl2robot.station.named_places import NamedByHand
 from robot_api.errors import cause
 from sim.world.checks import kind_of
 from sim.world.fields import compose
+from sim.world.geometry import Pose
+from sim.world.loading import load_world
 from sim.world.map_reader import is_ros_map
-from sim.world.model import Place, Pose, World, WorldError, Zone, load_world
+from sim.world.model import Place, World, WorldError, Zone
 from sim.world.reader import UNITS
 
 _PLAIN = re.compile(r"[^\W\d_](?:[\w ./'-]*[\w.'])?")

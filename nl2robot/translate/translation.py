@@ -46,6 +46,8 @@ if TYPE_CHECKING:
     from nl2robot.translate.teaching import Pending, Reply
 
 
+STOP = "robot.stop()\n"
+"""The program of a sentence that only stops the robot."""
 BRIEF = 8
 """Tokens up to which the rules think about a sentence here: "stop" waits for nobody else's."""
 POLITE = 3

@@ -17,7 +17,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
-from nl2robot.station.wire import service_of_call
+from nl2robot.wire import service_of_call
 from robot_api.errors import InvalidCall, NotPossible
 from robot_api.server import Context, Service
 

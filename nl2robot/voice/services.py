@@ -24,9 +24,9 @@ import msgspec
 from grammar.planning.planner import Interrupted
 from nl2robot.knowledge import Knowledge
 from nl2robot.models.catalogue import need
-from nl2robot.station.wire import service, service_of_call
 from nl2robot.translate.thinking import Thought, published
 from nl2robot.translate.translation import Talk, Translation
+from nl2robot.wire import service, service_of_call
 from nl2robot.work import Do, here
 from robot_api.capabilities.sound import SILENT
 from robot_api.driver import StopFlag

@@ -18,7 +18,8 @@ from sim.errors import NotFound
 from sim.people.crowd import Human
 from sim.physics.placing import ROBOT, Item
 from sim.physics.robot import bearing, wrap
-from sim.world.model import Aliases, Furniture, contains, key
+from sim.world.geometry import contains
+from sim.world.model import Aliases, Furniture, key
 from sim.world.words import words
 
 if TYPE_CHECKING:

@@ -10,7 +10,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from sim.physics.navigation import Chart, Spot
-from sim.world.model import Furniture, Person, Place, Thing, World, contains, rectangle
+from sim.world.geometry import contains, rectangle
+from sim.world.model import Furniture, Person, Place, Thing, World
 from sim.world.words import words
 
 _GOLDEN = 2.399963  # radians: each next spot is well apart from all before it

@@ -26,17 +26,8 @@ from sim.pictures.scene import (
     hatching,
     mixed,
 )
-from sim.world.model import (
-    Door,
-    Furniture,
-    Place,
-    Pose,
-    Thing,
-    World,
-    name_in,
-    polygon_area,
-    rectangle,
-)
+from sim.world.geometry import Pose, polygon_area, rectangle
+from sim.world.model import Door, Furniture, Place, Thing, World, name_in
 
 LARGEST = (1480.0, 1080.0)
 """Pixels that the floor's width and height may have."""

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sim.pictures.scene import Box, Spot, Text, box_about, box_at
 from sim.pictures.text import text_width, wrapped
-from sim.world.model import contains
+from sim.world.geometry import contains
 
 LINE = 1.2
 """From one base line to the next, as a share of the letter size."""

@@ -11,22 +11,8 @@ from typing import NamedTuple, TypeVar
 import msgspec
 
 from sim.world.fields import NodeReader
-from sim.world.model import (
-    Contact,
-    Door,
-    Furniture,
-    Person,
-    Place,
-    Pose,
-    Robot,
-    Segment,
-    Thing,
-    World,
-    Zone,
-    contains,
-    key,
-    map_corners,
-)
+from sim.world.geometry import Pose, Segment, contains, map_corners
+from sim.world.model import Contact, Door, Furniture, Person, Place, Robot, Thing, World, Zone, key
 from sim.world.yaml_nodes import did_you_mean
 
 ON_THE_LINE = 0.02

@@ -6,7 +6,9 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from sim.world.model import Aliases, Point, Polygon, Pose, builtin_worlds, polygon_area
+from sim.world.builtin import builtin_worlds
+from sim.world.geometry import Point, Polygon, Pose, polygon_area
+from sim.world.model import Aliases
 from sim.world.yaml_nodes import (
     MAX_NAME,
     Hopeless,

@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 from typing import ClassVar
 
-from sim.world import model as w
+from sim.world import geometry as g
 from sim.world.fields import MAX_METRES, MAX_TEXT, NodeReader, compose
 from sim.world.map_image import ImageError, find_image, image_size, is_there
 from sim.world.yaml_nodes import Hopeless, MappingNode, Node, ScalarNode
@@ -29,7 +29,7 @@ class MapReader(NodeReader):
         "a map": "image resolution origin negate occupied_thresh free_thresh mode",
     }
 
-    def map(self, node: Node, path: Path, what: str = "map") -> w.GridMap | None:
+    def map(self, node: Node, path: Path, what: str = "map") -> g.GridMap | None:
         """The map in the fields of the node, or in the file that it names. `path` is the file that
         the node is from, `what` it is called to people."""
         if isinstance(node, ScalarNode):
@@ -73,7 +73,7 @@ class MapReader(NodeReader):
             )
             return None
         x, y, theta = [number for number in [*numbers, 0.0] if number is not None][:3]
-        return w.GridMap(
+        return g.GridMap(
             image=str(file),
             resolution=resolution,
             origin=(x, y, math.degrees(theta)),
@@ -83,7 +83,7 @@ class MapReader(NodeReader):
             **thresholds,
         )
 
-    def _map_in_file(self, named: ScalarNode, path: Path, what: str) -> w.GridMap | None:
+    def _map_in_file(self, named: ScalarNode, path: Path, what: str) -> g.GridMap | None:
         """The map in a file of its own; what is wrong there is told with the line there, too."""
         name = self.text(named, f"The {what}", MAX_TEXT)
         if name is None or self.names_only:
@@ -119,8 +119,8 @@ class MapReader(NodeReader):
                 if value is None:
                     return {}
                 found[field] = value
-        occupied = found.get("occupied_thresh", w.OCCUPIED_THRESH)
-        free = found.get("free_thresh", w.FREE_THRESH)
+        occupied = found.get("occupied_thresh", g.OCCUPIED_THRESH)
+        free = found.get("free_thresh", g.FREE_THRESH)
         if free > occupied:
             lines = [fields[field].line for field in found]
             self.problem(

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from sim.world.geometry import FREE_THRESH, OCCUPIED_THRESH
 from sim.world.map_image import MAX_PIXELS, ImageError
-from sim.world.model import FREE_THRESH, OCCUPIED_THRESH
 
 _FREE, _OCCUPIED, _UNKNOWN = 254, 0, 205
 _FREE_TO, _OCCUPIED_FROM = 25, 65

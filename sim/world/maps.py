@@ -26,8 +26,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from sim.world.geometry import GridMap, Point, Polygon, Pose, Segment, map_corners
 from sim.world.map_image import read_image
-from sim.world.model import GridMap, Point, Polygon, Pose, Segment, map_corners
 
 if TYPE_CHECKING:
     import numpy as np

@@ -13,8 +13,8 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from sim.world.geometry import GridMap, Polygon
 from sim.world.maps import cell_outlines, enclosed, occupied_cells, to_metres
-from sim.world.model import GridMap, Polygon
 from sim.world.zones import LEAST_AREA, MOST_CORNERS
 
 if TYPE_CHECKING:

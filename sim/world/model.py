@@ -1,8 +1,8 @@
 """A world: the named places, people and things of a hospital floor, and its geometry.
 
-`load_world` reads the YAML (docs/worlds.md says how to write one) into the immutable structs of
-this module. Whatever the unit of the file, lengths here are metres and angles degrees (0 along x,
-left is +). Translating a sentence needs only the names; the geometry may be missing.
+`sim.world.loading` reads the YAML (docs/worlds.md says how to write one) into the immutable structs
+of this module. Whatever the unit of the file, lengths here are metres and angles degrees (0 along
+x, left is +). Translating a sentence needs only the names; the geometry may be missing.
 
 This module is imported by commands that must start at once: it needs only PyYAML and msgspec.
 """
@@ -12,26 +12,26 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Mapping
-from pathlib import Path
 
 import msgspec
 
+from sim.world.geometry import (
+    GridMap,
+    Polygon,
+    Pose,
+    Segment,
+    contains,
+    map_corners,
+    polygon_area,
+    rectangle,
+)
 from sim.world.yaml_nodes import FileProblems
 from sim.world.yaml_nodes import Problem as Problem
 from sim.world.yaml_nodes import key as key
 
-Point = tuple[float, float]
-"""x, y in metres."""
-Polygon = tuple[Point, ...]
-"""The corners in order; it closes itself."""
-Segment = tuple[float, float, float, float]
-"""x1, y1, x2, y2 in metres."""
 Aliases = dict[str, tuple[str, ...]]
 """Other names by language code: {"de": ("Apotheke",)}."""
 
-BUILTIN = Path(__file__).parents[1] / "worlds"
-OCCUPIED_THRESH, FREE_THRESH = 0.65, 0.196
-"""What map_server takes where a map's file does not say."""
 WITHIN_REACH = 1.0
 """A place without an area is where its pose is and this many metres around."""
 MOST_REMEMBERED = 10_000
@@ -40,14 +40,6 @@ MOST_REMEMBERED = 10_000
 
 class WorldError(FileProblems):
     """A world cannot be loaded."""
-
-
-class Pose(msgspec.Struct, frozen=True):
-    """A point and which way it faces. Metres and degrees."""
-
-    x: float
-    y: float
-    theta: float = 0.0
 
 
 class Place(msgspec.Struct, frozen=True, kw_only=True):
@@ -161,24 +153,6 @@ class Zone(msgspec.Struct, frozen=True):
 
     name: str
     polygon: Polygon
-
-
-class GridMap(msgspec.Struct, frozen=True, kw_only=True):
-    """A map as ROS's map_server writes it; `sim.world.maps` reads the image."""
-
-    image: str
-    """The path of the PGM or PNG."""
-    resolution: float
-    """Metres a pixel."""
-    origin: tuple[float, float, float]
-    """Where the image's lower left corner is: metres, metres, degrees."""
-    size: tuple[int, int]
-    """Width and height in pixels."""
-    negate: bool = False
-    occupied_thresh: float = OCCUPIED_THRESH
-    free_thresh: float = FREE_THRESH
-    mode: str = "trinary"
-    """ "trinary", "scale" or "raw"."""
 
 
 class Robot(msgspec.Struct, frozen=True, kw_only=True):
@@ -352,67 +326,3 @@ def name_in(named: Place | Person | Thing | Furniture | Contact, language: str) 
     """What it is called in a language: its first alias there, else the name, which is English."""
     aliases = named.aliases.get(language, ())
     return aliases[0] if aliases and language != "en" else named.name
-
-
-def contains(polygon: Polygon, x: float, y: float) -> bool:
-    """Whether the point is in the polygon (crossings of a ray to the right)."""
-    inside = False
-    x1, y1 = polygon[-1]
-    for x2, y2 in polygon:
-        if (y1 > y) != (y2 > y) and x < x1 + (y - y1) * (x2 - x1) / (y2 - y1):
-            inside = not inside
-        x1, y1 = x2, y2
-    return inside
-
-
-def polygon_area(polygon: Polygon) -> float:
-    """Its area in square metres."""
-    return 0.5 * abs(
-        sum(
-            x1 * y2 - x2 * y1
-            for (x1, y1), (x2, y2) in zip(polygon, polygon[1:] + polygon[:1], strict=True)
-        )
-    )
-
-
-def rectangle(pose: Pose, size: tuple[float, float]) -> Polygon:
-    """The corners, anticlockwise, of a rectangle about the pose, its length along theta."""
-    cosine, sine = math.cos(math.radians(pose.theta)), math.sin(math.radians(pose.theta))
-    length, width = size[0] / 2, size[1] / 2
-    return tuple(
-        (pose.x + u * cosine - v * sine, pose.y + u * sine + v * cosine)
-        for u, v in ((-length, -width), (length, -width), (length, width), (-length, width))
-    )
-
-
-def map_corners(grid: GridMap) -> list[Point]:
-    """The four corners of the map's image in the world."""
-    x, y, theta = grid.origin
-    cosine, sine = math.cos(math.radians(theta)), math.sin(math.radians(theta))
-    width, height = (pixels * grid.resolution for pixels in grid.size)
-    return [
-        (x + u * cosine - v * sine, y + u * sine + v * cosine)
-        for u, v in ((0.0, 0.0), (width, 0.0), (width, height), (0.0, height))
-    ]
-
-
-# --- loading -------------------------------------------------------------------------------------
-
-
-def builtin_worlds() -> list[str]:
-    """The names of the worlds that come with the simulator."""
-    return sorted(path.stem for path in BUILTIN.glob("*.yaml"))
-
-
-def load_world(name_or_path: str | Path, *, names_only: bool = False) -> World:
-    """The built-in world of that name, or the one in that file: a world's YAML, or the YAML that
-    ROS's map_server writes.
-
-    Raises `WorldError` with everything that is wrong, and on which line. With `names_only`, for
-    translating, a map is not read, and what is wrong with where things are does not matter.
-    """
-    from sim.world.reader import read_world
-
-    if isinstance(name_or_path, str) and name_or_path in builtin_worlds():
-        return read_world(BUILTIN / f"{name_or_path}.yaml", names_only)
-    return read_world(Path(name_or_path), names_only)

@@ -13,11 +13,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar
 
+from sim.world import geometry as g
 from sim.world import model as w
 from sim.world.checks import Entries, check_zones, cut_doors, kind_of, settle
 from sim.world.fields import MAX_TEXT, compose
+from sim.world.geometry import Point, Segment
 from sim.world.map_reader import MapReader, is_ros_map
-from sim.world.model import Place, Point, Segment, World, WorldError
+from sim.world.model import Place, World, WorldError
 from sim.world.yaml_nodes import Hopeless, MappingNode, Node, ScalarNode, short
 from sim.world.zones import trouble_with
 
@@ -201,7 +203,7 @@ class _Reader(MapReader):
         polygon = self.zone_polygon(fields["polygon"], f'The polygon of the zone "{name}"')
         return None if name is None or not polygon else w.Zone(name, polygon)
 
-    def zone_polygon(self, node: Node, what: str) -> w.Polygon:
+    def zone_polygon(self, node: Node, what: str) -> g.Polygon:
         polygon = self.polygon(node, what)
         trouble = trouble_with(polygon) if polygon else None
         if trouble is None:
@@ -224,7 +226,7 @@ class _Reader(MapReader):
             for number, (line, outline) in enumerate(outlines, 1)
         ]
 
-    def _masked(self, node: Node, path: Path) -> tuple[w.Polygon, ...]:
+    def _masked(self, node: Node, path: Path) -> tuple[g.Polygon, ...]:
         from sim.world.masks import MaskError, masked_areas
 
         mask = self.map(node, path, "keep-out mask")

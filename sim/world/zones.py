@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 
-from sim.world.model import Point, Polygon, contains, polygon_area
+from sim.world.geometry import Point, Polygon, contains, polygon_area
 
 MOST_CORNERS = 100
 FARTHEST = 1000.0

@@ -67,7 +67,7 @@ def _as_text(moment: datetime.datetime) -> tuple[Any, ...]:
 def main() -> None:
     file, *arguments = sys.argv[1:]
     _patch(Path(file))
-    from nl2robot.cli.main import main as cli
+    from nl2robot.cli import main as cli
 
     sys.exit(cli.main(arguments))
 

@@ -24,9 +24,9 @@ from typing import Final
 
 import msgspec
 
+from nl2robot.cli.operator import Operator
 from nl2robot.run.runs import Status
 from nl2robot.run.state import GOING
-from nl2robot.station.operator import Operator
 from robot_api.client import Robot
 from robot_api.errors import AccessDenied, RobotError
 from tests.attacks.clock import set_clock

@@ -23,8 +23,10 @@ from robot_api.robots.reading import read_robot_file
 from robot_api.robots.registry import RobotKind, known
 from sim.errors import SimError
 from sim.simulation import Simulation
+from sim.world.builtin import BUILTIN
+from sim.world.loading import load_world
 from sim.world.map_image import ImageError
-from sim.world.model import BUILTIN, World, load_world
+from sim.world.model import World
 from sim.world.reader import _Reader
 from sim.world.yaml_nodes import FileProblems
 from tests.attacks.inputs import (

@@ -26,7 +26,7 @@ from nl2robot.speech.hear.recording import opened
 from nl2robot.translate.translation import Talk, translate
 from robot_api.stub import stub
 from sandbox.check import check
-from sim.world.model import load_world
+from sim.world.loading import load_world
 from tests.attacks.inputs import LANGUAGES, Case, Target, Unfit, file, is_chosen, sentence
 from tests.attacks.mutations import WORDS, bytes_like, text_like
 from tests.sandbox.test_check import GOOD

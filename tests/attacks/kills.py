@@ -28,8 +28,8 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any, Final
 
+from nl2robot.cli.operator import Operator
 from nl2robot.run.runlog import RunLog
-from nl2robot.station.operator import Operator
 from robot_api.client import Robot
 from robot_api.errors import RobotError, Stopped
 from tests.attacks.outcome import Row, report, what_is_no_sentence

@@ -21,8 +21,9 @@ from robot_api.errors import InvalidCall
 from robot_api.schema import is_oversize, read_arguments
 from robot_api.stub import stub
 from sandbox.check import check
+from sim.world.loading import load_world
 from sim.world.map_image import ImageError, image_size
-from sim.world.model import WorldError, load_world
+from sim.world.model import WorldError
 from tests.attacks.outcome import what_is_no_sentence
 
 

@@ -11,7 +11,7 @@ from starlette.requests import Request
 
 from nl2robot.cli.main import main
 from nl2robot.console import app
-from nl2robot.console.part import Backstage, Part
+from nl2robot.station.part import Backstage, Part
 
 SECRET = "of which nobody should read on a page"
 

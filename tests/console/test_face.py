@@ -17,19 +17,19 @@ import pytest
 from playwright.sync_api import Page, expect
 from starlette.applications import Starlette
 
+from nl2robot.cli.operator import Operator
 from nl2robot.console.face import choices, tablet
 from nl2robot.console.face import page as face
-from nl2robot.console.part import Backstage
 from nl2robot.run.present import Present
 from nl2robot.run.state import on_wire
-from nl2robot.station.operator import Operator
+from nl2robot.station.part import Backstage
 from robot_api import Robot, Server
 from robot_api.capabilities.sound import Asked, Sound
 from robot_api.driver import StopFlag
 from robot_api.drivers import simulated
 from robot_api.errors import AccessDenied, InvalidCall, NotFound, Stopped, TimedOut
 from sim.simulation import Simulation
-from sim.world.model import load_world
+from sim.world.loading import load_world
 from tests.console.conftest import SOON, Look, Served
 
 AT_ONCE = SOON / 1000

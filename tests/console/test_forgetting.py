@@ -17,7 +17,7 @@ from robot_api.capabilities.sound import Sound
 from robot_api.driver import StopFlag
 from robot_api.drivers import simulated
 from sim.simulation import Simulation
-from sim.world.model import load_world
+from sim.world.loading import load_world
 from tests.console.conftest import Look, Served
 from tests.console.test_face import FORM, Tablet, Ward, end_of, start
 

@@ -10,8 +10,9 @@ from shapely import LineString, Point
 from nl2robot.console.floor.goals import Aimed, aim
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
-from sim.world.model import Door, World, Zone, load_world
-from sim.world.spots import room_near
+from sim.spots import room_near
+from sim.world.loading import load_world
+from sim.world.model import Door, World, Zone
 
 HOSPITAL = load_world("city-hospital")
 

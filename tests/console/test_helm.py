@@ -15,16 +15,16 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, rule
 
 from nl2robot.console.drive.helm import HOLDS, IDLE, Helm, Operator, State
 from nl2robot.console.drive.services import part
-from nl2robot.console.part import Backstage
 from nl2robot.run.present import Present
 from nl2robot.run.runlog import RunLog
 from nl2robot.run.state import Began, Halted, PauseAsked, on_wire
+from nl2robot.station.part import Backstage
 from robot_api import Robot, Server
 from robot_api.driver import StopFlag
 from robot_api.drivers import simulated
 from robot_api.errors import AccessDenied, InvalidCall, NotPossible, RobotError, Stopped
 from sim.simulation import Simulation
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 SOON = 20  # seconds; what is waited for comes within milliseconds
 

@@ -8,13 +8,13 @@ from typing import Any
 import pytest
 
 from nl2robot.console.floor.localising import localise, part
-from nl2robot.console.part import Backstage
+from nl2robot.station.part import Backstage
 from robot_api.driver import StopFlag
 from robot_api.drivers import SimulatedDriver, simulated
 from robot_api.errors import InvalidCall, NotPossible
 from robot_api.server import Context
 from sim.simulation import Simulation
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 
 class Console:

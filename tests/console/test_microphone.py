@@ -19,11 +19,11 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, Locator, Page, expect
 
+from nl2robot.cli.operator import Operator
 from nl2robot.console.app import STATIC
 from nl2robot.console.visitor import LANGUAGES, texts
 from nl2robot.speech.audio import RATE, Samples, from_float
 from nl2robot.speech.speak.voices import joined, voice
-from nl2robot.station.operator import Operator
 from tests.console.conftest import CHROMIUM, FLAGS, SOON, serving
 from tests.console.test_thinking import CONSOLE, tell
 from tests.console.writing_console import SPOKEN

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Page, expect
 
-from sim.world.model import load_world
+from sim.world.loading import load_world
 from tests.console.conftest import Look, Served, serving
 from tests.console.test_map import choose, drag, pixel
 from tests.console.test_map import floor as floor  # a fixture

@@ -14,16 +14,17 @@ import pytest
 from PIL import Image
 
 from nl2robot.console.floor import places, zones
-from nl2robot.console.part import Backstage
 from nl2robot.knowledge import Knowledge
 from nl2robot.station.named_places import with_named_places
+from nl2robot.station.part import Backstage
 from nl2robot.translate.translation import translate
 from robot_api.driver import StopFlag
 from robot_api.errors import InvalidCall
 from robot_api.robots.places import Places
 from robot_api.server import Context
 from sim.simulation import Simulation
-from sim.world.model import World, load_world
+from sim.world.loading import load_world
+from sim.world.model import World
 
 
 class Console:

@@ -20,8 +20,8 @@ import pytest
 from playwright.sync_api import Page, expect
 from starlette.applications import Starlette
 
+from nl2robot.cli.operator import Operator
 from nl2robot.console.desk.highlight import highlighted
-from nl2robot.console.part import Backstage, Part
 from nl2robot.console.runs import page as runs
 from nl2robot.console.runs import view as runs_view
 from nl2robot.console.runs.asked import BadDay, asked
@@ -30,9 +30,9 @@ from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.run.archive import Archive
 from nl2robot.run.kept_record import Happening, Movement, Pose, packed
 from nl2robot.run.runlog import RunLog
-from nl2robot.station.operator import Operator
+from nl2robot.station.part import Backstage, Part
 from robot_api.errors import NotPossible
-from sim.world.model import load_world
+from sim.world.loading import load_world
 from tests.console.conftest import SOON, Look, Served
 
 NOT_NEEDED: Any = {item.name for item in fields(Backstage) if item.init} - {"runner", "_listeners"}

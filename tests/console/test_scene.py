@@ -16,12 +16,12 @@ from PIL import Image
 
 from nl2robot.console.floor.plan import floor_plan
 from nl2robot.console.floor.scene import LEAP, Scene, frame_of_view, part
-from nl2robot.console.part import Backstage
 from nl2robot.console.visitor import LANGUAGES, texts
+from nl2robot.station.part import Backstage
 from robot_api.drivers import emulated, simulated
 from sim.errors import Interrupted
 from sim.simulation import Simulation
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 SOON = 20.0
 HOSPITAL = load_world("city-hospital")

@@ -12,14 +12,15 @@ from typing import Any, cast
 import pytest
 
 from nl2robot.console.floor import zones
-from nl2robot.console.part import Backstage
 from nl2robot.knowledge import Knowledge
+from nl2robot.station.part import Backstage
 from robot_api.driver import StopFlag
 from robot_api.errors import InvalidCall
 from robot_api.robots.places import Places
 from robot_api.server import Context
 from sim.simulation import Simulation
-from sim.world.model import World, Zone, load_world
+from sim.world.loading import load_world
+from sim.world.model import World, Zone
 
 SQUARE = [[4, 1], [6, 1], [6, 2], [4, 2]]
 

@@ -11,7 +11,7 @@ from grammar.planning.turn import Turn
 from grammar.understanding import Context
 from nl2robot.knowledge import Knowledge
 from robot_api.driver import Capabilities
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 WARD = Knowledge(load_world("ward", names_only=True))
 ARMLESS = Knowledge(

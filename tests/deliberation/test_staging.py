@@ -8,7 +8,7 @@ from nl2robot.deliberation.paper_robot import START, Scene
 from nl2robot.deliberation.playing import played
 from nl2robot.deliberation.staging import VARIATIONS, scenes
 from nl2robot.knowledge import Knowledge
-from sim.world.model import load_world
+from sim.world.loading import load_world
 from tests.deliberation.drafting import WARD
 
 LEXICON = WARD.lexicon("en")

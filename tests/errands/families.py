@@ -51,7 +51,8 @@ import yaml
 from nl2robot.deliberation.paper_robot import Event, Over, PaperRobot, Scene
 from nl2robot.knowledge import Knowledge
 from nl2robot.translate.translation import Translation, translate
-from sim.world.model import World, load_world
+from sim.world.loading import load_world
+from sim.world.model import World
 
 FOLDER = Path(__file__).parent
 MOST = 60

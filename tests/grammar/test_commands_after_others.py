@@ -6,7 +6,7 @@ import pytest
 
 from grammar.understand import understand
 from nl2robot.knowledge import Knowledge
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 BEFORE = {
     "en": "go to the pharmacy and say hello",

@@ -10,7 +10,7 @@ import yaml
 from grammar.understand import understand
 from grammar.understanding import Context
 from nl2robot.knowledge import Knowledge
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 TALKS: dict[str, list[list[Any]]] = yaml.safe_load(
     (Path(__file__).parent / "conversations.yaml").read_text(encoding="utf-8")

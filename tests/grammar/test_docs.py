@@ -9,7 +9,7 @@ import pytest
 
 from grammar.understand import understand
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 PAGE = Path(__file__).parents[2] / "docs" / "talking.md"
 SENTENCES = re.findall(r"^- (.+)$", PAGE.read_text(encoding="utf-8"), re.MULTILINE)

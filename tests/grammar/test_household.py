@@ -13,7 +13,7 @@ from grammar.understand import understand
 from nl2robot.knowledge import Knowledge
 from robot_api.stub import stub
 from sandbox.check import check
-from sim.world.model import load_world
+from sim.world.loading import load_world
 from tests.grammar.test_honest import unbound
 from tests.grammar.ward import program
 

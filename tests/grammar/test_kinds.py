@@ -16,7 +16,7 @@ from grammar.language import Language, load_language
 from nl2robot.deliberation.paper_robot import Scene
 from nl2robot.knowledge import Knowledge
 from nl2robot.translate.translation import Talk, Translation, translate
-from sim.world.model import load_world
+from sim.world.loading import load_world
 from tests.errands.families import carried_out
 
 HOSPITAL = Knowledge(load_world("city-hospital", names_only=True))

@@ -15,7 +15,7 @@ from grammar.program import write_program
 from grammar.understand import understand
 from grammar.understanding import Context, Understanding
 from nl2robot.knowledge import Knowledge
-from sim.world.model import load_world
+from sim.world.loading import load_world
 from tests.grammar.ward import program, same
 from tests.grammar.ward_de import STATION
 

@@ -860,8 +860,8 @@ def test_two_ears_that_look_for_their_models_at_once_find_them() -> None:
     together = (
         "import sys, threading, msgspec, yaml\n"
         "from pathlib import Path\n"
-        "from nl2robot import model_sources\n"
-        "file = Path(model_sources.__file__).parent / 'data' / 'models.yaml'\n"
+        "from nl2robot.models import sources as model_sources\n"
+        "file = Path(model_sources.__file__).parents[1] / 'data' / 'models.yaml'\n"
         "table = yaml.safe_load(file.read_text('utf-8'))\n"
         "sys.setswitchinterval(1e-6)\n"
         "ready = threading.Barrier(8)\n"

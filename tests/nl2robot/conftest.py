@@ -15,11 +15,11 @@ from collections.abc import Sequence
 
 import pytest
 
-from nl2robot.cli.main import main as cli
+from nl2robot.cli import main as cli
+from nl2robot.cli.operator import Operator
 from nl2robot.run.runlog import RunLog
-from nl2robot.station.operator import Operator
 from nl2robot.station.station import simulated_station
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 
 @pytest.fixture(autouse=True)

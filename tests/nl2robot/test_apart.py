@@ -23,7 +23,7 @@ from nl2robot.work import Died, Do, TookTooLong, here
 from robot_api.drivers import simulated
 from robot_api.errors import NotPossible
 from sim.simulation import Simulation
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 LONG = 60.0
 """Seconds."""

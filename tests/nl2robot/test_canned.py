@@ -4,9 +4,9 @@ import textwrap
 
 import pytest
 
+from nl2robot.checks import canned
 from nl2robot.cli.main import main
 from nl2robot.errors import UserError
-from nl2robot.translate import canned
 
 
 def write(tmp_path, text: str, name: str = "ward.yaml"):

@@ -4,7 +4,7 @@ import pytest
 
 from nl2robot.knowledge import Knowledge
 from nl2robot.translate.translation import Talk, Translation, translate
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 
 @pytest.fixture(scope="module")

@@ -9,15 +9,15 @@ from pathlib import Path
 
 import pytest
 
+from nl2robot.cli.operator import Operator
 from nl2robot.knowledge import Knowledge
 from nl2robot.review.review import review
 from nl2robot.run.runlog import RunLog
-from nl2robot.station.operator import Operator
 from nl2robot.station.station import robot_station
 from robot_api.robots.address import Address
 from robot_api.robots.furhat import FURHAT
 from robot_api.robots.registry import Setup
-from sim.world.model import load_world
+from sim.world.loading import load_world
 from tests.robots.furhat.stand_in import FurhatStandIn
 
 

@@ -11,7 +11,7 @@ from nl2robot.run.rounds_left import rounds
 from nl2robot.station.station import simulated_station
 from robot_api.errors import Blocked, NotPossible, Stopped
 from sim.simulation import Simulation
-from sim.world.model import load_world
+from sim.world.loading import load_world
 from tests.nl2robot.test_pausing import Watching
 from tests.nl2robot.test_runner import start as run_program
 from tests.nl2robot.test_runner import what

@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from nl2robot.errors import ExitStatus
-from nl2robot.review.harmless import HARMLESS, only_looks_or_tells
 from nl2robot.run.runlog import RunLog
+from nl2robot.station.harmless import HARMLESS, only_looks_or_tells
 from robot_api.methods import METHODS
 
 REACHING = {"hearing", "screen", "telepresence", "manipulation", "guiding", "following", "scanner"}

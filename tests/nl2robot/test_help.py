@@ -8,7 +8,8 @@ from grammar.language import languages
 from nl2robot.cli.main import main
 from nl2robot.knowledge import Knowledge
 from nl2robot.translate.translation import translate
-from sim.world.model import builtin_worlds, load_world
+from sim.world.builtin import builtin_worlds
+from sim.world.loading import load_world
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ from nl2robot.console.desk.dialogue import Dialogue
 from nl2robot.review import review
 from nl2robot.station.station import simulated_station
 from robot_api.errors import AccessDenied
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 FAILS = 'robot.say("Now.")\nrobot.grab("unicorn")\n'
 WAITS = 'while not robot.sees("unicorn"):\n    robot.goto("ward a")\n    robot.goto("ward b")\n'

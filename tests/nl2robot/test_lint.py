@@ -7,10 +7,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grammar.language import languages
+from nl2robot.checks import lint as linter
+from nl2robot.checks.lint import alike, lint
 from nl2robot.cli.main import main
-from nl2robot.translate import lint as linter
-from nl2robot.translate.lint import alike, lint
-from sim.world.model import WorldError, builtin_worlds
+from sim.world.builtin import builtin_worlds
+from sim.world.model import WorldError
 
 
 @pytest.fixture

@@ -22,7 +22,7 @@ from nl2robot.translate import planners
 from nl2robot.translate.translation import Talk, Translation, translate
 from robot_api.driver import Capabilities
 from robot_api.methods import METHODS
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 pytestmark = pytest.mark.usefixtures("uncalibrated")
 

@@ -8,7 +8,7 @@ import pytest
 
 from nl2robot.knowledge import Knowledge
 from nl2robot.translate.translation import translate
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 ROOMS = """
 name: office floor

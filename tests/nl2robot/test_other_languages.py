@@ -20,7 +20,7 @@ from nl2robot.translate.talks import Talks
 from nl2robot.translate.translation import Talk, translate
 from nl2robot.words import words_in
 from nl2robot.work import here
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 KNOWLEDGE = Knowledge(load_world(DEFAULT_WORLD))
 

@@ -5,11 +5,11 @@ import json
 import pytest
 
 from grammar.understand import understand
+from nl2robot.checks.frames import frames_of_form, frames_of_plan, parsed
+from nl2robot.checks.paraphrases import Row, load, score
 from nl2robot.cli.main import main
 from nl2robot.knowledge import Knowledge
-from nl2robot.translate.frames import frames_of_form, frames_of_plan, parsed
-from nl2robot.translate.paraphrases import Row, load, score
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 TEA = '( is_a $1 " <object> " )'
 ALEX = '( lambda $1 e ( person $1 ) ( name $1 " <name> " ) ( at $1 " <location> " ) )'

@@ -12,7 +12,7 @@ from nl2robot.run.runlog import RunLog
 from nl2robot.station.station import robot_station, simulated_station
 from robot_api.robots.wire import WireDriver
 from robot_api.values import Location
-from sim.world.model import load_world
+from sim.world.loading import load_world
 from tests.nl2robot.test_runner import Watch, start, what
 
 DRIVE = 'robot.goto("ward a")\nrobot.goto("ward b")\n'

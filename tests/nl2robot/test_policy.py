@@ -7,7 +7,7 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.review.policy import violations
 from robot_api.driver import Capabilities
 from robot_api.methods import METHODS
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 ROBOT = Capabilities(
     name="Otto",

@@ -20,7 +20,7 @@ from sandbox.check import check
 from sandbox.execution import _LIMITS, DIED, Execution
 from sandbox.sentences import UNAVAILABLE
 from sim.simulation import Simulation
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 HAS = simulated(Simulation(load_world("city-hospital"))).capabilities()
 ROOT = Path(__file__).parents[2]
@@ -147,7 +147,7 @@ def test_no_sentence_is_kept_that_no_check_says_any_more() -> None:
     """They are put together from pieces, each of which is to stand somewhere."""
     files = [
         *(ROOT / "sandbox").glob("*.py"),
-        *(ROOT / "nl2robot" / name for name in ("performance.py", "policy.py")),
+        *(ROOT / "nl2robot" / name for name in ("run/performance.py", "review/policy.py")),
         ROOT / "robot_api" / "schema.py",
     ]
     said = {

@@ -16,7 +16,7 @@ from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.review import rehearsal
 from nl2robot.review.rehearsal import Budget, rehearse, watched
 from sim.simulation import Simulation
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 WORLD = load_world(DEFAULT_WORLD)
 

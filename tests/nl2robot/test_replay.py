@@ -11,7 +11,8 @@ from nl2robot.run.going_on import recall_of
 from nl2robot.run.replay import Replay, replay
 from nl2robot.run.runlog import Run, RunLog
 from sim.simulation import Simulation
-from sim.world.model import BUILTIN, load_world
+from sim.world.builtin import BUILTIN
+from sim.world.loading import load_world
 from tests.nl2robot.test_pausing import Watching
 from tests.nl2robot.test_runner import start
 

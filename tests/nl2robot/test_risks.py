@@ -19,7 +19,8 @@ from nl2robot.review.risks import DATA, Risk, Situation, Tried, risks
 from nl2robot.translate.translation import translate
 from robot_api.drivers import simulated
 from sim.simulation import Simulation
-from sim.world.model import Zone, load_world
+from sim.world.loading import load_world
+from sim.world.model import Zone
 
 HOSPITAL = load_world("city-hospital")
 DESERTED = msgspec.structs.replace(HOSPITAL, people=())

@@ -21,7 +21,7 @@ from robot_api import errors
 from robot_api.stub import stub
 from sandbox.check import check
 from sim.simulation import Simulation
-from sim.world.model import load_world
+from sim.world.loading import load_world
 from tests.grammar.told import untold
 
 STUB = stub()

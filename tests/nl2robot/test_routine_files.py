@@ -15,7 +15,7 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.translate.routine_files import Choice, exported, read, state_of, take_over
 from nl2robot.translate.routines import Routine, Routines
 from nl2robot.translate.translation import Talk, translate
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 TEA = 'robot.goto("lobby")\nrobot.say("Tea!")\n'
 FILE = """\

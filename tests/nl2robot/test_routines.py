@@ -14,7 +14,7 @@ from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.translate.routines import Routines, open_routines
 from nl2robot.translate.translation import Talk, translate
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 ROUND = "go to every ward and say good night"
 PROGRAM = (

@@ -11,10 +11,10 @@ import time
 
 import pytest
 
-from nl2robot.run.by_hand import ByHand
 from nl2robot.run.process import lives, own_process
 from nl2robot.run.retention import kept_for
 from nl2robot.run.runlog import LogError, RunLog
+from nl2robot.station.by_hand import ByHand
 
 ROUND = {
     "program": 'robot.say("Good night.")\n',

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from nl2robot.cli.operator import Operator
 from nl2robot.run.runlog import LogError
-from nl2robot.station.operator import Operator
 from robot_api.errors import AccessDenied, NotPossible, Stopped
 from sandbox.execution import DIED
 from sim.world.model import Zone

@@ -24,7 +24,7 @@ from robot_api import errors
 from robot_api.errors import RobotError
 from sim.errors import SimError
 from sim.simulation import Simulation
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 ROOT = Path(__file__).parents[2]
 WHILE_IT_WORKS = {"UnknownPlace", "UnknownPerson", "NotFound", "NotPossible", "Blocked", "TimedOut"}
@@ -47,7 +47,7 @@ SAYING = {
     "nl2robot/commands": {"UserError", "ArgumentTypeError"},
     "nl2robot/station/accounts.py": {"UserError"},
     "nl2robot/station/certificates.py": {"UserError"},
-    "nl2robot/translate/canned.py": {"UserError"},
+    "nl2robot/checks/canned.py": {"UserError"},
     "nl2robot/station/world_file.py": {"UserError"},
     "nl2robot/station/robots.py": {"UserError"},
     "nl2robot/station/station.py": {"UserError"},

@@ -3,12 +3,12 @@
 from contextlib import closing
 from pathlib import Path
 
+from nl2robot.cli.operator import Operator
 from nl2robot.run.runlog import RunLog
-from nl2robot.station.operator import Operator
 from nl2robot.station.station import robot_station
 from robot_api.drivers import emulated
 from robot_api.robots.robot_file import Limits, RobotFile
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 
 def test_the_dry_run_knows_how_fast_the_robot_file_lets_it_drive(tmp_path: Path) -> None:

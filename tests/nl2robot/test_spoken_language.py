@@ -4,7 +4,7 @@ from queue import Queue
 
 import pytest
 
-from nl2robot.station.operator import Operator
+from nl2robot.cli.operator import Operator
 
 
 @pytest.fixture

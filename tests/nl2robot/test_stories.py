@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from nl2robot.translate import canned
-from sim.world.model import load_world
+from nl2robot.checks import canned
+from sim.world.loading import load_world
 
 STORIES = canned.load(Path(__file__).parents[1] / "stories" / "hospital.yaml")
 

@@ -16,7 +16,7 @@ from nl2robot.cli.on_the_way import OnTheWay
 from nl2robot.errors import ExitStatus
 from nl2robot.knowledge import Knowledge
 from nl2robot.translate.completing import Named, completions, named_here, names_said
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 CHAT = ("chat", "--world", "ward")
 UP, TAB, CTRL_U = "\x1b[A", "\t", "\x15"

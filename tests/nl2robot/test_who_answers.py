@@ -10,7 +10,7 @@ import pytest
 from nl2robot.knowledge import Knowledge
 from nl2robot.language_model.scripted import ScriptedWriter
 from nl2robot.translate.translation import Translation, translate
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 WARD = Knowledge(load_world("ward", names_only=True))
 Scripted = Callable[..., ScriptedWriter]

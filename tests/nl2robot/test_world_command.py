@@ -12,13 +12,14 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from nl2robot.console.floor.zones import DrawnZones
 from nl2robot.errors import ExitStatus
 from nl2robot.paths import data_file
+from nl2robot.station.drawn_zones import DrawnZones
 from nl2robot.station.named_places import NamedByHand, NamedPlaces
 from robot_api.errors import LostConnection
+from sim.world.loading import load_world
 from sim.world.maps import occupancy
-from sim.world.model import Zone, load_world
+from sim.world.model import Zone
 
 Command = Callable[..., tuple[int, str, str]]
 

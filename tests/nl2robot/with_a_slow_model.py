@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 from grammar.planning.model.planner import ModelPlanner
-from nl2robot.cli.main import main as cli
+from nl2robot.cli import main as cli
 from nl2robot.language_model.scripted import ScriptedWriter
 from nl2robot.translate import planners
 

@@ -22,7 +22,7 @@ from robot_api.errors import (
 )
 from robot_api.methods import METHODS
 from sim.simulation import Simulation
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 
 def do(driver: SimulatedDriver, method: str, **arguments: Any) -> Any:

@@ -72,7 +72,7 @@ def test_the_papers_listing_drives_by_the_answers() -> None:
 
 def test_the_papers_listing_drives_through_the_simulated_lab() -> None:
     from sim.simulation import Simulation
-    from sim.world.model import load_world
+    from sim.world.loading import load_world
 
     simulation = Simulation(load_world("lab-tour"), seed=1)
     driver = simulated(simulation)

@@ -14,7 +14,8 @@ from robot_api.robots.places import NamedPlace
 from robot_api.values import Location
 from sandbox.execution import Execution, Outcome
 from sim.simulation import Simulation
-from sim.world.model import World, load_world
+from sim.world.loading import load_world
+from sim.world.model import World
 
 ERRAND = """\
 desk = robot.location()

@@ -18,7 +18,7 @@ from robot_api.robots.benchmark import measure_calls, measure_losses, measure_st
 from robot_api.robots.registry import Setup
 from robot_api.robots.wire import SERVER
 from sim.simulation import Simulation
-from sim.world.model import load_world
+from sim.world.loading import load_world
 from tests.robot_api.conformance.distant import DistantDriver, ward
 
 

@@ -14,8 +14,8 @@ from typing import Any
 
 import pytest
 
+from nl2robot.cli.operator import Operator
 from nl2robot.run.runlog import RunLog
-from nl2robot.station.operator import Operator
 from nl2robot.station.station import robot_station
 from robot_api.driver import Driver
 from robot_api.robots.ros.settings import RosSettings

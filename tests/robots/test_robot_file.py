@@ -18,7 +18,7 @@ from robot_api.robots.opening import hold
 from robot_api.robots.reading import Read, RobotFileError, read_robot_file, without_file
 from robot_api.robots.registry import RobotKind
 from robot_api.robots.robot_file import Limits
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 
 class Topics(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):

@@ -19,7 +19,7 @@ from robot_api.robots.wire import WireDriver
 from robot_api.server import Server
 from robot_api.values import Location
 from sim.simulation import Simulation
-from sim.world.model import load_world
+from sim.world.loading import load_world
 from tests.robots.far_robot import SOON, FarRobot
 from tests.robots.test_stops_and_links import Diary, Errand
 

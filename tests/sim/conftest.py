@@ -13,7 +13,8 @@ import pytest
 from sim.people.crowd import Human
 from sim.runner import Behaviour
 from sim.simulation import Simulation
-from sim.world.model import World, load_world
+from sim.world.loading import load_world
+from sim.world.model import World
 
 T = TypeVar("T")
 

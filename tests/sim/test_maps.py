@@ -15,8 +15,10 @@ from sim.errors import Blocked, NotPossible
 from sim.hospital import chart_of
 from sim.pictures.drawing import svg
 from sim.simulation import Simulation
+from sim.world.geometry import polygon_area
+from sim.world.loading import load_world
 from sim.world.maps import outlines, painted
-from sim.world.model import WorldError, load_world, polygon_area
+from sim.world.model import WorldError
 
 Grey = npt.NDArray[np.uint8]
 FREE, WALL, UNKNOWN = 254, 0, 205

@@ -14,8 +14,10 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from sim.hospital import chart_of
+from sim.world.geometry import GridMap
+from sim.world.loading import load_world
 from sim.world.maps import cell_at, free_cells, middle_of, occupancy, occupied_cells
-from sim.world.model import GridMap, World, load_world
+from sim.world.model import World
 
 Cells = npt.NDArray[np.int8]
 

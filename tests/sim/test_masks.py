@@ -17,9 +17,11 @@ from PIL import Image
 
 from sim.errors import Blocked, NotPossible
 from sim.simulation import Simulation
+from sim.world.geometry import GridMap, Polygon, contains
+from sim.world.loading import load_world
 from sim.world.maps import free_cells, middle_of, occupied_cells, to_metres
 from sim.world.masks import masked_areas, tolerance
-from sim.world.model import GridMap, Polygon, WorldError, contains, load_world
+from sim.world.model import WorldError
 from sim.world.zones import distance_to, trouble_with
 
 Cells = npt.NDArray[np.bool_]

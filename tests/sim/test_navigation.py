@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from sim.hospital import chart_of
 from sim.physics.navigation import Chart, Disc
-from sim.world.model import World, load_world
+from sim.world.loading import load_world
+from sim.world.model import World
 
 ROOM = [(0.0, 0.0, 10.0, 0.0), (10.0, 0.0, 10.0, 6.0), (10.0, 6.0, 0.0, 6.0), (0.0, 6.0, 0.0, 0.0)]
 TWO_ROOMS = [*ROOM, (5.0, 0.0, 5.0, 2.0), (5.0, 3.0, 5.0, 6.0)]

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from sim.errors import NotFound
 from sim.people.perception import parse
 from sim.simulation import Simulation
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 SHELF = """\
 name: shelf

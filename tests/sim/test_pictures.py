@@ -20,7 +20,10 @@ from sim.pictures.scene import Area, Box, Line, Scene, Text, box_about
 from sim.pictures.story import stops_of
 from sim.pictures.text import draw_text, text_width, wrapped
 from sim.record import Happening, Record, Sample, from_json, to_json
-from sim.world.model import Place, Pose, World, builtin_worlds, load_world
+from sim.world.builtin import builtin_worlds
+from sim.world.geometry import Pose
+from sim.world.loading import load_world
+from sim.world.model import Place, World
 
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from sim.errors import Interrupted, SimError
 from sim.record import to_json
 from sim.simulation import Simulation
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 
 class After:

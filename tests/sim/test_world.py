@@ -8,8 +8,10 @@ from pathlib import Path
 
 import pytest
 
+from sim.world.builtin import builtin_worlds
 from sim.world.checks import cut_doors, kind_of
-from sim.world.model import World, WorldError, builtin_worlds, load_world
+from sim.world.loading import load_world
+from sim.world.model import World, WorldError
 
 SMALL = """\
 name: demo
@@ -279,7 +281,7 @@ def test_a_world_that_is_not_there(name: str, part: str) -> None:
 def test_loading_needs_nothing_heavy() -> None:
     """`nl2robot translate` must start at once."""
     code = (
-        "import sys; from sim.world.model import load_world; load_world('city-hospital'); "
+        "import sys; from sim.world.loading import load_world; load_world('city-hospital'); "
         "print([m for m in ('numpy', 'scipy', 'shapely', 'pymunk', 'PIL') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -8,7 +8,7 @@ from pathlib import Path
 from PIL import Image
 
 from sim.pictures.drawing import png
-from sim.world.model import load_world
+from sim.world.loading import load_world
 from sim.world.reader import _Reader
 
 PAGE = (Path(__file__).parents[2] / "docs" / "worlds.md").read_text(encoding="utf-8")

@@ -10,7 +10,8 @@ import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sim.world.model import World, WorldError, load_world
+from sim.world.loading import load_world
+from sim.world.model import World, WorldError
 from sim.world.reader import _Reader
 
 FIELDS = sorted({word for fields in _Reader.FIELDS.values() for word in fields.split()})

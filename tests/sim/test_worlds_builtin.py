@@ -7,7 +7,9 @@ import math
 import pytest
 import shapely
 
-from sim.world.model import World, builtin_worlds, load_world
+from sim.world.builtin import builtin_worlds
+from sim.world.loading import load_world
+from sim.world.model import World
 
 CELL = 0.1
 ROBOT = 0.25

@@ -16,7 +16,8 @@ from hypothesis import strategies as st
 from sim.errors import Blocked, NotPossible
 from sim.hospital import chart_of
 from sim.pictures.scene import hatching
-from sim.world.model import World, WorldError, Zone, load_world
+from sim.world.loading import load_world
+from sim.world.model import World, WorldError, Zone
 from sim.world.zones import MOST_CORNERS, trouble_with
 
 HALL = """\

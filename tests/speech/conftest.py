@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from nl2robot.models import catalogue as models
+from nl2robot.paths import PACKAGED
 from nl2robot.speech.hear.recogniser import Recogniser, load
 from tests.fetched import fetched
 
-SHOWN = Path(models.__file__).parent / "data" / "recordings"  # the two that `make run` plays
+SHOWN = PACKAGED / "recordings"  # the two that `make run` plays
 RECORDED = Path(__file__).parent / "recordings"  # synthesised for these tests, see docs/voice.md
 
 

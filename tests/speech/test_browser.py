@@ -14,7 +14,7 @@ import pytest
 import soundfile
 from numpy.typing import NDArray
 
-from nl2robot.cli.main import main as cli
+from nl2robot.cli import main as cli
 from nl2robot.errors import ExitStatus
 from nl2robot.speech.speak.aloud import Wishes, aloud
 from nl2robot.speech.speak.browser import PIECE, Browsers
@@ -26,7 +26,7 @@ from robot_api.errors import Stopped
 from robot_api.protocol import MAX_FRAME
 from robot_api.server import Server
 from sim.simulation import Simulation
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 LONG = "I will tell you about the rooms of this floor, one after the other, from left to right."
 SOON = 20.0

@@ -15,7 +15,7 @@ import pytest
 import soundfile
 from numpy.typing import NDArray
 
-from nl2robot.cli.main import main as cli
+from nl2robot.cli import main as cli
 from nl2robot.errors import UserError
 from nl2robot.models import catalogue as models
 from nl2robot.speech.audio import RATE
@@ -32,7 +32,7 @@ from robot_api.driver import StopFlag
 from robot_api.drivers import emulated, simulated
 from robot_api.errors import NotPossible, Stopped
 from sim.simulation import Simulation
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 SOON = 10.0
 

@@ -28,7 +28,7 @@ from nl2robot.speech.speak.loudspeaker import Nowhere, SoundCard
 from nl2robot.speech.speak.speaking import Speaker
 from nl2robot.speech.speak.voices import Sound
 from robot_api.driver import StopFlag
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 SOON = 10.0
 SECOND = RATE // FRAME

@@ -20,7 +20,8 @@ from nl2robot.speech.audio import RATE, Samples, read
 from nl2robot.speech.embeddings import STEP, EmbeddingStream, embed
 from nl2robot.speech.hear.recogniser import Recogniser
 from nl2robot.speech.hear.search import Network
-from nl2robot.speech.hotword.detector import Detection, Heads, HotWord, StopWord
+from nl2robot.speech.hotword.detection import Detection
+from nl2robot.speech.hotword.detector import Heads, HotWord, StopWord
 from nl2robot.speech.hotword.head import Head, load_head
 from nl2robot.speech.hotword.judge import Judge, judge_of
 from nl2robot.speech.hotword.spotting import Spotter

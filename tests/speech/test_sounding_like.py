@@ -7,7 +7,7 @@ from nl2robot.speech.hear.recogniser import Heard
 from nl2robot.speech.hear.sounding_like import respelled, sounds
 from nl2robot.voice.hearing import Ear
 from nl2robot.work import here
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 
 @pytest.fixture

@@ -18,7 +18,7 @@ from robot_api.capabilities.speech import LoudspeakerSpeech
 from robot_api.driver import StopFlag
 from robot_api.robots.pepper.voice import PepperSpeech
 from robot_api.robots.ros.voice import RosSpeech
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 CASES = {
     language: yaml.load(

@@ -16,12 +16,12 @@ from nl2robot.speech.audio import RATE, Samples
 from nl2robot.speech.hear.listening import COMMANDS, Listener, Manner
 from nl2robot.speech.hear.recogniser import Heard, Reading
 from nl2robot.translate.translation import Talk
+from nl2robot.voice import services as voice_services
 from nl2robot.voice.hearing import Ear
 from nl2robot.voice.services import Microphones
-from nl2robot.voice.voice import services as voice_services
 from nl2robot.work import here
 from robot_api.driver import StopFlag
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 SOON = 30.0
 WISH = "ward a might do with a wave from you"

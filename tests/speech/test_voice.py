@@ -8,21 +8,21 @@ from typing import Any
 import numpy as np
 import pytest
 
+from nl2robot.cli import main as cli
 from nl2robot.cli.commands.talk import voice_input
-from nl2robot.cli.main import main as cli
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.speech.audio import RATE, Samples, read
 from nl2robot.speech.hear.listening import Listener, Manner
 from nl2robot.speech.hear.recogniser import Heard, Reading
-from nl2robot.speech.hotword.detector import Detection
+from nl2robot.speech.hotword.detection import Detection
 from nl2robot.speech.speak.voices import joined, voice
 from nl2robot.translate.translation import Talk
 from nl2robot.voice.hearing import Ear
 from nl2robot.voice.services import MOST_OPEN, Microphones
 from nl2robot.voice.voice import Cried, Hears, OwnVoice, Said, Slept, SpokenLines, VoiceInput, Woke
 from robot_api.errors import InvalidCall
-from sim.world.model import load_world
+from sim.world.loading import load_world
 from tests.speech.conftest import RECORDED, SHOWN
 
 FRAME = 512

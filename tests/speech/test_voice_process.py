@@ -137,7 +137,7 @@ def test_a_stop_waits_for_no_neural_voice(monkeypatch: pytest.MonkeyPatch) -> No
 
 ENDS = """
 import sys
-from nl2robot.speech import voices
+from nl2robot.speech.speak import voices
 from nl2robot.speech.speak.voices import espeak, joined
 
 joined(espeak("en").speak("Hello."))
@@ -171,7 +171,7 @@ def test_it_ends_with_whoever_began_it_in_the_middle_of_a_word(number: int) -> N
 
 FORKS = """
 import os
-from nl2robot.speech import voices
+from nl2robot.speech.speak import voices
 from nl2robot.speech.speak.voices import phonemes
 
 told = phonemes("robot", "en-us")

@@ -24,7 +24,7 @@ from nl2robot.speech.hear.rescorer import SecondEar
 from nl2robot.speech.hear.whisper import Whisper
 from nl2robot.speech.hotword.spotting import Spotter
 from nl2robot.voice.hearing import Ear
-from sim.world.model import load_world
+from sim.world.loading import load_world
 from tests.speech.conftest import RECORDED
 
 COMMANDS = ["Fahr zur Apotheke und sag guten Morgen.", "Bring die rote Tasse zu Alice."]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from nl2robot.errors import ExitStatus
 
 if TYPE_CHECKING:
-    from nl2robot.bench.benchmark import Figure
+    from nl2robot.bench.figures import Figure
     from nl2robot.cli.terminal import Terminal
 
 

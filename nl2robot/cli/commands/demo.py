@@ -11,15 +11,15 @@ import os
 from pathlib import Path
 
 from nl2robot.cli.commands.options import open_log, user_name
+from nl2robot.cli.operator import Operator
 from nl2robot.cli.session import Session
 from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.paths import PACKAGED
 from nl2robot.run.runlog import RunLog
-from nl2robot.station.operator import Operator
 from nl2robot.station.station import simulated_station
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 TYPED = (
     "wait for a visitor, ask whether they want to go to radiology or to the pharmacy,"

@@ -8,9 +8,9 @@ import json
 import msgspec
 
 from grammar.language import languages
+from nl2robot.checks.lint import lint, worst
 from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus, UserError
-from nl2robot.translate.lint import lint, worst
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

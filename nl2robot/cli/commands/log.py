@@ -10,13 +10,13 @@ from typing import Any
 
 import msgspec
 
+from nl2robot.changes import difference
 from nl2robot.cli.commands.options import open_log, whole
 from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.plain import visible
 from nl2robot.run.retention import DAY
 from nl2robot.run.runlog import Run, RunLog
-from nl2robot.translate.changes import difference
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -158,7 +158,7 @@ def _replay(log: RunLog, row: Run, terminal: Terminal, picture: str | None) -> i
     from nl2robot.run.replay import replay
     from nl2robot.station.station import check_picture, draw
     from sim.simulation import Simulation
-    from sim.world.model import load_world
+    from sim.world.loading import load_world
 
     if row.seed is None or row.world is None:
         raise UserError(

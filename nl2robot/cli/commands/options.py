@@ -67,7 +67,7 @@ def add_world(parser: argparse.ArgumentParser) -> None:
 
 def _worlds(prefix: str, **_: object) -> list[str]:
     """For the completion by Tab in a shell: the built-in worlds, and files."""
-    from sim.world.model import builtin_worlds
+    from sim.world.builtin import builtin_worlds
 
     folder = prefix[: prefix.rfind("/") + 1]
     files = [
@@ -280,7 +280,7 @@ def sound_of(
 def names_of(options: argparse.Namespace) -> World:
     """The world as far as translating needs it: what goes by a name."""
     from nl2robot.station.named_places import with_named_places
-    from sim.world.model import load_world
+    from sim.world.loading import load_world
 
     return with_named_places(load_world(options.world, names_only=True))
 
@@ -288,7 +288,7 @@ def names_of(options: argparse.Namespace) -> World:
 def world_of(options: argparse.Namespace) -> World:
     """The world, with the places that were named on its map."""
     from nl2robot.station.named_places import with_named_places
-    from sim.world.model import load_world
+    from sim.world.loading import load_world
 
     return with_named_places(load_world(options.world))
 

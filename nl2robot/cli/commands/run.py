@@ -23,12 +23,12 @@ from nl2robot.cli.commands.options import (
     user_name,
     world_of,
 )
+from nl2robot.cli.operator import Operator
 from nl2robot.cli.session import Session
 from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import UserError
 from nl2robot.paths import pictures_folder
 from nl2robot.station.garbage import swept
-from nl2robot.station.operator import Operator
 from nl2robot.station.robots import Chosen, reached, zones_of
 from nl2robot.station.station import (
     Station,

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from nl2robot.cli.commands.options import names_of
 from nl2robot.cli.terminal import answers
+from nl2robot.cli.voice_terminal import VoiceTerminal
 from nl2robot.knowledge import Knowledge
 from nl2robot.models.catalogue import lacking_beside
 from nl2robot.speech.audio import RATE, Audio, Samples, read
@@ -20,7 +21,6 @@ from nl2robot.speech.hear.microphone import Microphone
 from nl2robot.speech.hotword.detector import HotWord, StopWord, default_word
 from nl2robot.translate.routines import open_routines
 from nl2robot.voice.hearing import Ear
-from nl2robot.voice.terminal import VoiceTerminal
 from nl2robot.voice.voice import PATIENCE, OwnVoice, VoiceInput
 
 BLOCK = 0.1

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import msgspec
 
+from nl2robot.checks import baseline, canned
 from nl2robot.errors import ExitStatus
-from nl2robot.translate import baseline, canned
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from sim.world.model import load_world
+    from sim.world.loading import load_world
 
     world = load_world(options.world) if options.world else None
     before = None

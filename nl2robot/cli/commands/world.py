@@ -111,8 +111,8 @@ def _check_new(file: Path, force: bool) -> None:
 def _map_alone(file: Path) -> World:
     """The world that is nothing but this map. Raises `WorldError`, `UserError`."""
     from sim.world.fields import compose
+    from sim.world.loading import load_world
     from sim.world.map_reader import is_ros_map
-    from sim.world.model import load_world
     from sim.world.yaml_nodes import Hopeless
 
     if file.suffix.lower() in (".pgm", ".png", ".bmp"):
@@ -170,7 +170,7 @@ def _fetch(address: str, map_file: Path) -> None:
 
 def _check(name: str) -> int:
     """The exit status is 1 if the robot could not go to some place."""
-    from sim.world.model import load_world
+    from sim.world.loading import load_world
 
     world = load_world(name)
     _tell(world)
@@ -178,7 +178,7 @@ def _check(name: str) -> int:
         print("It has no geometry: sentences can be translated in it, but nothing driven.")
         return ExitStatus.OK
     from sim.simulation import Simulation
-    from sim.world.spots import troubles_with_places
+    from sim.spots import troubles_with_places
 
     Simulation(world).close()
     troubles = [f'"{place.name}" {why}.' for place, why in troubles_with_places(world)]
@@ -209,11 +209,12 @@ def _tell(world: World) -> None:
 
 
 def _export(options: argparse.Namespace) -> int:
-    from nl2robot.console.floor.zones import DrawnZones
     from nl2robot.paths import data_file
+    from nl2robot.station.drawn_zones import DrawnZones
     from nl2robot.station.named_places import NamedPlaces, not_in
     from nl2robot.station.world_file import exported, write_world
-    from sim.world.model import BUILTIN, load_world
+    from sim.world.builtin import BUILTIN
+    from sim.world.loading import load_world
 
     world = load_world(options.world)
     kept_places, kept_zones = NamedPlaces(), DrawnZones(data_file("zones.yaml"))

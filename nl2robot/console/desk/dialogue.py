@@ -18,21 +18,20 @@ import msgspec
 
 from grammar.plan import from_data
 from grammar.planning.planner import Interrupted
-from nl2robot.cli.session import STOP
 from nl2robot.console.desk.thought import Thought
-from nl2robot.console.part import Backstage
 from nl2robot.console.visitor import texts
 from nl2robot.errors import UserError
-from nl2robot.review.harmless import approver, needs_no_question
 from nl2robot.review.review import Review, digest
 from nl2robot.run.answers import answer
 from nl2robot.run.going_on import asks_to_go_on
 from nl2robot.run.going_on import texts as going_on_texts
 from nl2robot.run.state import HELD
 from nl2robot.run.trouble import told
+from nl2robot.station.harmless import approver, needs_no_question
+from nl2robot.station.part import Backstage
 from nl2robot.translate.other_language import accepted, declined, language_of, question
 from nl2robot.translate.teaching import told as told_in_words
-from nl2robot.translate.translation import Translation, translate
+from nl2robot.translate.translation import STOP, Translation, translate
 from nl2robot.words import words_in
 from robot_api.driver import StopFlag
 from robot_api.errors import AccessDenied, NotPossible, RobotError, Stopped

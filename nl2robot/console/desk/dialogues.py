@@ -16,9 +16,9 @@ from typing import Any, Final
 import msgspec
 
 from nl2robot.console.desk.dialogue import Dialogue, Draft, Line
-from nl2robot.console.part import STOP, Backstage
 from nl2robot.run.archive import state_of
 from nl2robot.run.state import GOING, Reviewing
+from nl2robot.station.part import STOP, Backstage
 from nl2robot.translate.translation import Translation
 
 IN_MEMORY: Final = 50

@@ -7,9 +7,9 @@ from typing import Any
 import msgspec
 
 from nl2robot.console.desk.highlight import highlighted
-from nl2robot.console.part import Backstage
 from nl2robot.review.review import reading
 from nl2robot.run.trouble import call_trouble, told
+from nl2robot.station.part import Backstage
 
 
 def run_view(backstage: Backstage, language: str) -> dict[str, Any] | None:

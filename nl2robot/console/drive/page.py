@@ -1,11 +1,11 @@
 """The page for direct control, `/drive`: the joystick, what the robot says and shows, its log.
 
-Its inside is JavaScript, under `static/drive`; what it does goes through `helm_services`.
+Its inside is JavaScript, under `static/drive`; what it does goes through `services`.
 """
 
 from __future__ import annotations
 
-from nl2robot.console.part import Backstage, Part
+from nl2robot.station.part import Backstage, Part
 
 
 def part(backstage: Backstage) -> Part:

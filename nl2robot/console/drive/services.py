@@ -17,10 +17,10 @@ import msgspec
 
 from nl2robot.console.drive.helm import HOLDS, Helm, State
 from nl2robot.console.floor.localising import localise
-from nl2robot.console.part import Backstage, Part
-from nl2robot.run.by_hand import BUSY, ByHand
 from nl2robot.run.state import Driven
-from nl2robot.station.wire import an_object
+from nl2robot.station.by_hand import BUSY, ByHand
+from nl2robot.station.part import Backstage, Part
+from nl2robot.wire import an_object
 from robot_api.driver import Event, StopFlag
 from robot_api.errors import InvalidCall, NotPossible, RobotError, Stopped
 from robot_api.methods import SPEED, TURN_RATE

@@ -19,8 +19,8 @@ from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
 from starlette.routing import Route
 
-from nl2robot.console.part import Backstage, Part
 from nl2robot.console.visitor import visitor_of
+from nl2robot.station.part import Backstage, Part
 from robot_api.capabilities.camera import Camera
 from robot_api.errors import RobotError
 

@@ -17,7 +17,7 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
-from nl2robot.console.part import Backstage, Part
+from nl2robot.station.part import Backstage, Part
 from robot_api.errors import cause
 
 LARGEST_FILE: Final = 12_000_000

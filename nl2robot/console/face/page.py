@@ -24,10 +24,10 @@ from nl2robot.console.face.forgetting import Forgetting
 from nl2robot.console.face.sites import Answer, lets_itself_be_framed
 from nl2robot.console.face.tablet import FaceTablet
 from nl2robot.console.face.visitor_language import VisitorLanguage
-from nl2robot.console.part import Backstage, Part
 from nl2robot.console.visitor import LANGUAGES, texts, visitor_of
 from nl2robot.run.runlog import LogError
-from nl2robot.station.wire import an_object
+from nl2robot.station.part import Backstage, Part
+from nl2robot.wire import an_object
 from robot_api.driver import Event, StopFlag
 from robot_api.drivers import ComposedDriver
 from robot_api.errors import NotPossible

@@ -20,7 +20,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final, Literal
 
-from nl2robot.station.wire import an_object
+from nl2robot.wire import an_object
 from robot_api.driver import StopFlag
 from robot_api.errors import NotPossible, TimedOut
 from robot_api.server import Context, Publish, Service

@@ -17,10 +17,10 @@ import msgspec
 
 from grammar.language import load_language
 from grammar.naming import joined_up, place_called
-from nl2robot.console.part import Backstage, Part
 from nl2robot.console.visitor import LANGUAGES, texts
 from nl2robot.errors import UserError
-from nl2robot.station.wire import service
+from nl2robot.station.part import Backstage, Part
+from nl2robot.wire import service
 
 if TYPE_CHECKING:
     from sim.world.model import World
@@ -123,7 +123,7 @@ def free_spot(world: World, x: float, y: float, within: float) -> tuple[float, f
         raise UserError("That is no spot on this map. Click on the map.")
     if not world.has_geometry:
         return x, y, 0.0  # a robot with a map of its own, of which nothing is known here
-    from sim.world.spots import is_reached, room_near, zone_around
+    from sim.spots import is_reached, room_near, zone_around
 
     spot = room_near(world, x, y, within)
     if spot is None:

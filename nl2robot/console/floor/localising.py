@@ -17,9 +17,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-from nl2robot.console.part import Backstage, Part
 from nl2robot.errors import UserError
-from nl2robot.station.wire import service_of_call
+from nl2robot.station.part import Backstage, Part
+from nl2robot.wire import service_of_call
 from robot_api.driver import Event, StopFlag
 from robot_api.errors import RobotError
 from robot_api.server import Context

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from nicegui import ui
 
-from nl2robot.console.desk.page import Desk
+from nl2robot.console.desk.desk import Desk
 from nl2robot.console.frame import frame
-from nl2robot.console.part import Backstage
+from nl2robot.station.part import Backstage
 
 if TYPE_CHECKING:
     from nl2robot.console.desk.dialogues import Dialogues

@@ -18,14 +18,15 @@ import msgspec
 
 from nl2robot.console.floor.goals import free_spot
 from nl2robot.console.floor.plan import place_plan
-from nl2robot.console.floor.zones import DrawnZones
-from nl2robot.console.part import Backstage, Part
 from nl2robot.errors import UserError
 from nl2robot.paths import data_file
+from nl2robot.station.drawn_zones import DrawnZones
 from nl2robot.station.named_places import NamedByHand, NamedPlaces, not_in, with_places
-from nl2robot.station.wire import service
+from nl2robot.station.part import Backstage, Part
+from nl2robot.wire import service
 from sim.world.checks import kind_of
-from sim.world.model import Aliases, Place, World, WorldError, key, load_world
+from sim.world.loading import load_world
+from sim.world.model import Aliases, Place, World, WorldError, key
 
 MOST_PLACES: Final = 200
 """Named on one map."""

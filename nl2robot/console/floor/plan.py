@@ -6,7 +6,8 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from sim.view import ThingSeen
-from sim.world.model import Door, Furniture, Person, Place, Point, Polygon, Thing, World
+from sim.world.geometry import Point, Polygon
+from sim.world.model import Door, Furniture, Person, Place, Thing, World
 
 Names = dict[str, str]
 

@@ -14,9 +14,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from nl2robot.console.floor.plan import floor_plan
-from nl2robot.console.part import Backstage, Part
 from nl2robot.console.visitor import LANGUAGES, texts
-from nl2robot.station.wire import service
+from nl2robot.station.part import Backstage, Part
+from nl2robot.wire import service
 from robot_api.driver import Event, StopFlag
 from robot_api.errors import RobotError
 from sim.view import ThingSeen, View

@@ -17,12 +17,14 @@ from typing import Any, Final, Literal
 
 import msgspec
 
-from nl2robot.console.part import Backstage, Part
 from nl2robot.errors import UserError
 from nl2robot.paths import data_file
 from nl2robot.station.drawn import Drawn
-from nl2robot.station.wire import service
-from sim.world.model import Polygon, Zone, key
+from nl2robot.station.drawn_zones import DrawnZones
+from nl2robot.station.part import Backstage, Part
+from nl2robot.wire import service
+from sim.world.geometry import Polygon
+from sim.world.model import Zone, key
 from sim.world.zones import trouble_with
 
 MOST_ZONES: Final = 50
@@ -42,18 +44,6 @@ _POLYGON = {
     "items": {"type": "array", "items": _NUMBER, "minItems": 2, "maxItems": 2},
     "maxItems": LONGEST_OUTLINE,
 }
-
-
-class DrawnZones(Drawn[Zone]):
-    """The zones of a file, by world. Raises `UserError` where the file cannot be used."""
-
-    def __init__(self, file: Path) -> None:
-        super().__init__(file, Zone, "keep-out zones", _trouble_with)
-
-
-def _trouble_with(zone: Zone) -> str | None:
-    trouble = trouble_with(zone.polygon)
-    return f'the zone "{zone.name}" {trouble.split(".")[0]}' if trouble else None
 
 
 class Change(msgspec.Struct, frozen=True):

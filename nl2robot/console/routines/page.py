@@ -22,18 +22,18 @@ from starlette.responses import HTMLResponse, PlainTextResponse, Response
 from starlette.routing import Route
 
 from nl2robot.console import slow_pages
-from nl2robot.console.part import Backstage, Part
 from nl2robot.console.rendering import rendered
 from nl2robot.console.routines import view as routine_view
 from nl2robot.console.routines.view import Body, Card, Viewer
 from nl2robot.console.visitor import LANGUAGES, LONGEST_NAME, texts, visitor_of
 from nl2robot.errors import UserError
 from nl2robot.run.archive import Archive
-from nl2robot.station.wire import an_object, service
+from nl2robot.station.part import Backstage, Part
 from nl2robot.translate import routine_files
 from nl2robot.translate.routine_files import Choice
 from nl2robot.translate.routines import Routine, Routines, spelled
 from nl2robot.translate.teaching import Teacher, tidied
+from nl2robot.wire import an_object, service
 from robot_api.methods import MAX_TEXT
 from robot_api.server import Service
 from sandbox.limits import MAX_PROGRAM

@@ -21,12 +21,12 @@ from grammar.summary import summary
 from grammar.writing import PlanError
 from nl2robot.console.desk.highlight import highlighted
 from nl2robot.console.desk.outlook import outlook
-from nl2robot.console.part import Backstage
 from nl2robot.console.visitor import texts
 from nl2robot.review.review import Review
 from nl2robot.run.archive import Archive
 from nl2robot.run.runlog import LogError
 from nl2robot.run.trouble import told
+from nl2robot.station.part import Backstage
 from nl2robot.translate.routines import Routine
 from nl2robot.translate.teaching import Teacher
 from sim.world.model import World

@@ -6,7 +6,7 @@
     /runs/12/run.json, program.py    all of it, and the program alone
     /runs/12/movement.json, floor.svg, picture.svg       what the page watches
 
-The pages are made at the server (`runs_view`), to be there at once; `static/past_runs.js`
+The pages are made at the server (`view`), to be there at once; `static/past_runs.js`
 keeps a run that goes on up to date, and lets its movement be watched. Nothing here moves a robot:
 "run again" opens the review with the program.
 """
@@ -22,13 +22,13 @@ from starlette.requests import Request
 from nl2robot.console import slow_pages
 from nl2robot.console.runs import files as runs_files
 from nl2robot.console.runs import view as runs_view
-from nl2robot.console.part import Backstage, Part
+from nl2robot.station.part import Backstage, Part
 from nl2robot.console.runs.asked import PROPERTIES, Asked, BadDay, asked
 from nl2robot.console.visitor import texts, visitor_of
 from nl2robot.errors import UserError
 from nl2robot.run.archive import Archive
 from nl2robot.run.kept_record import Recorder
-from nl2robot.station.wire import service
+from nl2robot.wire import service
 from robot_api.errors import NotPossible
 from robot_api.server import Service
 

@@ -23,7 +23,7 @@ from nl2robot.run.going_on import unfinished
 from nl2robot.run.pausing import PAUSED
 from nl2robot.run.runlog import LoggedCall, Run, RunLog
 from nl2robot.run.trouble import call_trouble, told
-from nl2robot.translate.changes import changes
+from nl2robot.changes import changes
 
 CALLS_SHOWN: Final = 500
 """Of a run; the newest."""

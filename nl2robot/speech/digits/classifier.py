@@ -4,9 +4,9 @@
 
 The recogniser was trained on sentences. Where one short word is all there is, with its edges cut
 off and the high tones of its s and f lost on the way, it mistakes six for eight. This one was
-trained on just such sounds (`digits_training`), said by people with many accents: a small network
-on the speech embedding and, where the second ear's encoder is installed, one on that
-(`digits_encoder`). Where a language has none, there is no such ear, and the recogniser decides
+trained on just such sounds (`nl2robot.training.digits`), said by people with many accents: a small
+network on the speech embedding and, where the second ear's encoder is installed, one on that
+(`encoder`). Where a language has none, there is no such ear, and the recogniser decides
 alone.
 """
 

@@ -15,7 +15,6 @@ speech models are installed, they judge what the head is not sure of
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cache
 from typing import Final, Protocol
 
@@ -24,6 +23,7 @@ import numpy as np
 from nl2robot.errors import UserError
 from nl2robot.speech.audio import Samples
 from nl2robot.speech.embeddings import STEP, STEP_SECONDS, Embeddings, EmbeddingStream
+from nl2robot.speech.hotword.detection import HELD, Detection
 from nl2robot.speech.hotword.head import Head, load_head, probability
 from nl2robot.speech.hotword.judge import Judge, judge_of
 from nl2robot.speech.hotword.words import WORDS, Words
@@ -32,19 +32,6 @@ SMOOTH: Final = 3
 """Steps of 80 ms over which the score of a hot word is averaged: surer, and so much later."""
 STOP_SMOOTH: Final = 2
 """The same for stop, which has to be heard sooner."""
-HELD: Final = 1.2
-"""Seconds for which a word that was heard is not heard again: nobody says it twice so fast."""
-
-
-@dataclass(frozen=True)
-class Detection:
-    """A word was heard."""
-
-    word: str
-    time: float
-    """Seconds of sound fed until it was heard; the word ended shortly before."""
-    score: float
-    """How surely, 0 to 1."""
 
 
 class Detector(Protocol):

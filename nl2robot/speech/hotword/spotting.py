@@ -19,7 +19,7 @@ from nl2robot.speech.audio import RATE, Audio, Samples
 from nl2robot.speech.hear.listening import FRAME as CHUNK
 from nl2robot.speech.hear.listening import voice_detector
 from nl2robot.speech.hear.recogniser import PUNCTUATION, Recogniser
-from nl2robot.speech.hotword.detector import HELD, Detection
+from nl2robot.speech.hotword.detection import HELD, Detection
 from nl2robot.speech.hotword.words import WORDS
 
 SPEAKS: Final = 0.35  # probability of speech above which somebody speaks

@@ -4,7 +4,7 @@
     python -m nl2robot.training.digits.training en     # writes nl2robot/data/digits-en.npz
 
 No recording of anybody is used. Every digit is spoken by many people of Kokoro and of espeak-ng,
-with accents, faster and slower (`digits_speakers`); then treated as short answers are on their way
+with accents, faster and slower (`speakers`); then treated as short answers are on their way
 to the recogniser: other throats and microphones, edges cut off where they are faint, rooms, noise,
 a telephone. Some of what is no digit is spoken as well. It takes an hour on two cores.
 """

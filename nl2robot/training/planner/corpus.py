@@ -33,7 +33,7 @@ from grammar.reading import parse_program
 from grammar.understanding import Context
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 FOLDER: Final = Path(__file__).parent
 CORPUS: Final = FOLDER / "corpus"

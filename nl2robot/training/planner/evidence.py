@@ -32,7 +32,7 @@ from grammar.sampler import sensible
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.training.planner.corpus import files, load
 from nl2robot.training.planner.examples import is_held_out
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 SAMPLED = 2500
 """Sentences of the rules for each language."""

@@ -14,13 +14,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from robot_api.robots.furhat.settings import FurhatSettings
+from robot_api.robots.furhat.settings import DEFAULT_PORT, FurhatSettings
 from robot_api.robots.registry import RobotKind, Setup
 
 if TYPE_CHECKING:
     from robot_api.robots.furhat.driver import FurhatDriver
-
-DEFAULT_PORT: Final = 9000
 
 
 def _connect(setup: Setup) -> FurhatDriver:

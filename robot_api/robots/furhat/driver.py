@@ -13,11 +13,10 @@ from robot_api.capabilities.sound import Sound
 from robot_api.driver import StopFlag
 from robot_api.drivers import ComposedDriver
 from robot_api.errors import NotSupported
-from robot_api.robots.furhat import DEFAULT_PORT
 from robot_api.robots.furhat.face import FurhatFace, FurhatGesture, Gestures
 from robot_api.robots.furhat.people import FurhatVision
 from robot_api.robots.furhat.robot import STOP_WITHIN, Furhat
-from robot_api.robots.furhat.settings import FurhatSettings
+from robot_api.robots.furhat.settings import DEFAULT_PORT, FurhatSettings
 from robot_api.robots.furhat.skills import FurhatSkills
 from robot_api.robots.furhat.voice import FurhatHearing, FurhatSpeech, Voice
 from robot_api.robots.link import Link

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import msgspec
+
+DEFAULT_PORT: Final = 9000
 
 
 class FurhatSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):

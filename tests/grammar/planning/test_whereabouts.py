@@ -9,7 +9,7 @@ from grammar.planning.turn import Turn
 from grammar.planning.whereabouts import speakers_place
 from nl2robot.knowledge import Knowledge
 from nl2robot.translate.translation import translate
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 WARD = Knowledge(load_world("ward", names_only=True))
 

@@ -19,7 +19,7 @@ from robot_api.errors import LostConnection, RobotError, StopNotConfirmed, Stopp
 from robot_api.robots.address import Address
 from robot_api.robots.link import Link
 from sim.simulation import Simulation
-from sim.world.model import load_world
+from sim.world.loading import load_world
 
 _STOPS = ("stopping", "stopped", "stop_not_confirmed")
 

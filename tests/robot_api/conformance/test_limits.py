@@ -15,7 +15,7 @@ from robot_api.drivers import simulated
 from robot_api.errors import InvalidCall
 from robot_api.robots.robot_file import Limits, RobotFile
 from sim.simulation import Simulation
-from sim.world.model import load_world
+from sim.world.loading import load_world
 from tests.robot_api.conformance.faulty import Faulty, problems
 
 LIMITS = {"speed": 0.5, "turn_rate": 45.0, "volume": 80.0}

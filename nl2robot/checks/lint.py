@@ -23,7 +23,9 @@ from grammar.samples import samples
 from grammar.tidy import nodes
 from grammar.understand import understand
 from nl2robot.knowledge import Knowledge
-from sim.world.model import BUILTIN, World, builtin_worlds, load_world
+from sim.world.builtin import BUILTIN, builtin_worlds
+from sim.world.loading import load_world
+from sim.world.model import World
 
 if TYPE_CHECKING:
     from nl2robot.speech.hear.recogniser import Recogniser

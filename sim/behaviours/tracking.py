@@ -7,13 +7,13 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from sim.behaviours.wheel import braking, check_battery, come_to_rest
 from sim.errors import Blocked
 from sim.hospital import PERSON_RADIUS, Hospital
 from sim.people.crowd import Human
 from sim.physics.bodies import STEP
 from sim.physics.navigation import Route, Spot
 from sim.physics.robot import bearing, wrap
-from sim.physics.wheel import braking, check_battery, come_to_rest
 from sim.runner import Behaviour
 
 _LOOK_EVERY = 4  # steps between two looks for people and doors

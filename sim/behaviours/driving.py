@@ -9,14 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
+from sim.behaviours.tracking import KEEP, Progress, is_still, track
+from sim.behaviours.wheel import braking, check_battery, come_to_rest, face, turn_by, wheel
 from sim.errors import Blocked, NotPossible
 from sim.hospital import PERSON_RADIUS, Hospital
 from sim.people.crowd import Errand, Human
 from sim.physics.bodies import STEP
 from sim.physics.navigation import Disc, Route, Spot
 from sim.physics.robot import bearing
-from sim.physics.tracking import KEEP, Progress, is_still, track
-from sim.physics.wheel import braking, check_battery, come_to_rest, face, turn_by, wheel
 from sim.runner import Behaviour
 
 _KEEP_AROUND = 0.15

@@ -43,14 +43,15 @@ import msgspec
 import yaml
 
 from grammar.plan import calls, from_data
+from nl2robot.changes import difference
 from nl2robot.errors import UserError
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.review.rehearsal import Budget, EventKind, rehearse
-from nl2robot.translate.changes import difference
 from nl2robot.translate.translation import Translation, translate
 from robot_api.errors import cause
 from sim.world.files import read_text
-from sim.world.model import World, load_world
+from sim.world.loading import load_world
+from sim.world.model import World
 
 PATIENCE = Budget(seconds=7200.0, real_seconds=1800.0)
 """How far a run is followed here: nobody waits at a prompt."""

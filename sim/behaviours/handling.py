@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 
+from sim.behaviours.searching import approach
+from sim.behaviours.wheel import wheel
 from sim.errors import NotFound, NotPossible
 from sim.hospital import Hospital
 from sim.people.perception import fits, item_in_view, parse, person_in_view, spot_of
-from sim.people.searching import approach
 from sim.physics.placing import ROBOT, Item, spot_on
-from sim.physics.wheel import wheel
 from sim.runner import Behaviour
 from sim.world.model import Furniture
 

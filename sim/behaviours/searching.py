@@ -6,19 +6,20 @@ import contextlib
 import math
 from collections.abc import Collection, Iterator
 
+from sim.behaviours.driving import lengths_to, travel, way_to
+from sim.behaviours.wheel import check_battery, come_to_rest, face, wheel
 from sim.errors import Blocked, NotPossible
 from sim.hospital import Hospital
 from sim.people.crowd import Errand, Human
 from sim.people.likely import likeliness, remember
 from sim.people.perception import Sight, fits, fitting, in_view, parse, spot_of
 from sim.physics.bodies import STEP
-from sim.physics.driving import lengths_to, travel, way_to
 from sim.physics.navigation import Spot
 from sim.physics.placing import Item
 from sim.physics.robot import bearing
-from sim.physics.wheel import check_battery, come_to_rest, face, wheel
 from sim.runner import Behaviour
-from sim.world.model import Person, Place, World, contains
+from sim.world.geometry import contains
+from sim.world.model import Person, Place, World
 from sim.world.words import words
 
 _LOOK_EVERY = 15  # steps: four times a second

@@ -11,9 +11,9 @@ from pathlib import Path
 
 import msgspec
 
+from nl2robot.changes import difference
+from nl2robot.checks.canned import Result
 from nl2robot.errors import UserError
-from nl2robot.translate.canned import Result
-from nl2robot.translate.changes import difference
 from robot_api.errors import cause
 
 

@@ -6,15 +6,15 @@ import itertools
 import math
 from collections.abc import Sequence
 
+from sim.behaviours.driving import check_goal, lengths_to, travel
+from sim.behaviours.searching import approach
+from sim.behaviours.wheel import come_to_rest, face, wheel
 from sim.errors import Blocked, NotFound
 from sim.hospital import Hospital
 from sim.people.crowd import Errand, Human
 from sim.people.perception import person_in_view
-from sim.people.searching import approach
-from sim.physics.driving import check_goal, lengths_to, travel
 from sim.physics.navigation import Spot
 from sim.physics.robot import bearing
-from sim.physics.wheel import come_to_rest, face, wheel
 from sim.runner import Behaviour
 from sim.world.model import Place
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 
 from grammar.language import load_language
+from nl2robot.cli.operator import Operator
 from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.sentences import told
 from nl2robot.speech.audio import Samples
-from nl2robot.station.operator import Operator
 from nl2robot.voice.voice import (
     Cried,
     Ended,

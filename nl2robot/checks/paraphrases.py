@@ -3,7 +3,7 @@
 A file has a row for each command: the words, a tab, the logical form in the notation of the GPSR
 commands (Walker, Peng, Cakmak 2019), in which "<object>", "<room>" and so on stand for names. A
 command counts as right if the plan, without its names, asks for the same actions with the same
-arguments in the same roles (`nl2robot.translate.frames`).
+arguments in the same roles (`nl2robot.checks.frames`).
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from typing import Final, Literal
 from grammar.plan import from_data
 from grammar.planning.rules import NAME as RULES
 from grammar.said import forget
+from nl2robot.checks.frames import UNKNOWN, Frame, frames_of_form, frames_of_plan, parsed
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
-from nl2robot.translate.frames import UNKNOWN, Frame, frames_of_form, frames_of_plan, parsed
 from nl2robot.translate.translation import translate
 from robot_api.errors import cause
 from sim.world.files import read_text

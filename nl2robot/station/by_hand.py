@@ -10,8 +10,8 @@ from typing import Any, Final
 
 import msgspec
 
-from nl2robot.review.harmless import ONLY_LOOKS
 from nl2robot.run.runlog import LogError, RunLog
+from nl2robot.station.harmless import ONLY_LOOKS
 from robot_api.errors import NotPossible
 
 BUSY: Final = "A program is running, and drives the robot. Wait for its end, or stop it first."

@@ -1,0 +1,1 @@
+"""Checked without a robot: canned utterances, paraphrases, the names of a world."""
