@@ -8,7 +8,7 @@ VOICES := $(VENV)/.installed-voices
 STAMP  := $(VENV)/.installed
 ROS2   := .venv-ros2
 
-.PHONY: run voices test format lint types tests soak attacks browser systemd ros2 wheels lock sbom audit bench docs clean
+.PHONY: run voices test format lint types tests soak attacks browser systemd ros2 wheels lock sbom audit bench docs test-all hooks release clean
 
 run: $(RUNS)
 	@$(BIN)/nl2robot demo
@@ -129,6 +129,40 @@ $(AUDIT)/.installed:
 	$(AUDIT)/bin/python -m pip install --quiet 'cyclonedx-bom>=7.5,<8' 'pip-audit>=2.9,<3'
 	touch $@
 
+# The documentation as a site, in site/: nothing on it is fetched from elsewhere. Strict.
+DOCS := .venv-docs
+docs: $(DOCS)/.installed
+	NO_MKDOCS_2_WARNING=1 $(DOCS)/bin/mkdocs build --strict --quiet
+	@echo "The site is in site/: open site/index.html, or python3 -m http.server -d site"
+
+$(DOCS)/.installed: Makefile
+	$(PYTHON) -m venv $(DOCS)
+	$(DOCS)/bin/python -m pip install --quiet 'mkdocs-material>=9.7,<10' 'mkdocstrings-python>=2,<3'
+	touch $@
+
+# Tools for those who look after the project, in an environment of their own.
+TOOLS := .venv-tools
+$(TOOLS)/.installed: Makefile locks/build.txt
+	$(PYTHON) -m venv $(TOOLS)
+	$(TOOLS)/bin/python -m pip install --quiet --require-hashes -r locks/build.txt
+	$(TOOLS)/bin/python -m pip install --quiet 'build>=1.3,<2' 'twine>=6,<7' 'nox>=2025.5' 'pre-commit>=4,<5'
+	touch $@
+
+# Under every Python that there is here, of those that nl2robot runs on.
+test-all: $(TOOLS)/.installed
+	$(TOOLS)/bin/nox --no-error-on-missing-interpreters
+
+# git asks before a commit and a push what CI will ask.
+hooks: $(TOOLS)/.installed
+	$(TOOLS)/bin/pre-commit install --hook-type pre-commit --hook-type pre-push
+
+# Wheel and sdist in dist/, checked, and tried in an empty environment; nothing is published.
+release: $(TOOLS)/.installed
+	rm -rf dist build
+	$(TOOLS)/bin/python -m build --no-isolation --outdir dist .
+	$(TOOLS)/bin/twine check --strict dist/*
+	$(TOOLS)/bin/python docs/deploy/try_wheel.py dist/*.whl
+
 format: $(STAMP)
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
@@ -137,4 +171,4 @@ bench: $(STAMP)
 	$(BIN)/nl2robot bench
 
 clean:
-	rm -rf $(VENV) $(ROS2) $(AUDIT) nl2robot.cdx.json build dist *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(ROS2) $(AUDIT) $(DOCS) $(TOOLS) .nox site nl2robot.cdx.json build dist *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis

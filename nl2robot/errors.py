@@ -3,17 +3,30 @@
 from __future__ import annotations
 
 import enum
+from typing import Final
 
 
 class ExitStatus(enum.IntEnum):
     OK = 0
-    FAILED = 1  # it ran and failed: the robot could not do it, a canned utterance changed
-    BAD_INPUT = 2  # wrong usage, a missing or broken file, an unknown name
+    FAILED = 1
+    BAD_INPUT = 2
     NOT_UNDERSTOOD = 3
     NOT_APPROVED = 4
-    NO_ROBOT = 5  # not to be reached, or the connection was lost
-    INTERNAL = 70  # a fault of this software
-    INTERRUPTED = 130  # Ctrl-C
+    NO_ROBOT = 5
+    INTERNAL = 70
+    INTERRUPTED = 130
+
+
+MEANINGS: Final = {
+    ExitStatus.OK: "all went well",
+    ExitStatus.FAILED: "it ran and failed: the robot could not do it, a canned utterance changed",
+    ExitStatus.BAD_INPUT: "wrong usage, a missing or broken file, an unknown name",
+    ExitStatus.NOT_UNDERSTOOD: "the sentence was not understood",
+    ExitStatus.NOT_APPROVED: "the program was not approved",
+    ExitStatus.NO_ROBOT: "the robot is not to be reached, or the connection was lost",
+    ExitStatus.INTERNAL: "a fault of this software",
+    ExitStatus.INTERRUPTED: "interrupted by Ctrl-C",
+}
 
 
 class UserError(Exception):

@@ -162,6 +162,15 @@ def _parser(given: Sequence[str]) -> argparse.ArgumentParser:
     return parser
 
 
+def parser_of(command: str) -> argparse.ArgumentParser:
+    """The parser of one command."""
+    for action in _parser([command])._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            found: argparse.ArgumentParser = action.choices[command]
+            return found
+    raise AssertionError("there are no commands")
+
+
 def _explained(error: BaseException) -> tuple[str, ExitStatus]:
     """What an error of the layers below means to a user, and to a script."""
     from robot_api.errors import InvalidCall, LostConnection, RobotError, StopNotConfirmed
