@@ -224,7 +224,7 @@ VALUES: list[tuple[p.Value, str, str, str]] = [
         p.Choice(p.Range(p.Number(7), p.Number(1))),
         "one of the numbers from 1 to 6 (picked at random)",
         "zufällig eines von den Zahlen von 1 bis 6",
-        "l'un des nombres de 1 à 6 (au hasard)",
+        "un choix au hasard parmi les nombres de 1 à 6",
     ),
     (
         p.Figure("highest", NAMES),
