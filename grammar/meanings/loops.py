@@ -33,9 +33,11 @@ from grammar.meanings.waiting import (
     wait_until,
 )
 from grammar.meanings.whereabouts import looked_on_in
+from grammar.pieces import leaves
 from grammar.plan import (
     Ask,
     Call,
+    Collect,
     Compare,
     Condition,
     Elapsed,
@@ -44,12 +46,14 @@ from grammar.plan import (
     Forever,
     Holds,
     If,
+    Increase,
     Items,
     Not,
     Number,
     Recall,
     Remember,
     Repeat,
+    SetItem,
     Step,
     Text,
     Truth,
@@ -62,6 +66,8 @@ HOLDS: Final = frozenset({"goto", "dock", "show", "emotion", "wait"})
 """Methods after which something goes on by itself: "stay in the lobby until noon"."""
 WITH_ONE: Final = frozenset({"say", "ask", "guide", "gesture"})
 """What is done with one person after the other."""
+CARRIES: Final = frozenset({"grab", "guide", "follow", "wait_for", "scan"})
+"""By these what is done at a place may go on elsewhere."""
 A_MINUTE: Final = 60
 
 
@@ -379,7 +385,7 @@ def for_each_place(d: Discourse, node: Node) -> Steps:
         return []
     if goes and body is None and (looked := looked_on_in(d, items)) is not None:
         return looked  # "if he is not in his office, look in the labs"
-    if goes and isinstance(body, Node) and comes_back(body):
+    if goes and isinstance(body, Node) and (comes_back(body) or goes_on_to(body)):
         d.done += each_place(d, items, None, goes)
         told = told_on_return(body)
         after: Steps = in_round(d, told) if told is not None else d.build(body)
@@ -397,6 +403,13 @@ def comes_back(body: Node) -> bool:
     """ "visit the labs and come back and ...": what is done when all have been visited."""
     first = first_clause(body)
     return first.means == "come_back" or "back" in first.parts
+
+
+def goes_on_to(body: Node) -> bool:
+    """ "go to every ward, then to the pharmacy": nothing is done at any of them, and what is done
+    elsewhere is done once."""
+    first = first_clause(body)
+    return first.means == "go" and any(leaf.slot == "place" for leaf in leaves(first))
 
 
 def told_on_return(body: Node) -> Node | None:
@@ -434,7 +447,26 @@ def each_place(d: Discourse, items: Value, steps: Leaf | Node | None, goes: bool
         body = [going, *body]
     d.scene.at = None if body else before
     d.scene.with_person = None
-    return brought_behind(d, ForEach(variable, items, tuple(body)))
+    end = end_of_stop(body, here) if goes else len(body)
+    return [*brought_behind(d, ForEach(variable, items, tuple(body[:end]))), *body[end:]]
+
+
+def end_of_stop(steps: Steps, here: Recall) -> int:
+    """Where what is done at each place ends, and what is done once begins, when all have been
+    visited: "go to every ward and say good night, then go to the charger". What is brought there
+    from a place, and what is told there of it, belongs to the place."""
+    made = {
+        each.name
+        for each in nodes(tuple(steps))
+        if isinstance(each, Remember | Collect | Increase | SetItem)
+    } | {here.name}
+    if any(isinstance(each, Call | Ask) and each.method in CARRIES for each in nodes(tuple(steps))):
+        return len(steps)
+    for at, step in enumerate(steps):
+        used = {each.name for each in nodes(tuple(steps[at:])) if isinstance(each, Recall)}
+        if at and isinstance(step, Call) and _goes_to_name(step) and not used & made:
+            return at
+    return len(steps)
 
 
 @meaning("for_each_of_them")

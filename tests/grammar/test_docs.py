@@ -11,13 +11,18 @@ from grammar.understand import understand
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from sim.world.loading import load_world
 
-PAGE = Path(__file__).parents[2] / "docs" / "talking.md"
-SENTENCES = re.findall(r"^- (.+)$", PAGE.read_text(encoding="utf-8"), re.MULTILINE)
-LEXICON = Knowledge(load_world(DEFAULT_WORLD)).lexicon("en")
+DOCS = Path(__file__).parents[2] / "docs"
+PAGES = {"en": "talking.md", "de": "de/talking.md", "fr": "fr/talking.md"}
+SENTENCES = [
+    (language, sentence)
+    for language, page in PAGES.items()
+    for sentence in re.findall(r"^- (.+)$", (DOCS / page).read_text("utf-8"), re.MULTILINE)
+]
+KNOWLEDGE = Knowledge(load_world(DEFAULT_WORLD))
 
 
-@pytest.mark.parametrize("sentence", SENTENCES)
-def test_a_sentence_of_the_page_is_understood(sentence: str) -> None:
-    understood = understand(sentence, LEXICON)
+@pytest.mark.parametrize(("language", "sentence"), SENTENCES)
+def test_a_sentence_of_the_page_is_understood(language: str, sentence: str) -> None:
+    understood = understand(sentence, KNOWLEDGE.lexicon(language), language)
     assert understood.status == "ok", understood.message
     assert understood.plan is not None
