@@ -16,6 +16,7 @@ import re
 import threading
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Final
 
 BEAT: Final = 0.01
@@ -26,6 +27,7 @@ processor's clock for it, or sleeps: what takes longer would make a stop wait to
 DEAF: Final = 0.5
 """Seconds on any clock, where the system does not say what a thread is at: ten times what a stop
 may take, since a busy machine is late as well, and a robot that stands for nothing helps nobody."""
+_THREADS: Final = Path("/proc/self/task")
 BECAUSE: Final = "The robot's server could not have heard a stop, so the robot was stopped."
 
 _log = logging.getLogger("robot_api.serving.watchdog")
@@ -111,10 +113,11 @@ class _Silence:
             return
         self._computed = self._thread.computed() - self._since
         before, self._sleep = self._sleep, self._thread.sleep()
-        # Who waits for Python's lock is awake every few milliseconds. Who waits for one whose
-        # holder does not come to its turn is not, but nobody is punctual then.
-        one = self._sleep is not None and before in (None, self._sleep)
-        self._asleep = self._asleep + BEAT if one and punctual else 0.0
+        if self._sleep is None or before not in (None, self._sleep):
+            self._asleep = 0.0  # who waits for Python's lock is awake every few milliseconds
+        elif punctual and not others_run():
+            # Else it may wait for a lock whose holder does not come to its turn.
+            self._asleep += BEAT
 
     def too_long(self) -> bool:
         return max(self._asleep, self._computed) >= LAGS or self._seconds >= DEAF
@@ -136,8 +139,8 @@ class _Thread:
         self._status: int | None = None
         """Linux's file about it, kept open: there may be none left to open when it is needed."""
         with contextlib.suppress(OSError):
-            name = f"/proc/self/task/{threading.get_native_id()}/status"
-            self._status = os.open(name, os.O_RDONLY)
+            status = _THREADS / str(threading.get_native_id()) / "status"
+            self._status = os.open(status, os.O_RDONLY)
 
     def computed(self) -> float:
         """Seconds for which it has computed."""
@@ -150,17 +153,30 @@ class _Thread:
 
     def sleep(self) -> int | None:
         """Which of its sleeps it is in, counted from its start: for something other than its turn
-        at the processor. None if it is awake, or if the system does not say so."""
+        at the processor, or a disk. None if it is awake, or if the system does not say so."""
         if self._status is None:
             return None
         try:
             status = os.pread(self._status, 4096, 0)
         except OSError:  # the thread has ended
             return None
-        said = re.search(rb"State:\t([SD]).*\nvoluntary_ctxt_switches:\t(\d+)", status, re.DOTALL)
+        said = re.search(rb"State:\t(S).*\nvoluntary_ctxt_switches:\t(\d+)", status, re.DOTALL)
         return int(said[2]) if said else None
 
     def close(self) -> None:
         if self._status is not None:
             os.close(self._status)
             self._status = None
+
+
+def others_run() -> bool:
+    """Whether a thread of this process runs or waits for its turn at the processor, besides the one
+    that asks; so it counts, too, where the system does not say it."""
+    own = str(threading.get_native_id())
+    try:
+        for thread in _THREADS.iterdir():
+            if thread.name != own and b") R " in (thread / "stat").read_bytes():
+                return True
+    except OSError:  # one has just ended, or there is no descriptor left to look with
+        return True
+    return False

@@ -25,13 +25,13 @@ from starlette.responses import (
 from starlette.routing import Route
 
 from nl2robot.console.runs import view as runs_view
-from nl2robot.station.part import Backstage
 from nl2robot.console.runs.asked import BadDay, asked
 from nl2robot.console.visitor import LANGUAGES, texts, visitor_of
 from nl2robot.errors import UserError
 from nl2robot.run.archive import Archive, Brief
 from nl2robot.run.kept_record import unpacked
 from nl2robot.run.runlog import Run, RunLog
+from nl2robot.station.part import Backstage
 
 MOST_EXPORTED: Final = 100_000
 """Runs in a file."""
@@ -171,8 +171,8 @@ def _floor(world: str, language: str) -> str | None:
     """The floor of a world as it is now, with the names of a language; None if it is not to be
     found any more."""
     from sim.pictures.drawing import floor_svg
-    from sim.world.model import WorldError
     from sim.world.loading import load_world
+    from sim.world.model import WorldError
 
     try:
         loaded = load_world(world)

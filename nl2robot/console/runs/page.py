@@ -22,12 +22,12 @@ from starlette.requests import Request
 from nl2robot.console import slow_pages
 from nl2robot.console.runs import files as runs_files
 from nl2robot.console.runs import view as runs_view
-from nl2robot.station.part import Backstage, Part
 from nl2robot.console.runs.asked import PROPERTIES, Asked, BadDay, asked
 from nl2robot.console.visitor import texts, visitor_of
 from nl2robot.errors import UserError
 from nl2robot.run.archive import Archive
 from nl2robot.run.kept_record import Recorder
+from nl2robot.station.part import Backstage, Part
 from nl2robot.wire import service
 from robot_api.errors import NotPossible
 from robot_api.server import Service

@@ -12,6 +12,7 @@ from starlette.requests import Request
 from grammar.explain import LineTold, explain_program
 from grammar.language import load_language
 from grammar.naming import naming
+from nl2robot.changes import changes
 from nl2robot.console.desk.highlight import highlighted
 from nl2robot.console.rendering import rendered
 from nl2robot.console.runs.asked import Asked
@@ -23,7 +24,6 @@ from nl2robot.run.going_on import unfinished
 from nl2robot.run.pausing import PAUSED
 from nl2robot.run.runlog import LoggedCall, Run, RunLog
 from nl2robot.run.trouble import call_trouble, told
-from nl2robot.changes import changes
 
 CALLS_SHOWN: Final = 500
 """Of a run; the newest."""
