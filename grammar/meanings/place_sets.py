@@ -31,8 +31,6 @@ def all_places(d: Discourse, node: Node) -> Value:
             raise NotUnderstood(d.language.phrase("which_places"))
         del left[position]
         return Items(tuple(Text(each.name) for each in left))
-    if "last" in node.parts:
-        return numbered(d, str(kind), int(d.get(node, "first")), int(d.get(node, "last")))
     if but == [None] and number is None and not fixed.get("other"):
         return kind_places(d, kind)
     if fixed.get("other"):
@@ -56,15 +54,6 @@ def owned_by(d: Discourse, places: Sequence[Name], owner: str) -> Text:
     if found is None:
         raise NotUnderstood(d.language.phrase("which_places"))
     return Text(found.name)
-
-
-def numbered(d: Discourse, kind: str, first: int, last: int) -> Value:
-    """The places of a kind whose names end with some numbers."""
-    numbers = range(first, last + 1)
-    ends = {place.name.split()[-1]: place.name for place in d.lexicon.place_kinds[kind]}
-    if not numbers or any(str(number) not in ends for number in numbers):
-        raise NotUnderstood(d.language.phrase("which_places"))
-    return Items(tuple(Text(ends[str(number)]) for number in numbers))
 
 
 @meaning("places_numbered")
