@@ -1,4 +1,4 @@
-"""What `mkdocs build` asks of us (`hooks` in mkdocs.yml): links to files beside the docs.
+"""What `mkdocs build` asks of us (`hooks` in mkdocs.yml): links to where the project is.
 
 On the site there is no `../grammar/README.md`. Such a link leads to the project's own page, where
 `$NL2ROBOT_REPOSITORY` says that there is one; else its words stand there alone.
@@ -11,6 +11,13 @@ import re
 from typing import Any
 
 _LINK = re.compile(r"(?<!!)\[([^\]]+)\]\(((?:\.\./)+[^)\s]+)\)")
+
+
+def on_config(config: Any) -> Any:
+    """Where nobody says where the project is, no page can be edited there."""
+    if not config.repo_url:
+        config.edit_uri = None
+    return config
 
 
 def on_page_markdown(markdown: str, *, page: Any, config: Any, files: Any) -> str:
