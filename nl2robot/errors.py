@@ -18,14 +18,16 @@ class ExitStatus(enum.IntEnum):
 
 
 MEANINGS: Final = {
-    ExitStatus.OK: "all went well",
+    ExitStatus.OK: "done; of `translate`: a program or an answer for every sentence",
     ExitStatus.FAILED: "it ran and failed: the robot could not do it, a canned utterance changed",
     ExitStatus.BAD_INPUT: "wrong usage, a missing or broken file, an unknown name",
-    ExitStatus.NOT_UNDERSTOOD: "the sentence was not understood",
+    ExitStatus.NOT_UNDERSTOOD: (
+        "not understood, or to be asked about (`translate --json`: 0, as its object says so)"
+    ),
     ExitStatus.NOT_APPROVED: "the program was not approved",
     ExitStatus.NO_ROBOT: "the robot is not to be reached, or the connection was lost",
     ExitStatus.INTERNAL: "a fault of this software",
-    ExitStatus.INTERRUPTED: "interrupted by Ctrl-C",
+    ExitStatus.INTERRUPTED: "interrupted by Ctrl-C; the robot stands",
 }
 
 
