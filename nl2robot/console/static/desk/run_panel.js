@@ -37,22 +37,25 @@ export class RunPanel {
     });
   }
 
-  /** Ask how the run stands: at the start, after a break, and when another begins. */
-  async _load() {
-    this._early = [];
+  /** Ask how the run stands: at the start, after a break, and when another begins, by its first event. */
+  async _load(first) {
+    this._early = first ? [first] : [];
     const loading = (this._loading = this.wire.request('desk.run', {language: this.language}));
     const view = await loading.catch(() => null);
     if (this._loading !== loading) return;
     this._loading = null;
-    const over = view && !GOING.includes(view.state);
-    if (!view || view.run === this.dismissed || (over && this.run !== view.run)) return;
+    if (!view || view.run === this.dismissed) return;
+    const early = this._early.splice(0).filter(({run}) => run === view.run);
+    // A run that was over before anybody looked is none to watch; one may be over before the answer comes.
+    const over = !GOING.includes(view.state);
+    if (over && this.run !== view.run && early.length === 0) return;
     this._build(view);
-    for (const event of this._early.splice(0)) this._show(event);
+    for (const event of early) if (!over || event.what === 'print') this._show(event);
   }
 
   _onEvent(event) {
     if (this._loading) this._early.push(event);
-    else if (event.run !== this.run) this._load();
+    else if (event.run !== this.run) this._load(event);
     else this._show(event);
   }
 
