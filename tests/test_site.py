@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import re
+import runpy
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,10 +15,10 @@ from typing import Any
 import pytest
 import yaml
 
-from docs.deploy.site import on_page_markdown
 from nl2robot.cli import reference
 
 ROOT = Path(__file__).parents[1]
+on_page_markdown = runpy.run_path(str(ROOT / "docs/deploy/site.py"))["on_page_markdown"]
 DOCS = ROOT / "docs"
 PAGES = sorted(page for page in DOCS.rglob("*.md"))
 FILES = [*PAGES, *ROOT.glob("*.md"), *(ROOT / "grammar").glob("*.md")]
