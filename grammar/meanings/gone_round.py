@@ -2,13 +2,32 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps
 from grammar.doubts import NotUnderstood
 from grammar.meanings.news import News
 from grammar.meanings.places import kind_places
 from grammar.meanings.searches import searched, searches
-from grammar.plan import Call, ForEach, Items, Recall, Step, Text, Value
+from grammar.plan import (
+    Ask,
+    Call,
+    Collect,
+    ForEach,
+    Increase,
+    Items,
+    Recall,
+    Remember,
+    SetItem,
+    Step,
+    Text,
+    Value,
+)
+from grammar.tidy import nodes
+
+CARRIES: Final = frozenset({"grab", "guide", "follow", "wait_for", "scan"})
+"""By these what is done at a place may go on elsewhere."""
 
 
 def places_of(d: Discourse, node: Node) -> Value:
@@ -102,6 +121,32 @@ def round_of_visits(d: Discourse) -> int | None:
 
 def goes_to(step: Step, variable: str) -> bool:
     return step == Call("goto", {"place": Recall(variable)})
+
+
+def end_of_stop(steps: Steps, here: Recall) -> int:
+    """Where what is done at each place ends, and what is done once begins, when all have been
+    visited: "go to every ward and say good night, then go to the charger". What is brought there
+    from a place, and what is told there of it, belongs to the place."""
+    made = {
+        each.name
+        for each in nodes(tuple(steps))
+        if isinstance(each, Remember | Collect | Increase | SetItem)
+    } | {here.name}
+    if any(isinstance(each, Call | Ask) and each.method in CARRIES for each in nodes(tuple(steps))):
+        return len(steps)
+    for at, step in enumerate(steps):
+        used = {each.name for each in nodes(tuple(steps[at:])) if isinstance(each, Recall)}
+        if at and goes_to_name(step) and not used & made:
+            return at
+    return len(steps)
+
+
+def goes_to_name(step: Step) -> bool:
+    """Whether a step goes to a place that has a name, whatever came before."""
+    match step:
+        case Call(method="goto", arguments={"place": Text()}):
+            return True
+    return False
 
 
 def looked_over(d: Discourse) -> ForEach | None:

@@ -16,7 +16,7 @@ from grammar.meanings.conditions import FULL_HOUR, condition_of, negated
 from grammar.meanings.deliveries import first_clause
 from grammar.meanings.finding import go, look_for, not_found, noun_of
 from grammar.meanings.going_on import about_places, brought_behind, in_round, told_last
-from grammar.meanings.gone_round import of_those, same_round
+from grammar.meanings.gone_round import end_of_stop, goes_to_name, of_those, same_round
 from grammar.meanings.guards import guard_finds
 from grammar.meanings.news import BACK
 from grammar.meanings.places import kind_places
@@ -37,7 +37,6 @@ from grammar.pieces import leaves
 from grammar.plan import (
     Ask,
     Call,
-    Collect,
     Compare,
     Condition,
     Elapsed,
@@ -46,14 +45,12 @@ from grammar.plan import (
     Forever,
     Holds,
     If,
-    Increase,
     Items,
     Not,
     Number,
     Recall,
     Remember,
     Repeat,
-    SetItem,
     Step,
     Text,
     Truth,
@@ -66,8 +63,6 @@ HOLDS: Final = frozenset({"goto", "dock", "show", "emotion", "wait"})
 """Methods after which something goes on by itself: "stay in the lobby until noon"."""
 WITH_ONE: Final = frozenset({"say", "ask", "guide", "gesture"})
 """What is done with one person after the other."""
-CARRIES: Final = frozenset({"grab", "guide", "follow", "wait_for", "scan"})
-"""By these what is done at a place may go on elsewhere."""
 A_MINUTE: Final = 60
 
 
@@ -451,24 +446,6 @@ def each_place(d: Discourse, items: Value, steps: Leaf | Node | None, goes: bool
     return [*brought_behind(d, ForEach(variable, items, tuple(body[:end]))), *body[end:]]
 
 
-def end_of_stop(steps: Steps, here: Recall) -> int:
-    """Where what is done at each place ends, and what is done once begins, when all have been
-    visited: "go to every ward and say good night, then go to the charger". What is brought there
-    from a place, and what is told there of it, belongs to the place."""
-    made = {
-        each.name
-        for each in nodes(tuple(steps))
-        if isinstance(each, Remember | Collect | Increase | SetItem)
-    } | {here.name}
-    if any(isinstance(each, Call | Ask) and each.method in CARRIES for each in nodes(tuple(steps))):
-        return len(steps)
-    for at, step in enumerate(steps):
-        used = {each.name for each in nodes(tuple(steps[at:])) if isinstance(each, Recall)}
-        if at and isinstance(step, Call) and _goes_to_name(step) and not used & made:
-            return at
-    return len(steps)
-
-
 @meaning("for_each_of_them")
 def for_each_of_them(d: Discourse, node: Node) -> Steps:
     """ "go to the lobby and to ward 3, and in each of them ...": done at all these."""
@@ -476,7 +453,7 @@ def for_each_of_them(d: Discourse, node: Node) -> Steps:
     if stops:
         return at_each_stop(d, stops, node.parts["steps"])
     going: list[Call] = []
-    while d.done and isinstance(d.done[-1], Call) and _goes_to_name(d.done[-1]):
+    while d.done and goes_to_name(d.done[-1]):
         last = d.done.pop()
         assert isinstance(last, Call)
         going.insert(0, last)
@@ -515,10 +492,6 @@ def at_each_stop(d: Discourse, stops: list[Call], steps: Leaf | Node) -> Steps:
     leading = Call("guide", {**stops[0].arguments, "place": here})
     places = Items(tuple(each.arguments["place"] for each in stops))
     return [ForEach(here.name, places, (leading, *body))]
-
-
-def _goes_to_name(step: Call) -> bool:
-    return step.method == "goto" and isinstance(step.arguments.get("place"), Text)
 
 
 @meaning("check_each_place")
