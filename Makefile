@@ -8,7 +8,7 @@ VOICES := $(VENV)/.installed-voices
 STAMP  := $(VENV)/.installed
 ROS2   := .venv-ros2
 
-.PHONY: run voices test format lint types tests soak attacks browser systemd ros2 wheels lock sbom audit bench docs test-all hooks release clean
+.PHONY: run voices test format lint types tests soak attacks browser systemd ros2 wheels lock sbom audit bench docs test-all hooks changelog release clean
 
 run: $(RUNS)
 	@$(BIN)/nl2robot demo
@@ -145,7 +145,7 @@ TOOLS := .venv-tools
 $(TOOLS)/.installed: Makefile locks/build.txt
 	$(PYTHON) -m venv $(TOOLS)
 	$(TOOLS)/bin/python -m pip install --quiet --require-hashes -r locks/build.txt
-	$(TOOLS)/bin/python -m pip install --quiet 'build>=1.3,<2' 'twine>=6,<7' 'nox>=2025.5' 'pre-commit>=4,<5'
+	$(TOOLS)/bin/python -m pip install --quiet 'build>=1.3,<2' 'twine>=6,<7' 'nox>=2025.5' 'pre-commit>=4,<5' 'towncrier>=25.8'
 	touch $@
 
 # Under every Python that there is here, of those that nl2robot runs on.
@@ -155,6 +155,10 @@ test-all: $(TOOLS)/.installed
 # git asks before a commit and a push what CI will ask.
 hooks: $(TOOLS)/.installed
 	$(TOOLS)/bin/pre-commit install --hook-type pre-commit --hook-type pre-push
+
+# What users are told of the next version: changes/, shown, or moved to CHANGELOG.md by RELEASE=1.
+changelog: $(TOOLS)/.installed
+	@$(TOOLS)/bin/towncrier build $(if $(RELEASE),--yes,--draft)
 
 # Wheel and sdist in dist/, checked, and tried in an empty environment; nothing is published.
 release: $(TOOLS)/.installed
