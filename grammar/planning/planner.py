@@ -67,7 +67,7 @@ class Refusal:
     cannot."""
     context: Context = field(default_factory=Context)
     absent: bool = False
-    """Whether the planner could not think at all: the message says why."""
+    """Whether the planner could not think, or not to the end: the message says why."""
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from typing import IO, Final, NamedTuple
 
 import msgspec
 
-from grammar.planning.model.request import Interrupted, Request, Unavailable, Written
+from grammar.planning.model.request import Interrupted, Request, TooLate, Unavailable, Written
 from nl2robot.language_model.messages import Cancel, Done, Failed, Growing, Ready, Report, Write
 from nl2robot.memory import free_megabytes, used_megabytes
 
@@ -96,11 +96,13 @@ class Process:
                     case Done(id=mine, written=written) if mine == number:
                         # What was written first need not be what turned out the likeliest.
                         return sorted(written, key=lambda each: -each.score)
+                    case Failed(id=mine, late=True) if mine == number:
+                        raise TooLate
                     case Failed(id=mine, cancelled=cancelled) if mine == number:
                         raise Interrupted if cancelled else self._lost()
                     case _:
                         continue  # of a sentence before
-        except (Interrupted, Unavailable):
+        except (Interrupted, TooLate, Unavailable):
             raise
         except BaseException:  # who looks on, or Ctrl-C: nobody needs the rest
             worker.cancel(number)

@@ -40,6 +40,8 @@ class Done(msgspec.Struct, frozen=True, tag="done"):
 class Failed(msgspec.Struct, frozen=True, tag="failed"):
     id: int
     cancelled: bool = False
+    late: bool = False
+    """Whether the time was over before there was a program."""
 
 
 Report = Ready | Growing | Done | Failed

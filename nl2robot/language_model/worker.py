@@ -140,7 +140,8 @@ class Worker:
             last = self._last = None
             last = self._first(order, until)
         if last is None or last.first is None:
-            self.tell(Done(order.id, ()))
+            late = last is not None and _now() >= until
+            self.tell(Failed(order.id, late=True) if late else Done(order.id, ()))
             return
         self._last = last
         others = last.decoder.others(last.first, request.most - 1, lambda: _now() >= until)

@@ -9,7 +9,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from grammar.planning.model.request import Piece, Request
+from grammar.planning.model.request import Piece, Request, TooLate
 from nl2robot.language_model.client import Process
 from nl2robot.language_model.install import install
 from nl2robot.language_model.messages import Failed, Ready, Report, Write
@@ -31,6 +31,15 @@ def test_ctrl_c_at_the_terminal_does_not_reach_it(folder: Path) -> None:
         process.get_ready("say Bob")
         assert process._running is not None
         assert os.getpgid(process._running.pid) != os.getpgrp()
+    finally:
+        process.close()
+
+
+def test_whose_time_is_over_before_there_is_a_program_is_told(folder: Path) -> None:
+    process = Process(folder)
+    try:
+        with pytest.raises(TooLate):
+            process.write(Request(prefix="say Bob", said=(Piece("go"),), seconds=0.0))
     finally:
         process.close()
 

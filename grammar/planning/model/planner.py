@@ -18,7 +18,7 @@ from grammar.planning.model.expressions import CALLS
 from grammar.planning.model.prompt import request, vocabulary
 from grammar.planning.model.recogniser import CLARIFY, REFUSE
 from grammar.planning.model.request import Interrupted as WritingInterrupted
-from grammar.planning.model.request import Unavailable, Writer, Written
+from grammar.planning.model.request import TooLate, Unavailable, Writer, Written
 from grammar.planning.model.turns import Turns
 from grammar.planning.planner import (
     Answer,
@@ -67,6 +67,8 @@ class ModelPlanner:
             raise Interrupted from error
         except Unavailable as error:
             return Refusal(str(error), absent=True)
+        except TooLate:
+            return Refusal(turn.language.phrase("too_late"), absent=True)
         return self._answer(turn, written)
 
     def _written(self, turn: Turn, watch: Watch) -> list[Written]:

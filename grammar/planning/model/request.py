@@ -56,8 +56,8 @@ class Writer(Protocol):
     def write(
         self, request: Request, on_text: Callable[[str], None] | None = None
     ) -> list[Written]:
-        """The programs, the likeliest first; none if it could write none in time. `on_text` is
-        told the first one as it grows. Raises `Unavailable`, and `Interrupted` after `cancel`."""
+        """The programs, the likeliest first; none if it could write none. `on_text` is told the
+        first one as it grows. Raises `Unavailable`, `TooLate`, and `Interrupted` after `cancel`."""
         ...
 
     def cancel(self) -> None:
@@ -68,6 +68,10 @@ class Writer(Protocol):
 class Unavailable(Exception):
     """There is no model, or it does not run here; the message is a sentence that says why and what
     to do."""
+
+
+class TooLate(Exception):
+    """The time for writing was over before there was a program."""
 
 
 class Interrupted(Exception):

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from grammar.language import load_language
 from grammar.naming import place_called
 from grammar.planning.model.planner import LONGEST, ModelPlanner
-from grammar.planning.model.request import Request, Written
+from grammar.planning.model.request import Request, TooLate, Written
 from grammar.planning.planner import (
     Answer,
     Draft,
@@ -31,7 +31,7 @@ MODEST = settings(max_examples=60, deadline=None, suppress_health_check=list(Hea
 SAYS = "wheel the tea round to Bob in the kitchen"
 
 
-def planned(writer: ScriptedWriter | Scribbler, watch: Watch | None = None) -> Answer:
+def planned(writer: ScriptedWriter | Scribbler | Snail, watch: Watch | None = None) -> Answer:
     return ModelPlanner(writer).plan(Turn(SAYS, WARD, load_language("en")), watch or Watch())
 
 
@@ -168,6 +168,23 @@ def test_no_more_than_a_few_programs_are_asked_for_and_not_for_long(scripted: Sc
     planned(writer)
     [asked] = writer.asked
     assert asked.most == 4 and asked.seconds == 20.0
+
+
+class Snail:
+    """A writer on a machine that is too busy."""
+
+    def write(
+        self, request: Request, on_text: Callable[[str], None] | None = None
+    ) -> list[Written]:
+        raise TooLate
+
+    def cancel(self) -> None:
+        pass
+
+
+def test_a_model_that_did_not_come_to_an_end_says_so() -> None:
+    answer = planned(Snail())
+    assert isinstance(answer, Refusal) and answer.absent and "in time" in answer.message
 
 
 # --- garbage -------------------------------------------------------------------------------------
