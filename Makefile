@@ -8,7 +8,7 @@ VOICES := $(VENV)/.installed-voices
 STAMP  := $(VENV)/.installed
 ROS2   := .venv-ros2
 
-.PHONY: run voices test format lint types tests soak attacks browser systemd ros2 wheels lock sbom audit bench docs test-all hooks changelog release clean
+.PHONY: run voices test format lint types tests soak attacks browser systemd ros2 wheels lock sbom audit bench docs test-all hooks changelog release image clean
 
 run: $(RUNS)
 	@$(BIN)/nl2robot demo
@@ -166,6 +166,15 @@ release: $(TOOLS)/.installed
 	$(TOOLS)/bin/python -m build --no-isolation --outdir dist .
 	$(TOOLS)/bin/twine check --strict dist/*
 	$(TOOLS)/bin/python docs/deploy/try_wheel.py dist/*.whl
+
+# The same for a container, by whichever of these works here. BASE is another image that has a Python.
+IMAGE ?= nl2robot
+BUILD_IMAGE = build -f docs/deploy/Dockerfile -t $(IMAGE) $(if $(BASE),--build-arg PYTHON=$(BASE))
+image:
+	@if docker info >/dev/null 2>&1; then docker $(BUILD_IMAGE) .; \
+	elif tool=$$(command -v podman || command -v buildah); then \
+	  $$tool $(BUILD_IMAGE) --ignorefile docs/deploy/Dockerfile.dockerignore .; \
+	else echo "An image is made by Docker, Podman or Buildah, and none of them works here."; exit 2; fi
 
 format: $(STAMP)
 	$(BIN)/ruff format .
