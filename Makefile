@@ -8,7 +8,7 @@ VOICES := $(VENV)/.installed-voices
 STAMP  := $(VENV)/.installed
 ROS2   := .venv-ros2
 
-.PHONY: run voices test format lint types tests soak attacks browser systemd ros2 wheels lock sbom audit bench docs test-all hooks changelog release image clean
+.PHONY: run voices test format lint types tests coverage soak attacks browser systemd ros2 wheels lock sbom audit bench docs test-all hooks changelog release image clean
 
 run: $(RUNS)
 	@$(BIN)/nl2robot demo
@@ -69,6 +69,12 @@ types: $(STAMP)
 # which share a console or a robot, stay together.
 tests: $(STAMP) browser systemd ros2
 	$(BIN)/pytest -n $$($(BIN)/python -c 'import os; print((os.cpu_count() or 1) + 1)') --dist loadfile
+
+# Which lines no test runs; a module of which tests run less than 70 % has to say why.
+coverage: $(STAMP) browser
+	rm -rf .coverage && mkdir .coverage
+	$(BIN)/pytest -q -n auto --dist loadfile --cov --cov-report=; $(BIN)/coverage json -q -o .coverage/coverage.json
+	$(BIN)/python -m tests.coverage .coverage/coverage.json
 
 # What takes too long for every change: whole samples of what people say, and all attacks, an hour of
 # them unless MINUTES says otherwise.
@@ -184,4 +190,4 @@ bench: $(STAMP)
 	$(BIN)/nl2robot bench
 
 clean:
-	rm -rf $(VENV) $(ROS2) $(AUDIT) $(DOCS) $(TOOLS) .nox site nl2robot.cdx.json build dist *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(ROS2) $(AUDIT) $(DOCS) $(TOOLS) .nox site nl2robot.cdx.json build dist *.egg-info .coverage .mypy_cache .pytest_cache .ruff_cache .hypothesis
