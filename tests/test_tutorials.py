@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-PAGES = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
+PAGES = sorted((ROOT / "docs").rglob("tutorials/*.md"))
 BLOCK = re.compile(r"^```(console|python title=\"([\w.]+)\")\n(.*?)^```$", re.M | re.S)
 
 
@@ -24,7 +24,7 @@ def commands(block: str) -> Iterator[tuple[str, list[str]]]:
         yield command, lines
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT / "docs").as_posix())
 def test_a_tutorial_says_what_happens(page: Path, tmp_path: Path) -> None:
     work = tmp_path / "work"
     work.mkdir()
