@@ -50,8 +50,8 @@ def on_page_markdown(markdown: str, *, page: Any, config: Any, files: Any) -> st
 
 
 def on_page_context(context: Any, *, page: Any, config: Any, nav: Any) -> Any:
-    """The page among those of its language, in a frame that speaks it. Whoever chooses another comes
-    to the same page there, or to the first where that language does not have it."""
+    """The page among those of its language, in a frame that speaks it. Whoever chooses another
+    comes to the same page there, or to the first where that language does not have it."""
     languages = config.extra["alternate"]
     own = _language(page, config)
     pages = {each.file.src_uri: each for each in nav.pages}

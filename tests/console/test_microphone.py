@@ -23,6 +23,7 @@ from nl2robot.cli.operator import Operator
 from nl2robot.console.app import STATIC
 from nl2robot.console.visitor import LANGUAGES, texts
 from nl2robot.speech.audio import RATE, Samples, from_float
+from nl2robot.speech.hotword import words as hotword
 from nl2robot.speech.speak.voices import joined, voice
 from tests.console.conftest import CHROMIUM, FLAGS, SOON, serving
 from tests.console.test_thinking import CONSOLE, tell
@@ -179,6 +180,14 @@ def answers(page: Page, method: str, function: str) -> None:
 def test_every_sentence_is_there_in_every_language() -> None:
     for language in LANGUAGES:
         assert all(texts("microphone", language).values())
+
+
+def test_the_switch_tells_the_words_that_it_listens_for_in_each_language() -> None:
+    for language in LANGUAGES:
+        words, heard = texts("microphone", language), hotword.WORDS[language]
+        assert heard.hot in words["hands_free_off"]
+        assert heard.hot in words["hands_free_on"]
+        assert heard.stop[0] in words["hands_free_on"]
 
 
 def test_from_press_to_release_it_is_one_command(open_page) -> None:
