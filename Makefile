@@ -8,7 +8,7 @@ VOICES := $(VENV)/.installed-voices
 STAMP  := $(VENV)/.installed
 ROS2   := .venv-ros2
 
-.PHONY: run voices test format lint types tests coverage soak attacks browser systemd ros2 wheels lock sbom audit bench docs test-all hooks changelog release image clean
+.PHONY: run voices test format lint types tests coverage soak attacks browser systemd ros2 wheels lock sbom audit bench docs docs-version test-all hooks changelog release image clean
 
 run: $(RUNS)
 	@$(BIN)/nl2robot demo
@@ -141,9 +141,17 @@ docs: $(DOCS)/.installed
 	NO_MKDOCS_2_WARNING=1 $(DOCS)/bin/mkdocs build --strict --quiet
 	@echo "The site is in site/: open site/index.html, or python3 -m http.server -d site"
 
+# For a release: this version's site beside those before, on the branch `pages`, and all of them in
+# site/ for a server. Nothing leaves this machine unless PUSH=1.
+docs-version: docs
+	PATH=$(abspath $(DOCS))/bin:$$PATH NO_MKDOCS_2_WARNING=1 mike deploy --quiet --branch pages $(if $(PUSH),--push) --update-aliases \
+	  $$(sed -n 's/__version__ = "\([0-9]*\.[0-9]*\).*/\1/p' nl2robot/__init__.py) latest
+	$(DOCS)/bin/mike set-default --branch pages $(if $(PUSH),--push) latest
+	rm -rf site && mkdir site && git archive pages | tar -x -C site
+
 $(DOCS)/.installed: Makefile
 	$(PYTHON) -m venv $(DOCS)
-	$(DOCS)/bin/python -m pip install --quiet 'mkdocs-material>=9.7,<10' 'mkdocstrings-python>=2,<3'
+	$(DOCS)/bin/python -m pip install --quiet 'mkdocs-material>=9.7,<10' 'mkdocstrings-python>=2,<3' 'mike>=2.2,<3'
 	touch $@
 
 # Tools for those who look after the project, in an environment of their own.

@@ -31,11 +31,12 @@ def commands(part: Any) -> Iterator[str]:
 
 
 def test_the_pipelines_run_the_gate_the_audit_ten_minutes_of_the_soak_and_the_site() -> None:
-    targets = set(re.findall(r"^([a-z0-9]+):", (ROOT / "Makefile").read_text("utf-8"), re.M))
+    targets = set(re.findall(r"^([a-z0-9-]+):", (ROOT / "Makefile").read_text("utf-8"), re.M))
     assert len(FILES) == 2
     for file in FILES:
         run = set(commands(yaml.safe_load(file.read_text("utf-8"))))
-        assert run == {".ci/run", "make audit", "make attacks MINUTES=10", "make docs"}, file
+        assert run >= {".ci/run", "make audit", "make attacks MINUTES=10", "make docs"}, file
+        assert all(each.startswith((".ci/run", "make ", "git ")) for each in run), file
         made = {each.split()[1] for each in run if each.startswith("make ")}
         assert made <= targets and (ROOT / ".ci/run").stat().st_mode & 0o100
 
