@@ -144,7 +144,7 @@ docs: $(DOCS)/.installed
 # For a release: this version's site beside those before, on the branch `pages`, and all of them in
 # site/ for a server. Nothing leaves this machine unless PUSH=1.
 docs-version: docs
-	PATH=$(abspath $(DOCS))/bin:$$PATH NO_MKDOCS_2_WARNING=1 mike deploy --quiet --branch pages $(if $(PUSH),--push) --update-aliases \
+	PATH=$(abspath $(DOCS))/bin:$$PATH NO_MKDOCS_2_WARNING=1 mike --quiet deploy --branch pages $(if $(PUSH),--push) --update-aliases \
 	  $$(sed -n 's/__version__ = "\([0-9]*\.[0-9]*\).*/\1/p' nl2robot/__init__.py) latest
 	$(DOCS)/bin/mike set-default --branch pages $(if $(PUSH),--push) latest
 	rm -rf site && mkdir site && git archive pages | tar -x -C site
