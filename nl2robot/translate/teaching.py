@@ -21,12 +21,15 @@ from grammar.plan import Plan
 from grammar.reading import NotAPlan, parse_program
 from grammar.requests import Request
 from grammar.samples import samples
+from grammar.speech import fill, speech
 from grammar.understand import understand
 from grammar.understanding import Understanding
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.translate.routines import Routine, Routines, spelled
 
+LITTLE = 3
+"""Letters of a word that tells no topic."""
 LONGEST_NAME = 5
 """Words."""
 ALIKE = 70
@@ -121,12 +124,13 @@ def topic_of(words: str, topics: Sequence[str]) -> str | None:
     """The topic that is meant: "loops" is "loops and conditions"."""
     from rapidfuzz import fuzz, process, utils
 
+    def telling(text: str) -> str:
+        """Without articles and the like, which all of them have."""
+        said = utils.default_process(text).split()
+        return " ".join([each for each in said if len(each) > LITTLE] or said)
+
     found = process.extractOne(
-        words,
-        topics,
-        scorer=fuzz.partial_token_ratio,
-        processor=utils.default_process,
-        score_cutoff=ALIKE,
+        words, topics, scorer=fuzz.partial_token_ratio, processor=telling, score_cutoff=ALIKE
     )
     return found[0] if found else None
 
@@ -189,7 +193,7 @@ class Teacher:
         known = self.routines.known(self.language)
         if not known:
             return Reply("ok", self.pack.phrase("routines_none"))
-        names = ", ".join(f"“{each.name}” ({self.short(each)})" for each in known)
+        names = ", ".join(f"{self.quoted(each)} ({self.short(each)})" for each in known)
         phrase = "routine_is" if len(known) == 1 else "routines_are"
         message = self.pack.phrase(phrase, number=len(known), names=names)
         return Reply("ok", message, [each.name for each in known])
@@ -316,11 +320,15 @@ class Teacher:
     def short(self, routine: Routine) -> str:
         return routine.sentence.rstrip(" .!") or self.pack.phrase("routine_a_program")
 
+    def quoted(self, routine: Routine) -> str:
+        """Its name, in the quotation marks of the language."""
+        return fill(speech(self.language).values["quoted"], {"text": routine.name})
+
     def users(self, routine: Routine) -> str:
         """The names of the routines that could not do without this one."""
         less = self.without(routine.name)
         return ", ".join(
-            f"“{each.name}”"
+            self.quoted(each)
             for each in less.routines
             if self.mentions(each.sentence, routine.name)
             and understand(each.name, self.lexicon, self.language).plan is not None

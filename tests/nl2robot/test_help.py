@@ -5,8 +5,10 @@ import json
 import pytest
 
 from grammar.language import languages
+from grammar.samples import samples
 from nl2robot.cli.main import main
 from nl2robot.knowledge import Knowledge
+from nl2robot.translate.teaching import topic_of
 from nl2robot.translate.translation import translate
 from sim.world.builtin import builtin_worlds
 from sim.world.loading import load_world
@@ -49,6 +51,21 @@ def test_a_topic_may_be_asked_for(phrases, capsys) -> None:
     assert list(phrases("loops")) == ["loops and conditions"]
     assert main(["phrases", "quantum physics"]) == 2
     assert "The topics are:" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("language", "words", "topic"),
+    [
+        ("fr", "les routines", "routines"),
+        ("fr", "me déplacer", "se déplacer"),
+        ("de", "zum Fahren", "Fahren"),
+        ("de", "die Routinen", "Routinen"),
+        ("en", "the things", "things"),
+    ],
+)
+def test_an_article_tells_no_topic(language, words, topic) -> None:
+    topics = samples(Knowledge(load_world("city-hospital")).lexicon(language), language)
+    assert topic_of(words, [*topics]) == topic
 
 
 def test_people_see_topics_and_phrases(capsys) -> None:

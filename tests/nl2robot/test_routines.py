@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grammar.language import languages
+from grammar.speech import speech
 from nl2robot.cli.main import main
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
@@ -318,7 +319,10 @@ def test_routines_are_taught_in_every_language(routines, language) -> None:
     used = nurse.says(story["use"])
     assert used.program.startswith('robot.gesture("wave")\nrobot.turn('), used.message
     assert used.program.count("\n") == 3
-    assert kept.name in nurse.says(story["list"]).message
+    assert (
+        speech(language).values["quoted"].format(text=kept.name)
+        in nurse.says(story["list"]).message
+    )
     assert kept.sentence in nurse.says(story["explain"]).message
     assert nurse.says(story["times"]).request.kind == "schedule"
     assert nurse.says(story["change"]).status == "clarify"
@@ -327,6 +331,19 @@ def test_routines_are_taught_in_every_language(routines, language) -> None:
     assert nurse.says(story["forget"]).status == "clarify"
     nurse.says(story["yes"])
     assert routines.known() == ()
+
+
+@pytest.mark.parametrize(
+    ("words", "name"),
+    [
+        ("enregistre cela sous le nom de tournée d'accueil", "tournée d'accueil"),
+        ("retiens cela sous le nom d'accueil du matin", "accueil du matin"),
+        ("garde ça sous ronde du soir", "ronde du soir"),
+    ],
+)
+def test_a_french_name_does_not_begin_with_its_preposition(routines, words, name) -> None:
+    nurse = Nurse(routines, language="fr")
+    assert nurse.says(words).request.name == name
 
 
 # --- on disk
