@@ -193,7 +193,7 @@ class Teacher:
         known = self.routines.known(self.language)
         if not known:
             return Reply("ok", self.pack.phrase("routines_none"))
-        names = ", ".join(f"{self.quoted(each)} ({self.short(each)})" for each in known)
+        names = ", ".join(f"{self.quoted(each.name)} ({self.short(each)})" for each in known)
         phrase = "routine_is" if len(known) == 1 else "routines_are"
         message = self.pack.phrase(phrase, number=len(known), names=names)
         return Reply("ok", message, [each.name for each in known])
@@ -320,15 +320,15 @@ class Teacher:
     def short(self, routine: Routine) -> str:
         return routine.sentence.rstrip(" .!") or self.pack.phrase("routine_a_program")
 
-    def quoted(self, routine: Routine) -> str:
-        """Its name, in the quotation marks of the language."""
-        return fill(speech(self.language).values["quoted"], {"text": routine.name})
+    def quoted(self, name: str) -> str:
+        """In the quotation marks of the language."""
+        return fill(speech(self.language).values["quoted"], {"text": name})
 
     def users(self, routine: Routine) -> str:
         """The names of the routines that could not do without this one."""
         less = self.without(routine.name)
         return ", ".join(
-            self.quoted(each)
+            self.quoted(each.name)
             for each in less.routines
             if self.mentions(each.sentence, routine.name)
             and understand(each.name, self.lexicon, self.language).plan is not None
