@@ -1,0 +1,105 @@
+"""What a page of the docs says, done: its files are written, its commands run one after the other.
+
+A file is a block with a `title="..."`, of whatever kind. A command of a ```console block begins
+with "$ " and goes on while its lines end with a backslash; what stands below it are lines that it
+says, in this order, among others. One with nothing below it ends well.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+from tests.robots.packages import install
+
+ROOT = Path(__file__).parents[1]
+_BLOCK = re.compile(r"^```(?:(console)|\w+ title=\"([\w./-]+)\")\n(.*?)^```$", re.M | re.S)
+_COMMAND = re.compile(r"^\$ ((?:.*\\\n)*.*)\n?((?:(?!\$ ).*\n?)*)", re.M)
+_OURS = f'#!/bin/sh\nexec "{sys.executable}" -m nl2robot.cli.main "$@"\n'
+_PIP = f'#!/bin/sh\nexec "{sys.executable}" -m tests.played "$@"\n'
+
+
+def blocks(page: str) -> Iterator[tuple[str | None, str]]:
+    """The files of a page, by their names, and its blocks of commands, by none."""
+    for console, name, text in _BLOCK.findall(page):
+        yield (None if console else name), text
+
+
+def commands(block: str) -> Iterator[tuple[str, list[str]]]:
+    """Each command, and the lines that it says."""
+    for command, lines in _COMMAND.findall(block):
+        yield command, [line for line in lines.split("\n") if line.strip()]
+
+
+def play(page: Path, folder: Path) -> int:
+    """Do what the page says, in a folder that is empty. How many commands there were."""
+    work = folder / "work"
+    work.mkdir()
+    environment = {
+        **os.environ,
+        "PATH": os.pathsep.join((str(_tools(folder)), os.environ["PATH"])),
+        "PYTHONPATH": os.pathsep.join((str(ROOT), str(work))),
+        "NL2ROBOT_HOME": str(folder / "home"),
+        "NL2ROBOT_LANGUAGE_MODEL": "none",
+        "COLUMNS": "200",
+    }
+    ran = 0
+    for name, text in blocks(page.read_text("utf-8")):
+        if name is not None:
+            (work / name).parent.mkdir(parents=True, exist_ok=True)
+            (work / name).write_text(text, encoding="utf-8")
+            continue
+        for command, lines in commands(text):
+            status, said = _done(command, work, environment)
+            assert lines or status == 0, f"{command}\nfails:\n{said}"
+            rest = " ".join(said.split())
+            for line in lines:
+                _, found, rest = rest.partition(" ".join(line.split()))
+                assert found, f"{command}\ndoes not say: {line}\nbut:\n{said}"
+            ran += 1
+    return ran
+
+
+def _tools(folder: Path) -> Path:
+    """`nl2robot` of this checkout, and a `pip` that only puts a package where it is found."""
+    tools = folder / "tools"
+    tools.mkdir()
+    for name, script in (("nl2robot", _OURS), ("pip", _PIP)):
+        (tools / name).write_text(script, encoding="utf-8")
+        (tools / name).chmod(0o755)
+    return tools
+
+
+def _done(command: str, work: Path, environment: dict[str, str]) -> tuple[int, str]:
+    """How it ended, and what it said."""
+    done = subprocess.run(
+        ["bash", "-c", command],
+        cwd=work,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=100,
+    )
+    assert "Traceback" not in done.stdout, done.stdout
+    assert done.returncode != 127, f"{command}\nis not there:\n{done.stdout}"
+    return done.returncode, done.stdout
+
+
+def install_here() -> None:
+    """As `pip install -e .` for the package of this folder, whose modules are on the path."""
+    project = tomllib.loads(Path("pyproject.toml").read_text("utf-8"))["project"]
+    points = project["entry-points"]["nl2robot.robots"]
+    install(Path(), project["name"], "\n".join(f"{key} = {at}" for key, at in points.items()))
+    print(f"Successfully installed {project['name']}-{project['version']}")
+
+
+if __name__ == "__main__":
+    assert sys.argv[1:] == ["install", "-e", "."], "this pip does nothing else"
+    install_here()
