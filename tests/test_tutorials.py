@@ -1,16 +1,27 @@
-"""The tutorials, done: their commands are run one after the other, and say what stands there."""
+"""Pages to follow at a keyboard, done: their commands are run one after the other, and say what
+stands there."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
-from tests.played import ROOT, play
+from robot_api.methods import METHODS
+from tests.played import ROOT, blocks, play
 
-PAGES = sorted((ROOT / "docs").rglob("tutorials/*.md"))
+DOCS = ROOT / "docs"
+COURSE = DOCS / "teaching.md"
+PAGES = [*sorted((DOCS / "tutorials").glob("*.md")), COURSE]
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT / "docs").as_posix())
-def test_a_tutorial_says_what_happens(page: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_a_page_says_what_happens(page: Path, tmp_path: Path) -> None:
     assert play(page, tmp_path) > 2
+
+
+def test_the_course_uses_every_function_of_the_paper() -> None:
+    programs = "".join(text for _, text in blocks(COURSE.read_text("utf-8")))
+    called = set(re.findall(r"robot\.(\w+)\(", programs))
+    assert {METHODS[name].paper for name in called} - {None} == set(range(1, 17))
