@@ -13,7 +13,7 @@ from tests.played import ROOT, blocks, play
 
 DOCS = ROOT / "docs"
 COURSE = DOCS / "teaching.md"
-PAGES = [*sorted((DOCS / "tutorials").glob("*.md")), COURSE]
+PAGES = [*sorted((DOCS / "tutorials").glob("*.md")), COURSE, DOCS / "it.md", DOCS / "privacy.md"]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
