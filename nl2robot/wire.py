@@ -24,11 +24,20 @@ def service(
     observes: bool = False,
     right: Right | None = None,
     lane: Lane = "work",
+    result: Any = Any,
 ) -> Service:
     """A method whose params are an object of these properties; a `UserError` is the caller's.
-    One that `observes` only looks; it may need another `right`."""
+    One that `observes` only looks; it may need another `right`. `result`: the type of what it
+    returns, for those who ask what there is."""
     return service_of_call(
-        lambda p, context: handler(p), doc, properties, required, observes, right=right, lane=lane
+        lambda p, context: handler(p),
+        doc,
+        properties,
+        required,
+        observes,
+        right=right,
+        lane=lane,
+        result=result,
     )
 
 
@@ -41,6 +50,7 @@ def service_of_call(
     for_caller: bool = False,
     right: Right | None = None,
     lane: Lane = "work",
+    result: Any = Any,
 ) -> Service:
     """The same for a handler that wants to know who called, or whether they still wait: one
     `for_caller` ends with their connection."""
@@ -59,6 +69,7 @@ def service_of_call(
         for_caller=for_caller,
         right=right,
         lane=lane,
+        result=schema_of(result),
     )
 
 
@@ -70,3 +81,22 @@ def an_object(properties: dict[str, Any], required: str) -> dict[str, Any]:
         "required": required.split(),
         "additionalProperties": False,
     }
+
+
+def schema_of(kind: Any) -> dict[str, Any]:
+    """The JSON Schema of a type, whole in itself: the types that it is made of stand where they
+    are used."""
+    schema = msgspec.json.schema(kind)
+    parts = schema.pop("$defs", {})
+
+    def whole(part: Any) -> Any:
+        if isinstance(part, list):
+            return [whole(each) for each in part]
+        if not isinstance(part, dict):
+            return part
+        if isinstance(named := part.get("$ref"), str):
+            return whole(parts[named.removeprefix("#/$defs/")])
+        return {name: whole(inner) for name, inner in part.items()}
+
+    found: dict[str, Any] = whole(schema)
+    return found

@@ -1,19 +1,13 @@
 """What can go wrong when a robot is asked to do something.
 
     RobotError                 an `except Exception` in a program may catch these
-    ├── UnknownPlace           no place of that name in this world
-    ├── UnknownPerson          no person of that name in this world
-    ├── NotFound               the thing or person is not here, or not to be seen
-    ├── NotPossible            cannot be done now (nothing in the hand, hands full, ...)
-    ├── Blocked                the way is blocked and there is no other
-    ├── TimedOut               nothing happened in the time allowed
-    ├── NotSupported           this robot cannot do that at all
-    ├── InvalidCall            no such method, or parameters of the wrong kind
-    ├── AccessDenied           not allowed: not approved, a wrong token, another operator drives
-    │   └── NotTrusted         the certificate of the server is from nobody that is trusted here
-    ├── InternalError          a fault of the robot's own software; the log has the details
-    ├── StopNotConfirmed       it was told to stop and has not said that it stands
-    └── LostConnection         the robot cannot be reached any more
+    ├── UnknownPlace, UnknownPerson, NotFound, NotPossible, Blocked, TimedOut, NotSupported
+    ├── InvalidCall
+    ├── AccessDenied
+    │   └── NotTrusted
+    ├── InternalError
+    ├── StopNotConfirmed
+    └── LostConnection
     Stopped                    a BaseException: no `except Exception` in a program swallows a stop
 
 Every message is one sentence a nurse understands. On the wire an error carries its class name in
@@ -30,38 +24,56 @@ class RobotError(Exception):
 
 
 class UnknownPlace(RobotError):
+    """There is no place of that name in this world."""
+
     code = -32001
 
 
 class UnknownPerson(RobotError):
+    """There is no person of that name in this world."""
+
     code = -32002
 
 
 class NotFound(RobotError):
+    """The thing or person is not here, or not to be seen."""
+
     code = -32003
 
 
 class NotPossible(RobotError):
+    """It cannot be done now: nothing in the hand, hands full, ..."""
+
     code = -32004
 
 
 class Blocked(RobotError):
+    """The way is blocked, and there is no other."""
+
     code = -32005
 
 
 class TimedOut(RobotError):
+    """Nothing happened in the time allowed."""
+
     code = -32006
 
 
 class NotSupported(RobotError):
+    """This robot cannot do that at all."""
+
     code = -32007
 
 
 class InvalidCall(RobotError):
+    """There is no such method, or a parameter is of the wrong kind."""
+
     code = -32602  # JSON-RPC "invalid params"
 
 
 class AccessDenied(RobotError):
+    """It is not allowed: not approved, a wrong token, another operator drives."""
+
     code = -32008
 
 
@@ -70,6 +82,8 @@ class NotTrusted(AccessDenied):
 
 
 class LostConnection(RobotError):
+    """The robot cannot be reached any more."""
+
     code = -32009
 
 
@@ -86,6 +100,8 @@ class StopNotConfirmed(RobotError):
 
 
 class InternalError(RobotError):
+    """A fault of the robot's own software; the log has the details."""
+
     code = -32603  # JSON-RPC "internal error"
 
 

@@ -46,7 +46,8 @@ _WIRE = """\
 ## The wire
 
 JSON-RPC 2.0 over WebSocket, in text frames, at port 9090. A method is called `robot.` and its name;
-its parameters go by name or by position.
+its parameters go by name or by position. Whatever else a server has, and a whole session, is in
+[The wire](wire.md).
 
 ```json
 {"jsonrpc": "2.0", "id": 7, "method": "robot.goto", "params": {"place": "pharmacy"}}

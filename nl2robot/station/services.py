@@ -12,16 +12,19 @@ import msgspec
 
 from grammar.planning.planner import Interrupted
 from grammar.samples import samples
+from nl2robot.review.review import Review
 from nl2robot.run import trouble
-from nl2robot.run.answers import answer
+from nl2robot.run.answers import Sentence, answer
+from nl2robot.run.runlog import Run
 from nl2robot.run.runner import Runner
+from nl2robot.run.runs import Approval, Status
 from nl2robot.run.state import GOING, Reviewing
 from nl2robot.translate.planners import names
 from nl2robot.translate.talks import Talks
 from nl2robot.translate.thinking import EVENT, Thought, published
 from nl2robot.translate.translation import Translation, translate
 from nl2robot.voice.services import Microphones, voice_services
-from nl2robot.wire import an_object, service, service_of_call
+from nl2robot.wire import an_object, schema_of, service, service_of_call
 from robot_api.driver import StopFlag
 from robot_api.errors import Stopped
 from robot_api.methods import MAX_TEXT
@@ -127,6 +130,7 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             },
             "utterance",
             for_caller=True,
+            result=Translation,
         ),
         "program.phrases": service(
             lambda p: samples(
@@ -135,6 +139,7 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             "List what can be said here, by topic.",
             {"language": _LANGUAGE},
             observes=True,
+            result=dict[str, list[str]],
         ),
         "program.check": service(
             lambda p: runner.check(p["program"], p.get("language", "en"), p.get("continues")),
@@ -142,6 +147,7 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             " `continues`, of what is left of it after that run.",
             {"program": _PROGRAM, "language": _LANGUAGE, "continues": _MAYBE_RUN},
             "program",
+            result=Review,
         ),
         "program.unfinished": service(
             lambda p: left_of(p.get("run"), p.get("language", "en")),
@@ -155,6 +161,7 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             "Tell that a program lies before somebody here who decides on it, or no longer.",
             {"lies": {"type": "boolean"}},
             "lies",
+            result=None,
         ),
         "program.approve": service_of_call(
             approved,
@@ -178,17 +185,20 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
                 "insists": {"type": "boolean"},
             },
             "program sha256 by",
+            result=Approval,
         ),
         "program.run": service(
             lambda p: runner.run(p["approval"]),
             "Start an approved program; returns the run's number at once.",
             {"approval": _STRING},
             "approval",
+            result=int,
         ),
         "program.wait": Service(
             handler=lambda p, context: msgspec.to_builtins(waited(p, context.stop)),
             params=an_object({"run": _RUN, "timeout": {"type": "number", "minimum": 0}}, "run"),
             doc="Wait until a run is over and tell how it ended.",
+            result=schema_of(Status),
             observes=True,
             lane="wait",
             after_stop=True,
@@ -200,12 +210,14 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             {"run": _RUN, "language": _LANGUAGE},
             "run",
             observes=True,
+            result=list[Sentence],
         ),
         "program.state": service(
             lambda p: runner.state(),
             "Tell how the present or last run stands.",
             observes=True,
             lane="control",
+            result=Status | None,
         ),
         "sentence.told": service(
             lambda p: trouble.told(
@@ -216,6 +228,7 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             {"sentence": {"type": "string", "maxLength": 2000}, "language": _LANGUAGE},
             "sentence language",
             right="know",
+            result=str,
         ),
         "station.state": service(
             lambda p: runner.present.on_wire(),
@@ -227,26 +240,33 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             lambda p: runner.pause(),
             "Halt the robot and the program: pausing, and paused when it has come to rest.",
             lane="control",
+            result=Status,
         ),
         "program.step": service(
-            lambda p: runner.step(), "Do one robot call, then hold again.", lane="control"
+            lambda p: runner.step(),
+            "Do one robot call, then hold again.",
+            lane="control",
+            result=Status,
         ),
         "program.resume": service(
             lambda p: runner.resume(),
             "Go on after a pause; a movement goes on to its goal.",
             lane="control",
+            result=Status,
         ),
         "program.stop": service(
             lambda p: runner.stop(),
             "Stop the program; `robot.stop` stops the robot as well.",
             right="know",
             lane="control",
+            result=None,
         ),
         "program.list": service(
             listed,
             "List the newest runs of the log.",
             {"last": {"type": "integer", "minimum": 1, "maximum": 1000}},
             observes=True,
+            result=list[Run],
         ),
     }
 
