@@ -13,10 +13,10 @@ from tests.played import ROOT, blocks, play
 
 DOCS = ROOT / "docs"
 COURSE = DOCS / "teaching.md"
-PAGES = [*sorted((DOCS / "tutorials").glob("*.md")), COURSE, DOCS / "it.md", DOCS / "privacy.md"]
+PAGES = [*sorted(DOCS.rglob("tutorials/*.md")), COURSE, DOCS / "it.md", DOCS / "privacy.md"]
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(DOCS).as_posix())
 def test_a_page_says_what_happens(page: Path, tmp_path: Path) -> None:
     assert play(page, tmp_path) > 2
 
