@@ -17,6 +17,7 @@ PAGES = [*sorted(DOCS.rglob("tutorials/*.md")), COURSE, DOCS / "it.md", DOCS / "
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(DOCS).as_posix())
+@pytest.mark.timeout(400)  # some have a dozen runs
 def test_a_page_says_what_happens(page: Path, tmp_path: Path) -> None:
     assert play(page, tmp_path) > 2
 
