@@ -17,6 +17,7 @@ Every file may hold any of these keys; those of all files are put together:
     speech        how reported speech becomes direct speech
     rewordings    other ways to say the same
     help          topics with example phrases
+    methods       what is said of a robot method, besides those of `explain.yaml` (`grammar.speech`)
     sayings       what else people say, for the recogniser
 """
 
@@ -80,6 +81,8 @@ class Language:
     """topic -> example templates"""
     sayings: tuple[str, ...]
     """More templates like these, which nobody is shown."""
+    methods: Mapping[str, Any]
+    """robot method -> what is said of it (`grammar.speech`)"""
     words: frozenset[str]
     """Normal forms of all words of rules and lists."""
     spelled_words: frozenset[str]
@@ -280,6 +283,7 @@ def _language(code: str, compiled: Compiled) -> Language:
         rewordings=tuple(data.get("rewordings", ())),
         help={topic: tuple(examples) for topic, examples in data.get("help", {}).items()},
         sayings=tuple(data.get("sayings", ())),
+        methods=data.get("methods", {}),
         words=compiled.words,
         spelled_words=compiled.spelled_words,
     )

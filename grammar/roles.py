@@ -11,6 +11,8 @@ from typing import Final
 
 from robot_api.methods import Method, Parameter
 
+CHOICE: Final = "choice"
+"""One of the few names that the table lists for it."""
 FREE: Final = "free"
 """A text that people hear or read."""
 OPTIONS: Final = "options"
@@ -68,10 +70,10 @@ _NAMES: Final = {"emotion": "emotions", "gesture": "gestures", "joint": "joints"
 
 
 def role(method: Method, parameter: Parameter) -> str:
-    """What a parameter takes: a sort of names, a sort of numbers, `FREE` or `OPTIONS`."""
-    if parameter.name == "name":
-        return _NAMES[method.name]
-    known = _ROLES.get(parameter.name)
+    """What a parameter takes: a sort of names, a sort of numbers, `CHOICE`, `FREE`, `OPTIONS`."""
+    if parameter.kind.choices:
+        return CHOICE
+    known = _NAMES.get(method.name) if parameter.name == "name" else _ROLES.get(parameter.name)
     if known is not None:
         return known
     return FREE if "str" in parameter.kind.annotation else "numbers"

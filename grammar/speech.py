@@ -1,6 +1,7 @@
-"""The words of explanations: a data file for each language, `languages/<code>/explain.yaml`.
+"""The words of explanations: a data file for each language, `languages/<code>/explain.yaml`, and
+what other files of the language say under `methods`, beside the rules for a robot method.
 
-The file is read once, and checked against the shapes below, so that a phrase missing in a new
+They are read once, and checked against the shapes below, so that a phrase missing in a new
 language is noticed when it is loaded and not in front of a nurse.
 """
 
@@ -13,6 +14,9 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
+
+from grammar.language import load_language
+from grammar.network import RuleError
 
 FOLDER = Path(__file__).with_name("languages")
 
@@ -34,6 +38,9 @@ class Words(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     missed: tuple[str, ...] = ()
     fields: dict[str, str] = {}
     compared: dict[str, dict[str, str]] = {}
+    choices: dict[str, dict[str, str]] = {}
+    """What the values of a parameter are called that can have only a few: {"color": {"red":
+    "rot"}}."""
 
 
 class Times(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -179,6 +186,11 @@ class Speech(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     inflected: tuple[tuple[str, str], ...] = ()
     """What the marks in the phrases of this language come to, such as ⟨dat⟩ before a noun."""
 
+    def choice(self, parameter: str, value: str) -> str:
+        """What a value of a parameter is called that can have only a few."""
+        called = (words.choices.get(parameter, {}) for words in self.methods.values())
+        return next((known[value] for known in called if value in known), value)
+
     def joined_up(self, text: str) -> str:
         """The text with its marks made endings, and the little words run together, but for what is
         quoted in it."""
@@ -209,7 +221,11 @@ def speech(language: str) -> Speech:
     data: Any = yaml.load(
         path.read_text(encoding="utf-8"), Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     )
-    return msgspec.convert(data, Speech)
+    methods = load_language(language).methods
+    twice = next(iter(methods.keys() & data["methods"].keys()), None)
+    if twice is not None:
+        raise RuleError(f"{path.name} and another file of {language} both speak of {twice!r}")
+    return msgspec.convert({**data, "methods": {**data["methods"], **methods}}, Speech)
 
 
 def gaps(pattern: str) -> set[str]:

@@ -30,6 +30,14 @@ ROLES: Final = {
     "options": "options",
 }
 """How a parameter's text is put into a sentence; all others are quoted."""
+CHOICES: Final = frozenset(
+    parameter.name
+    for method in METHODS.values()
+    for form in method.forms
+    for parameter in form
+    if parameter.kind.choices
+)
+"""Parameters whose text is one of a few, which the words of their method call by name."""
 
 LENGTHS_OF_TIME: Final = frozenset({"seconds", "timeout"})
 LANGUAGES: Final = frozenset({"code", "language"})
@@ -120,6 +128,8 @@ class ValueTeller:
             case _ if parameter in LENGTHS_OF_TIME:
                 number = fill(self.words.values["inserted"], {"value": self.value(value)})
                 return fill(self.words.durations.units[-1][2], {"number": number})
+            case p.Text(value=text) if parameter in CHOICES:
+                return self.words.choice(parameter, text)
             case p.Text(value=code) if parameter in LANGUAGES:
                 return self.words.languages.get(code, code)
             case p.Text(value=text) if form == "plural":

@@ -18,22 +18,10 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from robot_api import limits
-from robot_api.capabilities.arms import Gesture, Joints
 from robot_api.capabilities.base import Capability, Hub, Listener
 from robot_api.capabilities.camera import Camera
-from robot_api.capabilities.company import Following, Guiding
 from robot_api.capabilities.core import Core, LogBook
-from robot_api.capabilities.driving import Dock, Motion, Navigation
-from robot_api.capabilities.face import Face
-from robot_api.capabilities.hearing import Hearing
-from robot_api.capabilities.manipulation import Manipulation
-from robot_api.capabilities.scanner import Scanner
-from robot_api.capabilities.screen import Screen
-from robot_api.capabilities.skills import Skills
-from robot_api.capabilities.speech import Speech
 from robot_api.capabilities.tablet import Tablet
-from robot_api.capabilities.telepresence import Telepresence
-from robot_api.capabilities.vision import Vision
 from robot_api.driver import Capabilities, StopFlag
 from robot_api.errors import (
     InternalError,
@@ -43,34 +31,11 @@ from robot_api.errors import (
     RobotError,
     StopNotConfirmed,
 )
+from robot_api.interfaces import INTERFACES
 from robot_api.methods import METHODS, Method
 from robot_api.robots.link import Link
 from robot_api.robots.robot_file import RobotFile
 from robot_api.schema import find_method, read_arguments
-
-INTERFACES: Mapping[str, type[Capability]] = {
-    interface.name: interface
-    for interface in (
-        Core,
-        Speech,
-        Hearing,
-        Navigation,
-        Motion,
-        Dock,
-        Face,
-        Gesture,
-        Joints,
-        Telepresence,
-        Scanner,
-        Screen,
-        Vision,
-        Manipulation,
-        Following,
-        Guiding,
-        Skills,
-    )
-}
-"""The interface of each capability in the method table."""
 
 _STOP: Final = "stop"
 _JOYSTICK: Final = "drive"

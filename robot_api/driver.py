@@ -15,6 +15,7 @@ from typing import Any, Protocol
 import msgspec
 
 from robot_api.errors import Stopped
+from robot_api.methods import METHODS
 
 
 class Capabilities(msgspec.Struct, frozen=True, kw_only=True):
@@ -96,7 +97,7 @@ class StopFlag:
 Event = Mapping[str, Any]
 """Data of an event for those who subscribed; its kinds are the keys of `EVENTS`."""
 
-EVENTS: Mapping[str, str] = {
+_EVENTS: Mapping[str, str] = {
     "pose": "x, y (metres), theta (degrees), place, speed (m/s), time (s); 10 a second when moving",
     "lidar": "metres: distances to what is around it, evenly round it from straight ahead to the"
     " left, null where nothing is in reach; at most 5 a second",
@@ -121,6 +122,18 @@ EVENTS: Mapping[str, str] = {
     "stop_not_confirmed": "because, message: it may still be moving, use its own button",
     "link": "state (connected, lost), since (seconds since the epoch), because: whether the robot"
     " can be reached",
+}
+
+EVENTS_OF_METHODS: Mapping[str, tuple[str, ...]] = {
+    method.tells: tuple(parameter.name for parameter in method.forms[0])
+    for method in METHODS.values()
+    if method.tells is not None and method.tells not in _EVENTS
+}
+"""The kinds of which only the method table says what they tell: the parameters."""
+
+EVENTS: Mapping[str, str] = {
+    **_EVENTS,
+    **{kind: ", ".join(fields) for kind, fields in EVENTS_OF_METHODS.items()},
 }
 
 

@@ -13,44 +13,27 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from datetime import datetime
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from robot_api import limits
-from robot_api.capabilities.arms import (
-    EmulatedGesture,
-    EmulatedJoints,
-    SimulatedGesture,
-    SimulatedJoints,
-)
 from robot_api.capabilities.base import Capability, Hub
-from robot_api.capabilities.company import (
-    EmulatedFollowing,
-    EmulatedGuiding,
-    SimulatedFollowing,
-    SimulatedGuiding,
-)
+from robot_api.capabilities.company import EmulatedFollowing, EmulatedGuiding, SimulatedGuiding
 from robot_api.capabilities.core import EmulatedCore, LogBook, SimulatedCore
-from robot_api.capabilities.driving import (
-    EmulatedDock,
-    EmulatedMotion,
-    EmulatedNavigation,
-    SimulatedDock,
-    SimulatedMotion,
-    SimulatedNavigation,
-)
-from robot_api.capabilities.emulation import Emulation
-from robot_api.capabilities.face import EmulatedFace, Face, ScreenFace, SimulatedFace
+from robot_api.capabilities.driving import EmulatedDock, EmulatedNavigation, SimulatedNavigation
+from robot_api.capabilities.emulation import Emulation, InEmulation
+from robot_api.capabilities.face import Face, ScreenFace
 from robot_api.capabilities.hearing import EmulatedHearing, SimulatedHearing
-from robot_api.capabilities.manipulation import EmulatedManipulation, SimulatedManipulation
 from robot_api.capabilities.scanner import EmulatedScanner, SimulatedScanner
 from robot_api.capabilities.screen import EmulatedScreen, Screen, SimulatedScreen
-from robot_api.capabilities.skills import EmulatedSkills, SimulatedSkills
+from robot_api.capabilities.simulation import InSimulation
+from robot_api.capabilities.skills import EmulatedSkills
 from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.capabilities.speech import EmulatedSpeech, SimulatedSpeech, Speech
-from robot_api.capabilities.telepresence import EmulatedTelepresence, SimulatedTelepresence
-from robot_api.capabilities.vision import EmulatedVision, SimulatedVision
-from robot_api.composed import INTERFACES, Call, ComposedDriver
+from robot_api.capabilities.vision import EmulatedVision
+from robot_api.composed import Call, ComposedDriver
 from robot_api.driver import StopFlag
+from robot_api.interfaces import INTERFACES, implementations
+from robot_api.methods import CAPABILITIES
 from robot_api.robots.robot_file import RobotFile
 from robot_api.schema import find_method
 
@@ -67,6 +50,8 @@ __all__ = [
     "in_default_world",
     "simulated",
 ]
+
+_World = TypeVar("_World")
 
 
 # --- the emulator --------------------------------------------------------------------------------
@@ -174,21 +159,32 @@ def _emulated_parts(
         speech,
         EmulatedHearing(emulation, speech, screen, sound),
         navigation,
-        EmulatedMotion(emulation),
         EmulatedDock(emulation, navigation),
-        EmulatedFace(emulation),
-        EmulatedGesture(emulation),
-        EmulatedJoints(emulation),
-        EmulatedTelepresence(emulation),
         EmulatedScanner(emulation, speech),
         screen,
         EmulatedVision(emulation, navigation),
-        EmulatedManipulation(emulation),
         EmulatedFollowing(emulation, navigation),
         EmulatedGuiding(navigation),
         EmulatedSkills(emulation, skills),
     ]
-    return [part for part in parts if part is not None]
+    return _with_others(parts, implementations(InEmulation), emulation, without)
+
+
+def _with_others(
+    parts: Iterable[Capability | None],
+    known: Mapping[str, Callable[[_World], Capability]],
+    world: _World,
+    without: Collection[str] = (),
+) -> list[Capability]:
+    """These capabilities and all others that are known, which need nothing but the world that they
+    are in; in the order of the table."""
+    made = {part.name: part for part in parts if part is not None}
+    others = {
+        name: kind(world)
+        for name, kind in known.items()
+        if name not in made and name not in without
+    }
+    return [each for name in CAPABILITIES if (each := (made | others).get(name)) is not None]
 
 
 # --- the simulator -------------------------------------------------------------------------------
@@ -249,22 +245,13 @@ def _simulated_parts(simulation: Simulation, book: LogBook, sound: Sound) -> lis
     speech = SimulatedSpeech(simulation, sound)
     screen = SimulatedScreen(simulation, speech)
     navigation = SimulatedNavigation(simulation)
-    return [
+    parts = (
         SimulatedCore(simulation, book),
         speech,
         SimulatedHearing(simulation, speech, screen, sound),
         navigation,
-        SimulatedMotion(simulation),
-        SimulatedDock(simulation),
-        SimulatedFace(simulation),
-        SimulatedGesture(simulation),
-        SimulatedJoints(simulation),
-        SimulatedTelepresence(simulation),
         SimulatedScanner(simulation, speech),
         screen,
-        SimulatedVision(simulation),
-        SimulatedManipulation(simulation),
-        SimulatedFollowing(simulation),
         SimulatedGuiding(simulation, navigation),
-        SimulatedSkills(simulation),
-    ]
+    )
+    return _with_others(parts, implementations(InSimulation), simulation)

@@ -3,8 +3,8 @@
 From this table come the JSON Schemas that calls on the wire are validated with, the `.pyi` stub
 that programs are type-checked against, the OpenRPC document, the reference page in the docs and the
 check that every action of the grammar exists (`robot_api.schema`, `robot_api.stub`,
-`robot_api.reference`). To add a method, add it here, then give it an implementation in
-`robot_api.capabilities`; the conformance test fails until both are there.
+`robot_api.reference`). How to add a method says docs/drivers.md: a row here, a capability, its
+words in each language.
 
 Lengths are metres, angles degrees (left is +), durations seconds. The paper's function numbers
 (Glauser et al., Table 1) stand in `paper`.
@@ -26,6 +26,12 @@ class Kind:
 
     annotation: str
     schema: dict[str, Any]
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """The values there are, where a schema lists them all (`enum`)."""
+        schemas = self.schema.get("anyOf", [self.schema])
+        return tuple(value for schema in schemas for value in schema.get("enum", ()))
 
 
 class _Required(enum.Enum):
@@ -69,6 +75,9 @@ class Method:
     looks_or_tells: bool = False
     """Whether it only looks or tells where the robot is: nothing moves, nobody is asked, called or
     waited for, and the robot's screen and settings stay as they are."""
+    tells: str | None = None
+    """The kind of event that tells everybody that it was done; one that `robot_api.driver` does
+    not know otherwise has the parameters for its data."""
 
 
 # --- kinds of values -----------------------------------------------------------------------------
@@ -178,6 +187,7 @@ def _method(
     moves: bool = False,
     extra: bool = False,
     looks_or_tells: bool = False,
+    tells: str | None = None,
 ) -> Method:
     return Method(
         name,
@@ -190,6 +200,7 @@ def _method(
         moves,
         extra,
         looks_or_tells,
+        tells,
     )
 
 
@@ -205,6 +216,7 @@ METHODS: Final[dict[str, Method]] = {
             needs="speech",
             paper=1,
             looks_or_tells=True,
+            tells="speech",
         ),
         _method(
             "listen",
@@ -241,12 +253,14 @@ METHODS: Final[dict[str, Method]] = {
             P("percent", PERCENT, "0 is silent, 100 the loudest"),
             needs="speech",
             paper=2,
+            tells="volume",
         ),
         _method(
             "set_language",
             "Set the language the robot speaks and hears.",
             P("code", LANGUAGE, '"en", "de" or "fr"'),
             needs="speech",
+            tells="language",
         ),
         # --- driving
         _method(
@@ -339,6 +353,7 @@ METHODS: Final[dict[str, Method]] = {
             P("name", NAME, '"neutral", "happy", "sad", "confused", "angry", ...'),
             needs="face",
             paper=8,
+            tells="emotion",
         ),
         _method(
             "gesture",
@@ -356,6 +371,7 @@ METHODS: Final[dict[str, Method]] = {
             needs="joints",
             paper=10,
             moves=True,
+            tells="joint",
         ),
         _method(
             "log",
@@ -394,6 +410,7 @@ METHODS: Final[dict[str, Method]] = {
             P("url", _optional(_text(r"^https?://", 2000)), "the address of a web page", None),
             needs="screen",
             paper=14,
+            tells="screen",
         ),
         _method(
             "click",

@@ -302,6 +302,8 @@ def _expectation(schema: Mapping[str, Any]) -> str:
             return f"a whole number from {low} to {high}"
         case {"type": "array", "minItems": least, "maxItems": most}:
             return f"a list of {least} to {most} texts"
+        case {"enum": [*names, last]}:
+            return f"one of {' or '.join(filter(None, [', '.join(names), last]))}"
         case {"type": "object"}:
             return "a location with x and y"
     return "of another kind"

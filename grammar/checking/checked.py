@@ -35,15 +35,16 @@ from grammar.refusals import forbidden, harmful, no_thing, not_said, out_of_rang
 from grammar.repairs import taken_back
 from grammar.roles import ANYBODY
 from grammar.tidy import nodes
+from robot_api.methods import METHODS
 
 MOST_OWN: Final = 2
 SHARE_OF_OWN: Final = 0.3
 """So many words of one text, and so much of it, nobody has said: that is too much."""
+_BY_THE_WAY: Final = frozenset({"say", "ask", "goto", "find", "wait", "stop", "read_text"})
+"""What a plan may do on its way to what was asked for, beside looking and telling."""
 UNASKED: Final = frozenset(
-    {"call", "hang_up", "set_volume", "set_language", "localize", "drive", "move", "turn", "joint"}
-    | {"click", "type_text", "do", "scan", "log", "follow", "guide", "grab", "put", "give"}
-    | {"gesture", "emotion", "dock", "touch", "show", "answer", "listen", "wait_for"}
-)
+    name for name, method in METHODS.items() if not method.looks_or_tells
+) - _BY_THE_WAY | {"answer", "log"}
 """Methods that nobody wants unasked: some word must speak for each."""
 GRAVE: Final = frozenset(
     {"call", "hang_up", "set_language", "localize", "drive", "joint", "click", "type_text", "do"}

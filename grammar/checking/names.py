@@ -7,11 +7,11 @@ from typing import Final
 
 from grammar.plan import Call, ForEach, ListOf, Plan, Recall, Remember, Try
 from grammar.tidy import nodes
+from robot_api.methods import METHODS, NOTHING
 
 ONLY_FINDS_OUT: Final = frozenset(
-    {"location", "places", "sees", "count", "objects", "people", "describe", "clock", "battery"}
-    | {"log", "scan", "touch", "listen", "read_text"}
-)
+    name for name, method in METHODS.items() if method.returns is not NOTHING
+) - {"ask", "answer", "find", "wait_for", "do"}
 """Methods that are of no use if nothing is made of what they tell."""
 
 

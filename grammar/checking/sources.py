@@ -19,14 +19,14 @@ from grammar.lexicon import kind_of, series_of
 from grammar.plan import Plan
 from grammar.planning.mentions import Mention, written
 from grammar.planning.turn import Turn
-from grammar.roles import ANYBODY, FREE, NUMBERS, OPTIONS, QUANTITIES, SORTS, role
+from grammar.roles import ANYBODY, CHOICE, FREE, NUMBERS, OPTIONS, QUANTITIES, SORTS, role
 from robot_api.methods import METHODS
 
 Origin = OneOf["name", "words", "number", "before", "default", "answer", "own"]
 
 _SORTS: Final = {**SORTS, **QUANTITIES}
 _LEFT_TO_THE_ROBOT: Final = frozenset(
-    {"gestures", "emotions", "joints", "skills", "languages", "kinds", "percents"}
+    {"gestures", "emotions", "joints", "skills", "languages", "kinds", "percents", CHOICE}
 )
 """Roles whose literal may be one that nobody said: how to look "grumpy", how loud "quietly" is."""
 _DEGREES: Final = frozenset({0.0, 45.0, 90.0, 180.0, 360.0})

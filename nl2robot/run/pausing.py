@@ -15,13 +15,13 @@ from typing import Any, Final
 import msgspec
 
 from robot_api.client import Robot
+from robot_api.methods import METHODS
 from robot_api.values import Location
 
+_LIMBS: Final = frozenset({"gesture", "joints"})
+"""The capabilities that move the body and no wheel."""
 DRIVING: Final = frozenset(
-    (
-        *("goto", "move", "turn", "drive", "dock", "find"),
-        *("grab", "put", "give", "follow", "guide", "do"),
-    )
+    name for name, method in METHODS.items() if method.moves and method.capability not in _LIMBS
 )
 """The methods that turn the wheels. They are broken off by a pause; all others end by themselves
 while the robot stands."""

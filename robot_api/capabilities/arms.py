@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from robot_api.capabilities.base import Capability
+from robot_api.capabilities.emulation import InEmulation
 from robot_api.capabilities.names import listed, one_of
 from robot_api.capabilities.simulation import InSimulation
 from robot_api.driver import StopFlag
 from robot_api.errors import InvalidCall, NotSupported
 from robot_api.methods import SUGGESTED_GESTURES
-
-if TYPE_CHECKING:
-    from robot_api.capabilities.emulation import Emulation
 
 JOINTS: Mapping[str, tuple[float, float]] = {
     "head_yaw": (-90.0, 90.0),
@@ -83,24 +81,18 @@ class Joints(Capability):
         return {"joints": dict(self.ranges)}
 
 
-class EmulatedGesture(Gesture):
-    def __init__(self, emulation: Emulation) -> None:
-        self._emulation = emulation
-
+class EmulatedGesture(InEmulation, Gesture):
     def make(self, stop: StopFlag, gesture: str) -> None:
-        self._emulation.publish("gesture", name=gesture)
-        self._emulation.pass_time(_SECONDS, stop)
+        self.emulation.publish("gesture", name=gesture)
+        self.emulation.pass_time(_SECONDS, stop)
 
 
-class EmulatedJoints(Joints):
-    def __init__(self, emulation: Emulation) -> None:
-        self._emulation = emulation
-
+class EmulatedJoints(InEmulation, Joints):
     def set_joint(self, stop: StopFlag, joint: str, degrees: float) -> None:
-        turn = abs(degrees - self._emulation.joints.get(joint, 0.0))
-        self._emulation.pass_time(turn / _JOINT_RATE, stop)
-        self._emulation.joints[joint] = degrees
-        self._emulation.publish("joint", name=joint, degrees=degrees)
+        turn = abs(degrees - self.emulation.joints.get(joint, 0.0))
+        self.emulation.pass_time(turn / _JOINT_RATE, stop)
+        self.emulation.joints[joint] = degrees
+        self.emulation.publish("joint", name=joint, degrees=degrees)
 
 
 class SimulatedGesture(InSimulation, Gesture):

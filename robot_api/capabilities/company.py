@@ -6,6 +6,7 @@ from abc import abstractmethod
 from typing import TYPE_CHECKING
 
 from robot_api.capabilities.base import Capability
+from robot_api.capabilities.emulation import Emulation, InEmulation
 from robot_api.capabilities.languages import language_data
 from robot_api.capabilities.simulation import InSimulation
 from robot_api.driver import StopFlag
@@ -13,7 +14,6 @@ from robot_api.values import Location
 
 if TYPE_CHECKING:
     from robot_api.capabilities.driving import Navigation
-    from robot_api.capabilities.emulation import Emulation
     from robot_api.capabilities.speech import Speech
     from sim.simulation import Simulation
 
@@ -38,18 +38,18 @@ class Guiding(Capability):
     def guide(self, stop: StopFlag, person: str, place: str | Location) -> None: ...
 
 
-class EmulatedFollowing(Following):
+class EmulatedFollowing(InEmulation, Following):
     """The person goes straight to where they are followed to, or is soon there."""
 
     def __init__(self, emulation: Emulation, navigation: Navigation) -> None:
-        self._emulation = emulation
+        super().__init__(emulation)
         self._navigation = navigation
 
     def follow(self, stop: StopFlag, person: str, to: str | None) -> None:
         if to is not None:
             self._navigation.goto(stop, to)
         else:
-            self._emulation.pass_time(10.0, stop)
+            self.emulation.pass_time(10.0, stop)
 
 
 class EmulatedGuiding(Guiding):

@@ -7,17 +7,14 @@ from abc import abstractmethod
 from collections import deque
 from collections.abc import Callable, Mapping
 from datetime import datetime
-from typing import TYPE_CHECKING
 
 from robot_api.capabilities.base import Capability, Hub
+from robot_api.capabilities.emulation import InEmulation
 from robot_api.capabilities.languages import fold
 from robot_api.capabilities.simulation import InSimulation
 from robot_api.driver import StopFlag
 from robot_api.methods import CORE
 from robot_api.values import Clock
-
-if TYPE_CHECKING:
-    from robot_api.capabilities.emulation import Emulation
 
 _WEEKDAYS = ("Monday", "Tuesday", "Wednesday", "Thursday", "Friday", "Saturday", "Sunday")
 
@@ -105,22 +102,18 @@ def _forms(kind: str) -> tuple[str, ...]:
     return kind, plural, f"{kind}es"
 
 
-class EmulatedCore(Core):
-    def __init__(self, emulation: Emulation, book: LogBook) -> None:
-        super().__init__(book)
-        self._emulation = emulation
-
+class EmulatedCore(InEmulation, Core):
     def wait(self, stop: StopFlag, seconds: float) -> None:
-        self._emulation.pass_time(seconds, stop)
+        self.emulation.pass_time(seconds, stop)
 
     def place_kinds(self) -> Mapping[str, str]:
-        return self._emulation.places
+        return self.emulation.places
 
     def now(self) -> datetime:
-        return self._emulation.now()
+        return self.emulation.now()
 
     def charge(self) -> float:
-        return self._emulation.battery
+        return self.emulation.battery
 
     def rest(self) -> None:
         """The calls that pretend to take time look at their flags themselves."""

@@ -6,17 +6,14 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from robot_api.capabilities.base import Capability
+from robot_api.capabilities.emulation import Emulation, InEmulation
 from robot_api.capabilities.names import one_of, unknown_place
 from robot_api.capabilities.simulation import InSimulation, robot_errors
 from robot_api.driver import StopFlag
 from robot_api.errors import InvalidCall, NotPossible
 from robot_api.values import Location
-
-if TYPE_CHECKING:
-    from robot_api.capabilities.emulation import Emulation
 
 _SPEED = 0.7
 """Metres per second at which the emulator drives."""
@@ -123,58 +120,52 @@ class Dock(Capability):
 # --- emulated ------------------------------------------------------------------------------------
 
 
-class EmulatedNavigation(Navigation):
+class EmulatedNavigation(InEmulation, Navigation):
     """Arrives wherever it is sent. Unless it was given places, it believes in any."""
 
-    def __init__(self, emulation: Emulation) -> None:
-        self._emulation = emulation
-
     def locate(self, place: str) -> Goal:
-        known = one_of(place, self._emulation.places)
+        known = one_of(place, self.emulation.places)
         if known is None:
-            if not self._emulation.any_place:
-                raise unknown_place(place, {name: name for name in self._emulation.places})
-            self._emulation.places[place] = place.split()[-1]
+            if not self.emulation.any_place:
+                raise unknown_place(place, {name: name for name in self.emulation.places})
+            self.emulation.places[place] = place.split()[-1]
             known = place
         # Places stand in a row, so that each is somewhere else.
-        return Goal(4.0 * list(self._emulation.places).index(known), 0.0, 0.0, known)
+        return Goal(4.0 * list(self.emulation.places).index(known), 0.0, 0.0, known)
 
     def drive_to(self, stop: StopFlag, goal: Goal) -> None:
-        here = self._emulation.location
+        here = self.emulation.location
         metres = math.hypot(goal.x - here.x, goal.y - here.y)
-        self._emulation.pass_time(metres / _SPEED, stop)
+        self.emulation.pass_time(metres / _SPEED, stop)
         self.believe(goal)
 
     def believe(self, goal: Goal) -> None:
-        theta = self._emulation.location.theta if goal.theta is None else goal.theta
-        self._emulation.stand_at(Location(goal.x, goal.y, theta, goal.place))
+        theta = self.emulation.location.theta if goal.theta is None else goal.theta
+        self.emulation.stand_at(Location(goal.x, goal.y, theta, goal.place))
 
     def location(self, stop: StopFlag) -> Location:
-        return self._emulation.location
+        return self.emulation.location
 
 
-class EmulatedMotion(Motion):
+class EmulatedMotion(InEmulation, Motion):
     """Adds the distances up and meets no obstacle."""
 
-    def __init__(self, emulation: Emulation) -> None:
-        self._emulation = emulation
-
     def move(self, stop: StopFlag, metres: float) -> None:
-        self._emulation.pass_time(abs(metres) / _SPEED, stop)
+        self.emulation.pass_time(abs(metres) / _SPEED, stop)
         self._advance(metres, 0.0)
 
     def turn(self, stop: StopFlag, degrees: float) -> None:
-        self._emulation.pass_time(abs(degrees) / _TURN_RATE, stop)
+        self.emulation.pass_time(abs(degrees) / _TURN_RATE, stop)
         self._advance(0.0, degrees)
 
     def drive(self, stop: StopFlag, linear: float, angular: float, seconds: float) -> None:
-        self._emulation.pass_time(seconds, stop)
+        self.emulation.pass_time(seconds, stop)
         self._advance(linear * seconds, angular * seconds)
 
     def _advance(self, metres: float, degrees: float) -> None:
-        here = self._emulation.location
+        here = self.emulation.location
         heading = math.radians(here.theta + degrees / 2)
-        self._emulation.stand_at(
+        self.emulation.stand_at(
             Location(
                 here.x + metres * math.cos(heading),
                 here.y + metres * math.sin(heading),
@@ -184,18 +175,18 @@ class EmulatedMotion(Motion):
         )
 
 
-class EmulatedDock(Dock):
+class EmulatedDock(InEmulation, Dock):
     def __init__(self, emulation: Emulation, navigation: EmulatedNavigation) -> None:
-        self._emulation = emulation
+        super().__init__(emulation)
         self._navigation = navigation
 
     def dock(self, stop: StopFlag) -> None:
-        kinds = {kind: name for name, kind in self._emulation.places.items()}
+        kinds = {kind: name for name, kind in self.emulation.places.items()}
         if "charger" not in kinds:
             raise NotPossible("There is no charging station here. Send me to a place instead.")
         self._navigation.drive_to(stop, self._navigation.locate(kinds["charger"]))
-        self._emulation.battery = 100.0
-        self._emulation.publish("battery", percent=100, charging=True)
+        self.emulation.battery = 100.0
+        self.emulation.publish("battery", percent=100, charging=True)
 
 
 # --- simulated -----------------------------------------------------------------------------------

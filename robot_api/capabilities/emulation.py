@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from datetime import datetime, timedelta
 from typing import Any
 
-from robot_api.capabilities.base import Hub
+from robot_api.capabilities.base import Capability, Hub
 from robot_api.driver import StopFlag
 from robot_api.values import Location
 
@@ -97,3 +97,11 @@ class Emulation:
             speed=0.0,
             time=self._seconds,
         )
+
+
+class InEmulation(Capability):
+    """A capability of the emulated robot; goes before the interface among the base classes."""
+
+    def __init__(self, emulation: Emulation, *others: Any) -> None:
+        super().__init__(*others)
+        self.emulation = emulation

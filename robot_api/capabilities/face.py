@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from robot_api.capabilities.base import Capability, Hub
+from robot_api.capabilities.emulation import InEmulation
 from robot_api.capabilities.names import listed, one_of
 from robot_api.capabilities.simulation import InSimulation
 from robot_api.driver import StopFlag
@@ -15,7 +16,6 @@ from robot_api.errors import NotSupported
 from robot_api.methods import SUGGESTED_EMOTIONS
 
 if TYPE_CHECKING:
-    from robot_api.capabilities.emulation import Emulation
     from robot_api.capabilities.screen import Screen
 
 
@@ -40,13 +40,10 @@ class Face(Capability):
         return {"emotions": self.emotions}
 
 
-class EmulatedFace(Face):
-    def __init__(self, emulation: Emulation) -> None:
-        self._emulation = emulation
-
+class EmulatedFace(InEmulation, Face):
     def express(self, stop: StopFlag, emotion: str) -> None:
-        self._emulation.emotion = emotion
-        self._emulation.publish("emotion", name=emotion)
+        self.emulation.emotion = emotion
+        self.emulation.publish("emotion", name=emotion)
 
 
 class SimulatedFace(InSimulation, Face):

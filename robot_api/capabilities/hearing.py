@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from robot_api.capabilities.base import Capability, Hub
+from robot_api.capabilities.emulation import Emulation, InEmulation
 from robot_api.capabilities.languages import language_data
 from robot_api.capabilities.matching import match_answer, match_question
 from robot_api.capabilities.simulation import InSimulation
@@ -22,7 +23,6 @@ from robot_api.errors import NotFound, TimedOut
 from robot_api.methods import MAX_TEXT
 
 if TYPE_CHECKING:
-    from robot_api.capabilities.emulation import Emulation
     from robot_api.capabilities.screen import Screen
     from robot_api.capabilities.speech import Speech
     from sim.simulation import Simulation
@@ -194,7 +194,7 @@ def _words(heard: str | Unsure | None) -> str | None:
     return heard.words if isinstance(heard, Unsure) else heard
 
 
-class EmulatedHearing(Hearing):
+class EmulatedHearing(InEmulation, Hearing):
     """Hears the canned answers in their order, then the first option or "yes"; with ears, what is
     said."""
 
@@ -205,14 +205,13 @@ class EmulatedHearing(Hearing):
         screen: Screen | None,
         sound: Sound = SILENT,
     ) -> None:
-        super().__init__(speech, screen)
-        self._emulation = emulation
+        super().__init__(emulation, speech, screen)
         self._sound = sound
         self.hears_people = sound.ears is not None
 
     @property
     def language(self) -> str:
-        return self._emulation.language
+        return self.emulation.language
 
     def hear(
         self,
@@ -226,14 +225,14 @@ class EmulatedHearing(Hearing):
             asked = Asked(self.language, question, options, person)
             heard = self._sound.ears.hear(stop, timeout, asked)
         else:
-            heard = self._emulation.next_answer(options[0] if options else "yes")
-        self._emulation.pass_time(timeout if heard is None else min(2.0, timeout), stop)
+            heard = self.emulation.next_answer(options[0] if options else "yes")
+        self.emulation.pass_time(timeout if heard is None else min(2.0, timeout), stop)
         if heard is not None:
-            self._emulation.publish("heard", text=_words(heard), person=person)
+            self.emulation.publish("heard", text=_words(heard), person=person)
         return heard
 
     def prepared(self, language: str) -> Sequence[Prepared]:
-        return [Prepared((ask,), answer) for ask, answer in self._emulation.questions.items()]
+        return [Prepared((ask,), answer) for ask, answer in self.emulation.questions.items()]
 
 
 class SimulatedHearing(InSimulation, Hearing):

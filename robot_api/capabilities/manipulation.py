@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from robot_api.capabilities.base import Capability
+from robot_api.capabilities.emulation import InEmulation
 from robot_api.capabilities.names import one_of
 from robot_api.capabilities.simulation import InSimulation
 from robot_api.driver import StopFlag
 from robot_api.errors import NotPossible
-
-if TYPE_CHECKING:
-    from robot_api.capabilities.emulation import Emulation
 
 
 class Manipulation(Capability):
@@ -35,19 +33,16 @@ class Manipulation(Capability):
         return {"hands": self.hands}
 
 
-class EmulatedManipulation(Manipulation):
+class EmulatedManipulation(InEmulation, Manipulation):
     """Whatever is wanted is there, but a hand can be full or empty."""
 
-    def __init__(self, emulation: Emulation) -> None:
-        self._emulation = emulation
-
     def grab(self, stop: StopFlag, thing: str) -> None:
-        held = self._emulation.held
+        held = self.emulation.held
         if len(held) >= self.hands:
             raise NotPossible(
                 f"I already hold the {held[0]}. Let me put it down or give it away first."
             )
-        self._emulation.pass_time(4.0, stop)
+        self.emulation.pass_time(4.0, stop)
         held.append(thing)
 
     def put(self, stop: StopFlag, thing: str, where: str | None) -> None:
@@ -57,11 +52,11 @@ class EmulatedManipulation(Manipulation):
         self._let_go(stop, thing)
 
     def _let_go(self, stop: StopFlag, thing: str) -> None:
-        held = one_of(thing, self._emulation.held)
+        held = one_of(thing, self.emulation.held)
         if held is None:
             raise NotPossible(f"I do not hold the {thing}. Let me grab it first.")
-        self._emulation.pass_time(4.0, stop)
-        self._emulation.held.remove(held)
+        self.emulation.pass_time(4.0, stop)
+        self.emulation.held.remove(held)
 
 
 class SimulatedManipulation(InSimulation, Manipulation):

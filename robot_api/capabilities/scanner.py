@@ -6,12 +6,12 @@ from abc import abstractmethod
 from typing import TYPE_CHECKING
 
 from robot_api.capabilities.base import Capability
+from robot_api.capabilities.emulation import InEmulation
 from robot_api.capabilities.simulation import InSimulation
 from robot_api.driver import StopFlag
 from robot_api.errors import TimedOut
 
 if TYPE_CHECKING:
-    from robot_api.capabilities.emulation import Emulation
     from robot_api.capabilities.speech import Speech
 
 _CODE = "4006381333931"
@@ -44,14 +44,10 @@ class Scanner(Capability):
         return code
 
 
-class EmulatedScanner(Scanner):
-    def __init__(self, emulation: Emulation, speech: Speech | None) -> None:
-        super().__init__(speech)
-        self._emulation = emulation
-
+class EmulatedScanner(InEmulation, Scanner):
     def read_code(self, stop: StopFlag, timeout: float) -> str | None:
-        code = self._emulation.next_answer(_CODE)
-        self._emulation.pass_time(timeout if code is None else min(2.0, timeout), stop)
+        code = self.emulation.next_answer(_CODE)
+        self.emulation.pass_time(timeout if code is None else min(2.0, timeout), stop)
         return code
 
 

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from robot_api.capabilities.base import Capability, Hub, Turns
+from robot_api.capabilities.emulation import InEmulation
 from robot_api.capabilities.page import Page
 from robot_api.capabilities.simulation import InSimulation
 from robot_api.capabilities.sound import Asked
@@ -17,7 +18,6 @@ from robot_api.driver import StopFlag
 from robot_api.errors import InvalidCall, NotFound, TimedOut
 
 if TYPE_CHECKING:
-    from robot_api.capabilities.emulation import Emulation
     from robot_api.capabilities.speech import Speech
     from sim.simulation import Simulation
 
@@ -161,23 +161,19 @@ class Screen(Capability):
         return self._speech.language if self._speech is not None else "en"
 
 
-class EmulatedScreen(Screen):
+class EmulatedScreen(InEmulation, Screen):
     """Somebody touches the canned answers in their order, then the first button."""
 
-    def __init__(self, emulation: Emulation, speech: Speech | None) -> None:
-        super().__init__(speech)
-        self._emulation = emulation
-
     def display(self, content: Content) -> None:
-        self._emulation.publish("screen", **content)
+        self.emulation.publish("screen", **content)
 
     def noticed(self, answer: str) -> None:
-        self._emulation.publish("heard", text=answer, person=None)
+        self.emulation.publish("heard", text=answer, person=None)
 
     def touched(self, stop: StopFlag, options: Sequence[str], timeout: float) -> str | None:
-        answer = self._emulation.next_answer(options[0])
+        answer = self.emulation.next_answer(options[0])
         touched = answer if answer in options else None
-        self._emulation.pass_time(timeout if touched is None else 2.0, stop)
+        self.emulation.pass_time(timeout if touched is None else 2.0, stop)
         return touched
 
 

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from robot_api.capabilities.base import Capability
+from robot_api.capabilities.emulation import Emulation, InEmulation
 from robot_api.capabilities.names import listed, one_of
 from robot_api.capabilities.simulation import InSimulation
 from robot_api.driver import StopFlag
 from robot_api.errors import InvalidCall, NotSupported
-
-if TYPE_CHECKING:
-    from robot_api.capabilities.emulation import Emulation
 
 
 class Skills(Capability):
@@ -43,11 +41,11 @@ class Skills(Capability):
         return {"skills": dict(self.skills)}
 
 
-class EmulatedSkills(Skills):
+class EmulatedSkills(InEmulation, Skills):
     """Takes any parameters and does nothing."""
 
     def __init__(self, emulation: Emulation, skills: Mapping[str, str]) -> None:
-        self._emulation = emulation
+        super().__init__(emulation)
         self._skills = skills
 
     @property
@@ -55,7 +53,7 @@ class EmulatedSkills(Skills):
         return self._skills
 
     def use(self, stop: StopFlag, skill: str, parameters: dict[str, Any]) -> Any:
-        self._emulation.pass_time(3.0, stop)
+        self.emulation.pass_time(3.0, stop)
         return None
 
 

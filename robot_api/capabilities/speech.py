@@ -6,6 +6,7 @@ from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
 from robot_api.capabilities.base import Capability, Hub, Turns
+from robot_api.capabilities.emulation import Emulation, InEmulation
 from robot_api.capabilities.names import listed
 from robot_api.capabilities.simulation import InSimulation
 from robot_api.capabilities.sound import SILENT, Sound
@@ -13,7 +14,6 @@ from robot_api.driver import StopFlag
 from robot_api.errors import NotSupported
 
 if TYPE_CHECKING:
-    from robot_api.capabilities.emulation import Emulation
     from sim.simulation import Simulation
 
 LANGUAGES = {"en": "English", "de": "German", "fr": "French"}
@@ -67,28 +67,27 @@ class Speech(Capability):
         raise NotSupported(f"I do not speak the language '{code}'. I speak {listed(names)}.")
 
 
-class EmulatedSpeech(Speech):
+class EmulatedSpeech(InEmulation, Speech):
     def __init__(self, emulation: Emulation, sound: Sound = SILENT) -> None:
-        super().__init__()
-        self._emulation = emulation
+        super().__init__(emulation)
         self._sound = sound
 
     @property
     def language(self) -> str:
-        return self._emulation.language
+        return self.emulation.language
 
     def speak(self, stop: StopFlag, text: str, language: str) -> None:
-        with self._sound.speaking(stop, text, language, self._emulation.volume):
-            self._emulation.publish("speech", text=text, language=language)
-            self._emulation.pass_time(1.0 + len(text) / 15, stop)
+        with self._sound.speaking(stop, text, language, self.emulation.volume):
+            self.emulation.publish("speech", text=text, language=language)
+            self.emulation.pass_time(1.0 + len(text) / 15, stop)
 
     def set_volume(self, stop: StopFlag, percent: int) -> None:
-        self._emulation.volume = percent
-        self._emulation.publish("volume", percent=percent)
+        self.emulation.volume = percent
+        self.emulation.publish("volume", percent=percent)
 
     def choose_language(self, code: str) -> None:
-        self._emulation.language = code
-        self._emulation.publish("language", code=code)
+        self.emulation.language = code
+        self.emulation.publish("language", code=code)
 
 
 class SimulatedSpeech(InSimulation, Speech):

@@ -5,15 +5,13 @@ from __future__ import annotations
 import threading
 from abc import abstractmethod
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from robot_api.capabilities.base import Capability
+from robot_api.capabilities.emulation import InEmulation
 from robot_api.capabilities.names import one_of, unknown_contact
 from robot_api.capabilities.simulation import InSimulation
 from robot_api.driver import StopFlag
-
-if TYPE_CHECKING:
-    from robot_api.capabilities.emulation import Emulation
 
 _RINGING = 4.0
 """Seconds until somebody answers, where nobody really does."""
@@ -75,19 +73,15 @@ class Telepresence(Capability):
         return {"contacts": tuple(dict.fromkeys(self.contacts().values()))}
 
 
-class EmulatedTelepresence(Telepresence):
-    def __init__(self, emulation: Emulation) -> None:
-        super().__init__()
-        self._emulation = emulation
-
+class EmulatedTelepresence(InEmulation, Telepresence):
     def contacts(self) -> Mapping[str, str]:
-        return {name: name for name in self._emulation.contacts}
+        return {name: name for name in self.emulation.contacts}
 
     def ring(self, stop: StopFlag, contact: str) -> None:
-        self._emulation.pass_time(_RINGING, stop)
+        self.emulation.pass_time(_RINGING, stop)
 
     def tell(self, contact: str, state: str) -> None:
-        self._emulation.publish("call", contact=contact, state=state)
+        self.emulation.publish("call", contact=contact, state=state)
 
 
 class SimulatedTelepresence(InSimulation, Telepresence):

@@ -6,12 +6,12 @@ from abc import abstractmethod
 from typing import TYPE_CHECKING
 
 from robot_api.capabilities.base import Capability
+from robot_api.capabilities.emulation import Emulation, InEmulation
 from robot_api.capabilities.simulation import InSimulation, robot_errors
 from robot_api.driver import StopFlag
 
 if TYPE_CHECKING:
     from robot_api.capabilities.driving import Navigation
-    from robot_api.capabilities.emulation import Emulation
 
 
 class Vision(Capability):
@@ -42,11 +42,11 @@ class Vision(Capability):
     def wait_for(self, stop: StopFlag, thing: str, timeout: float | None) -> bool: ...
 
 
-class EmulatedVision(Vision):
+class EmulatedVision(InEmulation, Vision):
     """Sees whatever it is asked for, once."""
 
     def __init__(self, emulation: Emulation, navigation: Navigation) -> None:
-        self._emulation = emulation
+        super().__init__(emulation)
         self._navigation = navigation
 
     def sees(self, stop: StopFlag, thing: str) -> bool:
@@ -70,7 +70,7 @@ class EmulatedVision(Vision):
         return True
 
     def wait_for(self, stop: StopFlag, thing: str, timeout: float | None) -> bool:
-        self._emulation.pass_time(5.0 if timeout is None else min(5.0, timeout), stop)
+        self.emulation.pass_time(5.0 if timeout is None else min(5.0, timeout), stop)
         return True
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Any
 
 import msgspec
 
@@ -149,21 +149,10 @@ def check_events(subject: Subject) -> None:
     for kind, data in heard:
         check_event(subject, kind, data)
     told = {kind for kind, _ in heard}
-    for name, kind in _TOLD.items():
-        if subject.can(name) and kind not in told:
-            subject.findings.wrong("events", name, f"sends no event {kind!r}")
+    for name, method in METHODS.items():
+        if method.tells is not None and subject.can(name) and method.tells not in told:
+            subject.findings.wrong("events", name, f"sends no event {method.tells!r}")
     check_pace(subject, [data for kind, data in heard if kind == "pose"])
-
-
-_TOLD: Final = {
-    "say": "speech",
-    "emotion": "emotion",
-    "show": "screen",
-    "set_volume": "volume",
-    "set_language": "language",
-    "joint": "joint",
-}
-"""What is told of when it was done, to the kind of event that tells it."""
 
 
 def check_event(subject: Subject, kind: str, data: Event) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from robot_api.conformance.subject import Subject
@@ -76,9 +76,26 @@ def samples(subject: Subject) -> Iterator[Sample]:
     for name, method in METHODS.items():
         if name == "stop":
             continue  # has checks of its own
-        one = {parameter.name: "cup" for parameter in method.forms[0] if parameter.required}
+        one = {each.name: _some(each.kind.schema) for each in method.forms[0] if each.required}
         for sample in arguments.get(name, [one]):
             yield name, sample
+
+
+def _some(schema: Mapping[str, Any]) -> Any:
+    """A value of which the table knows no more than its schema."""
+    match schema:
+        case {"enum": [first, *_]}:
+            return first
+        case {"type": "number" | "integer", "minimum": least, "maximum": most}:
+            return max(least, min(1, most))
+        case {"type": "boolean"}:
+            return True
+        case {"type": "array", "items": items, "minItems": least}:
+            return [_some(items)] * least
+        case {"anyOf": [one, *_]}:
+            return _some(one)
+        case _:
+            return "cup"
 
 
 def _where_it_is(subject: Subject) -> list[dict[str, Any]]:

@@ -7,10 +7,10 @@ import time
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from robot_api.composed import INTERFACES
 from robot_api.conformance.report import PARTS, Problem, Report, Row, State
 from robot_api.driver import Driver, Event, StopFlag
 from robot_api.errors import LostConnection, RobotError, StopNotConfirmed
+from robot_api.interfaces import INTERFACES
 from robot_api.methods import CAPABILITIES, METHODS
 
 ON_THE_WAY = 0.05

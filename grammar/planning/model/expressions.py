@@ -23,7 +23,7 @@ from grammar.planning.model.types import (
     result_of,
 )
 from grammar.planning.model.vocabulary import Vocabulary, form
-from grammar.roles import FREE, NUMBERS, OPTIONS, role
+from grammar.roles import CHOICE, FREE, NUMBERS, OPTIONS, role
 from robot_api.methods import METHODS, Parameter
 
 LONGEST_OPTION: Final = 60
@@ -521,7 +521,9 @@ class Reader(Letters):
             if given.kind is Kind.NOTHING:
                 raise Dead
             return given
-        known: tuple[str, ...] = getattr(self.words, what)
+        known: tuple[str, ...] = (
+            parameter.kind.choices if what == CHOICE else getattr(self.words, what)
+        )
         if what in NUMBERS:
             return self.numeric(parameter, known)
         if method in SEEING:
