@@ -18,6 +18,7 @@ from typing import Any, Final
 import msgspec
 
 from nl2robot.run.runlog import LogError, RunLog
+from robot_api.driver import EVENTS_OF_METHODS
 
 OFTEN: Final = 0.2
 """Seconds between two poses, at first."""
@@ -36,6 +37,7 @@ TOLD: Final[Mapping[str, str]] = {
     "screen": "text",
     "emotion": "name",
     "gesture": "name",
+    **{kind: fields[0] for kind, fields in EVENTS_OF_METHODS.items() if fields},
 }
 """The kinds of events that are kept, each with the field that is."""
 

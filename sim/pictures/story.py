@@ -13,6 +13,11 @@ SAME_SPOT = 0.45
 """Metres within which two stops are one on the picture."""
 STANDING = 3.0
 """Seconds that the robot stands still, with nothing happening, to make a stop."""
+_NO_STORY = frozenset(
+    {"lidar", "language", "volume", "joint", "battery", "sound", "silence", "searched"}
+    | {"stopping", "stop_not_confirmed", "link"}
+)
+"""Happenings that do not belong in a picture."""
 
 
 @dataclass
@@ -93,7 +98,10 @@ def told(happening: Happening) -> str | None:
             return f"video call {_text(data, 'contact')}" + (f": {state}" if state else "")
         case "stopped":
             return f"stopped: {_text(data, 'because')}"
-    return None
+        case kind if kind in _NO_STORY:
+            return None
+        case kind:  # what only the capability knows that tells it
+            return f"{kind}: {', '.join(_text(data, name) for name in data)}"
 
 
 def _text(data: dict[str, Any], name: str) -> str:

@@ -8,6 +8,7 @@ import sys
 from typing import Any
 
 from nl2robot.cli.main import main
+from robot_api import drivers
 from robot_api.capabilities.face import SimulatedFace
 from robot_api.capabilities.speech import SimulatedSpeech
 from robot_api.driver import StopFlag
@@ -33,16 +34,14 @@ class Face(SimulatedFace):
         super().express(stop, emotion)
 
 
-def part(kind: type, stubborn: type) -> None:
-    """The simulated robot has this part instead."""
-    from robot_api import drivers
-
-    assert getattr(drivers, kind.__name__) is kind
-    setattr(drivers, kind.__name__, stubborn)
+def stubborn() -> None:
+    """The simulated robot has these parts instead."""
+    changed: Any = drivers
+    known = changed.implementations
+    changed.SimulatedSpeech = Voice
+    changed.implementations = lambda kind: {**known(kind), Face.name: Face}
 
 
 if __name__ == "__main__":
-    changes: dict[Any, Any] = {SimulatedSpeech: Voice, SimulatedFace: Face}
-    for kind, stubborn in changes.items():
-        part(kind, stubborn)
+    stubborn()
     sys.exit(main(["serve", *sys.argv[1:]]))

@@ -19,6 +19,7 @@ from typing import Any
 
 from starlette.requests import Request
 
+from grammar.speech import fill, fitting, speech
 from nl2robot.console import slow_pages
 from nl2robot.console.runs import files as runs_files
 from nl2robot.console.runs import view as runs_view
@@ -29,7 +30,9 @@ from nl2robot.run.archive import Archive
 from nl2robot.run.kept_record import Recorder
 from nl2robot.station.part import Backstage, Part
 from nl2robot.wire import service
+from robot_api.driver import EVENTS_OF_METHODS
 from robot_api.errors import NotPossible
+from robot_api.methods import METHODS
 from robot_api.server import Service
 
 _HEAD = (
@@ -77,7 +80,20 @@ def _for_scripts(language: str) -> dict[str, str]:
     """What a replay says, with what looks and gestures are called."""
     words, drive = texts("runs", language), texts("drive", language)
     called = {name: drive[name] for name in drive if name.startswith(("emotion_", "gesture_"))}
-    return {**called, **{name: words[name] for name in _FOR_SCRIPTS}}
+    return {**called, **_of_methods(language), **{name: words[name] for name in _FOR_SCRIPTS}}
+
+
+def _of_methods(language: str) -> dict[str, str]:
+    """How it is told what only the method table knows of: by the words for the call."""
+    spoken, told = speech(language), {}
+    for method in METHODS.values():
+        kind, said = method.tells or "", spoken.methods[method.name]
+        for name in EVENTS_OF_METHODS.get(kind, ())[:1]:
+            pattern = fitting(said.do, {name}) or "{text}"
+            told[kind] = spoken.joined_up(fill(pattern, {name: "{text}", "text": "{text}"}))
+            called = said.choices.get(name, {})
+            told |= {f"{kind}_{value}": called[value] for value in called}
+    return told
 
 
 def _list_page(backstage: Backstage, archive: Archive, request: Request) -> str:

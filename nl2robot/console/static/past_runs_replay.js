@@ -127,7 +127,7 @@ export async function mountReplay(root, light, words) {
     const [when, kind, text] = happened ?? [-Infinity];
     const length = text ? TOLD_FOR + text.length / 15 : 0;
     const called = words[`${kind}_${text}`] ?? text; // looks and gestures are words of ours
-    const said = time - when < length ? filled(words[TELLS[kind]], {text: called}) : '';
+    const said = time - when < length ? filled(words[TELLS[kind] ?? kind], {text: called}) : '';
     const shown = said || (movement.shortened && time >= seconds ? words.shortened : '');
     if (caption.textContent !== shown) caption.textContent = shown;
   }
