@@ -25,6 +25,7 @@ from __future__ import annotations
 
 import functools
 import gc
+import itertools
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -39,6 +40,7 @@ from grammar.network import Network, Production, RuleError, compile_rules
 from grammar.templates import (
     NOTHING,
     Choice,
+    Part,
     Sequence,
     Template,
     TemplateError,
@@ -99,6 +101,19 @@ class Language:
     def words_called(self, name: str) -> frozenset[str]:
         """The normal forms of a list of words in the data on speech."""
         return _words_called(self, name)
+
+    def words_for(self, meaning: str) -> frozenset[str]:
+        """The normal forms of the words by which rules ask for a meaning, those of the lists that
+        stand in them among them."""
+        words: set[str] = set()
+        asking = (each for each in self.network.productions if each.means == meaning)
+        for template in itertools.chain.from_iterable(each.templates for each in asking):
+            for text in _texts(template):
+                words.update(self.tokens_of(text))
+            for slot in _slots(template):
+                for way in itertools.chain.from_iterable(self.lists.get(slot, {}).values()):
+                    words.update(way)
+        return frozenset(words)
 
     def phrase(self, name: str, /, **values: object) -> str:
         """What the language says by this name, with the values put in."""
@@ -488,3 +503,12 @@ def _texts(template: Template) -> Iterator[str]:
         case Choice(inner) | Sequence(inner):
             for each in inner:
                 yield from _texts(each)
+
+
+def _slots(template: Template) -> Iterator[str]:
+    match template:
+        case Part(name, is_rule=False):
+            yield name
+        case Choice(inner) | Sequence(inner):
+            for each in inner:
+                yield from _slots(each)

@@ -303,7 +303,7 @@ def _expectation(schema: Mapping[str, Any]) -> str:
         case {"type": "array", "minItems": least, "maxItems": most}:
             return f"a list of {least} to {most} texts"
         case {"enum": [*names, last]}:
-            return f"one of {' or '.join(filter(None, [', '.join(names), last]))}"
+            return " or ".join(filter(None, [", ".join(names), last]))
         case {"type": "object"}:
             return "a location with x and y"
     return "of another kind"

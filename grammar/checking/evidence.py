@@ -1,7 +1,8 @@
 """Which words of a language speak for which deeds, as far as that was counted.
 
 The counts are data (`counted/<language>.msgpack`), made by
-`nl2robot.training.planner.evidence`.
+`nl2robot.training.planner.evidence`. For a robot method that is newer than they are, the words of
+its rules speak.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import msgspec
 
 from grammar.language import Language
 from grammar.tokens import without_accents
+from robot_api.methods import METHODS
 
 FOLDER: Final = Path(__file__).parent / "counted"
 LETTERS: Final = 6
@@ -42,6 +44,8 @@ class Evidence(msgspec.Struct, frozen=True):
     """How often each deed was done where a word was said."""
     reported: list[str]
     """Words in which the robot reports."""
+    ruled: dict[str, frozenset[str]] = {}
+    """For each robot method of which nothing was counted, the words of its rules."""
 
     def share(self, word: str, deed: str) -> float:
         """How often, of the times that a word was said, something was done; less for a word that
@@ -50,11 +54,15 @@ class Evidence(msgspec.Struct, frozen=True):
         return self.together.get(word, {}).get(deed, 0.0) / (self.said.get(word, 0.0) + CHANCE)
 
     def speaks_for(self, word: str, deed: str) -> bool:
+        if deed in self.ruled:
+            return stem(word) in self.ruled[deed]
         usual = self.done.get(deed, 0.0) / self.total
         return self.share(word, deed) > max(0.15, min(0.9, LIKELIER * usual))
 
     def licenses(self, word: str, deed: str) -> bool:
         """Whether a word is enough for a deed that nobody wants unasked."""
+        if deed in self.ruled:
+            return self.speaks_for(word, deed)
         usual = self.done.get(deed, 0.0) / self.total
         return self.share(word, deed) > max(LICENCE, min(0.8, 3 * usual))
 
@@ -77,4 +85,7 @@ def stem(word: str) -> str:
 @functools.cache
 def evidence_of(language: Language) -> Evidence:
     path = FOLDER / f"{language.code}.msgpack"
-    return msgspec.msgpack.decode(path.read_bytes(), type=Evidence)
+    counted = msgspec.msgpack.decode(path.read_bytes(), type=Evidence)
+    newer = METHODS.keys() - counted.done.keys()
+    ruled = {method: frozenset(map(stem, language.words_for(method))) for method in newer}
+    return msgspec.structs.replace(counted, ruled=ruled)
