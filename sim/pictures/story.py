@@ -14,8 +14,8 @@ SAME_SPOT = 0.45
 STANDING = 3.0
 """Seconds that the robot stands still, with nothing happening, to make a stop."""
 _NO_STORY = frozenset(
-    {"lidar", "language", "volume", "joint", "battery", "sound", "silence", "searched"}
-    | {"stopping", "stop_not_confirmed", "link"}
+    {"pose", "lidar", "language", "volume", "joint", "battery", "log", "sound", "silence"}
+    | {"searched", "stopping", "stop_not_confirmed", "link"}
 )
 """Happenings that do not belong in a picture."""
 

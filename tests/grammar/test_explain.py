@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from types import SimpleNamespace
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 
 from grammar import plan as p
 from grammar.explain import explain, explain_program, explain_steps
+from grammar.network import RuleError
 from grammar.program import write_program
 from grammar.reading import parse_program, read_program
 from grammar.speech import gaps, languages, speech
@@ -291,6 +293,13 @@ def test_every_method_has_words_in_every_language(language: str) -> None:
             assert said.value and said.result, f"{name} has a result"
         if method.returns.annotation == "bool":
             assert said.holds and said.fails and said.held and said.missed, f"{name} is yes or no"
+
+
+def test_no_method_has_words_in_two_files(monkeypatch: pytest.MonkeyPatch) -> None:
+    again = SimpleNamespace(methods={"say": {"do": ["say {text}"]}})
+    monkeypatch.setattr("grammar.speech.load_language", lambda code: again)
+    with pytest.raises(RuleError, match="both speak of 'say'"):
+        speech.__wrapped__("en")
 
 
 MARKS_AND_GAPS = re.compile(r"(?:(?:\S+ )?⟨[^⟩]*⟩ )?\{[^}]*\}")

@@ -106,7 +106,8 @@ def test_every_method_crosses_the_wire_as_it_was_called(name: str) -> None:
     examples = {"code": "en", "options": ["yes", "no"], "skill": "sit", "thing": "stapler"}
     given = {
         parameter.name: examples.get(
-            parameter.name, texts.get(parameter.kind.annotation, "pharmacy")
+            parameter.name,
+            next(iter(parameter.kind.choices), texts.get(parameter.kind.annotation, "pharmacy")),
         )
         for parameter in METHODS[name].forms[0]
         if parameter.required

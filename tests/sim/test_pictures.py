@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -12,12 +13,13 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from PIL import Image, ImageDraw
 
+from robot_api.driver import EVENTS
 from sim.pictures.drawing import animate, floor_svg, png, svg
 from sim.pictures.floor import WALL, draw_floor
 from sim.pictures.png import to_image
 from sim.pictures.run import _cuts, draw_run
 from sim.pictures.scene import Area, Box, Line, Scene, Text, box_about
-from sim.pictures.story import stops_of
+from sim.pictures.story import stops_of, told
 from sim.pictures.text import draw_text, text_width, wrapped
 from sim.record import Happening, Record, Sample, from_json, to_json
 from sim.world.builtin import builtin_worlds
@@ -223,6 +225,20 @@ def test_the_picture_of_a_run_of_the_simulator(tmp_path: Path) -> None:
         assert image.width > 800
     assert "Lunch is ready, Henry." in words_of(svg(world, record))
     assert record.distance > 5
+
+
+@pytest.mark.parametrize("kind", EVENTS)
+def test_of_what_a_robot_tells_a_few_things_make_the_story(kind: str) -> None:
+    pictured = {"speech", "heard", "screen", "emotion", "gesture", "call", "stopped"}
+    assert (told(happened(kind, text="Hello")) is not None) == (kind in pictured)
+
+
+def test_what_only_its_own_capability_knows_is_in_the_story_as_it_is() -> None:
+    assert told(happened("light", color="red")) == "light: red"
+
+
+def happened(kind: str, **data: Any) -> Happening:
+    return Happening(0.0, kind, data, 0.0, 0.0)
 
 
 def test_a_standing_robot_makes_a_stop_without_words() -> None:
