@@ -119,8 +119,8 @@ def last_log(d: Discourse, node: Node) -> Report:
 def tell(d: Discourse, node: Node) -> Steps:
     """Say a phrase with the result of a robot method in it."""
     fixed = node.production.fixed
-    selector = d.get(node, "selector")
-    value = Ask(str(fixed["method"]), {"selector": as_value(selector)} if selector else {})
+    method = str(fixed["method"])
+    value = Ask(method, d.call_of(node, method).arguments)
     return speak_to(d, d.get(node, "person_ref"), [d.say(str(fixed["phrase"]), value=value)])
 
 

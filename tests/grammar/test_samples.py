@@ -27,8 +27,9 @@ from tests.grammar.hospitals import hospital
 
 STUB = stub()
 SAMPLED = 36
-MAKES_SENSE = 0.4
-"""The share of what is drawn, which was 0.6 when it was measured with a hundred."""
+MAKES_SENSE = 0.3
+"""The share of what is drawn. Of ten lots of so many English ones it was from 0.36 to 0.55: any new
+rule, however good, has others drawn."""
 
 
 @pytest.mark.parametrize("language", languages())
