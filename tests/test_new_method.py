@@ -11,6 +11,7 @@ import re
 import shutil
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 import pytest
@@ -67,7 +68,8 @@ def project(tmp_path: Path) -> Path:
             (tmp_path / name).write_text(text, encoding="utf-8")
     table, last = (ROOT / TABLE).read_text(encoding="utf-8"), "        # --- itself\n"
     assert table.count(last) == 1
-    table = table.replace(last, FILES[TABLE] + last)
+    row = textwrap.indent(FILES[TABLE].rstrip() + ",\n", " " * 8)
+    table = table.replace(last, row + last)
     (tmp_path / TABLE).write_text(table, encoding="utf-8")
     return tmp_path
 
