@@ -15,7 +15,9 @@ from tests.console.conftest import Look, Served
 from tests.console.test_desk import approve, read_all, say
 from tests.fetched import from_npm
 
-REVIEWED: Final = "/?program=robot.goto(%22pharmacy%22)%0Arobot.grab(%22unicorn%22)%0A"
+REVIEWED: Final = (
+    "/?program=robot.wait(600)%0Arobot.goto(%22pharmacy%22)%0Arobot.grab(%22unicorn%22)%0A"
+)
 FINDINGS: Final = """async (options) => (await axe.run(document, options)).violations.flatMap(
     ({id, nodes}) =>
         nodes.map(({target, failureSummary}) => [id, target.join(' '), failureSummary]))"""
