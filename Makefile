@@ -66,9 +66,11 @@ types: $(STAMP)
 	$(BIN)/mypy
 
 # Most stories wait for something, so there are more of them at a time than cores; those of a file,
-# which share a console or a robot, stay together.
+# which share a console or a robot, stay together. Many start commands, which would compile what they
+# import each time where Python may write no bytecode.
 tests: $(STAMP) browser systemd ros2
-	$(BIN)/pytest -n $$($(BIN)/python -c 'import os; print((os.cpu_count() or 1) + 1)') --dist loadfile
+	@$(BIN)/python -m compileall -q grammar nl2robot robot_api sandbox sim
+	$(BIN)/pytest -n $$($(BIN)/python -c 'import os; print(2 * (os.cpu_count() or 1))') --dist loadfile
 
 # What takes too long for every change: whole samples of what people say, and all attacks, an hour of
 # them unless MINUTES says otherwise.
