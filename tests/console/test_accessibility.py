@@ -13,6 +13,7 @@ from playwright.sync_api import Page, expect
 from robot_api.errors import RobotError
 from tests.console.conftest import Look, Served
 from tests.console.test_desk import approve, read_all, say
+from tests.console.test_looks import in_look
 from tests.fetched import from_npm
 
 REVIEWED: Final = (
@@ -141,9 +142,9 @@ def test_axe_finds_nothing(look: Look, served: Served, axe: str, pages: Any, lan
         if not page.evaluate("'axe' in window"):
             page.evaluate(axe)
         assert page.evaluate(FINDINGS, {}) == []
-        page.emulate_media(color_scheme="dark")
+        in_look(page, dark=True)
         assert page.evaluate(FINDINGS, COLOURS) == []
-        page.emulate_media(color_scheme="light")
+        in_look(page, dark=False)
 
 
 def _ran(robot: Any) -> None:

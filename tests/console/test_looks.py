@@ -36,13 +36,23 @@ SCREENS = {
 """For each language: width, height, dark."""
 
 
-def resized(page: Page, width: int, height: int) -> None:
-    """The page on another screen, once it has drawn itself there. One is enough for all: what opens
-    costs a hundred times what turns a tablet."""
-    page.set_viewport_size({"width": width, "height": height})
+def drawn(page: Page) -> None:
+    """Once the page knows of what has just changed around it, and has drawn itself anew."""
     page.evaluate(
         "() => new Promise((on) => requestAnimationFrame(() => requestAnimationFrame(on)))"
     )
+
+
+def resized(page: Page, width: int, height: int) -> None:
+    """The page on another screen. One page is enough for all: what opens costs a hundred times what
+    turns a tablet."""
+    page.set_viewport_size({"width": width, "height": height})
+    drawn(page)
+
+
+def in_look(page: Page, dark: bool) -> None:
+    page.emulate_media(color_scheme="dark" if dark else "light")
+    drawn(page)
 
 
 def nameless(page: Page) -> list[Any]:
@@ -65,7 +75,7 @@ def test_a_page_fits_is_read_and_is_told(look: Look, path: str, language: str) -
     expect(page.locator("#connection")).to_have_attribute("data-state", "connected")
     for width, height, dark in SCREENS[language]:
         resized(page, width, height)
-        page.emulate_media(color_scheme="dark" if dark else "light")
+        in_look(page, dark)
         assert page.evaluate(STICKS_OUT) == [], width
         assert page.evaluate(CONTRAST) == [], width
         assert nameless(page) == [], width
