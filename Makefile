@@ -66,9 +66,11 @@ types: $(STAMP)
 	$(BIN)/mypy
 
 # Most stories wait for something, so there are more of them at a time than cores; those of a file,
-# which share a console or a robot, stay together.
+# which share a console or a robot, stay together. Many start commands, which would compile what they
+# import each time where Python may write no bytecode.
 tests: $(STAMP) browser systemd ros2
-	$(BIN)/pytest -n $$($(BIN)/python -c 'import os; print((os.cpu_count() or 1) + 1)') --dist loadfile
+	@$(BIN)/python -m compileall -q grammar nl2robot robot_api sandbox sim
+	$(BIN)/pytest -n $$($(BIN)/python -c 'import os; print(2 * (os.cpu_count() or 1))') --dist loadfile
 
 # Which lines no test runs; a module of which tests run less than 70 % has to say why.
 coverage: $(STAMP) browser
@@ -86,14 +88,19 @@ MINUTES ?= 60
 attacks: $(STAMP)
 	$(BIN)/python -m tests.attacks --minutes $(MINUTES)
 
-# The console is tested in a real browser: Debian's Chromium.
+# The console is tested in a real browser: Debian's Chromium, rather the one without windows, in which
+# a page costs half as much.
+SHELL_OF_CHROMIUM = chromium-headless-shell
 browser:
-	@command -v chromium >/dev/null || command -v chromium-browser >/dev/null || { \
-	  if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+	@command -v $(SHELL_OF_CHROMIUM) >/dev/null || { \
+	  there=$$(command -v chromium || command -v chromium-browser); \
+	  if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null \
+	    && { [ -z "$$there" ] || apt-cache show $(SHELL_OF_CHROMIUM) >/dev/null 2>&1; }; then \
 	    echo "Installing Chromium, in which the console is tested ..."; \
-	    (apt-get -qq update && apt-get install -qq -y --no-install-recommends chromium) >/dev/null; \
-	  else \
-	    echo "The tests of the console need Chromium: sudo apt-get install chromium"; \
+	    install="apt-get install -qq -y --no-install-recommends"; \
+	    (apt-get -qq update; $$install $(SHELL_OF_CHROMIUM) || $$install chromium) >/dev/null; \
+	  elif [ -z "$$there" ]; then \
+	    echo "The tests of the console need Chromium: sudo apt-get install $(SHELL_OF_CHROMIUM)"; \
 	  fi; }
 
 # The unit file of docs/deployment.md is looked at by systemd's own check.

@@ -74,7 +74,10 @@ class Console:
         for part in self.parts:
             app.router.routes.extend(part.routes)
             part.pages()
-        ui.run_with(app, title="nl2robot", show_welcome_message=False, reconnect_timeout=10)
+        # Tailwind would write styles in the browser, at each change of a page; ours are written.
+        ui.run_with(
+            app, title="nl2robot", show_welcome_message=False, reconnect_timeout=10, tailwind=False
+        )
         return app
 
     def left(self, name: str) -> None:

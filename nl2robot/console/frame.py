@@ -102,6 +102,7 @@ def _head(visitor: Visitor, words: Mapping[str, str]) -> str:
     return (
         f"{_data('frame-data', about)}"
         '<script src="/static/look.js"></script>'
+        '<link rel="stylesheet" href="/static/reset.css">'
         '<link rel="stylesheet" href="/static/console.css">'
         '<script type="module" src="/static/console.js"></script>'
     )

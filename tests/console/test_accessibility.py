@@ -13,12 +13,17 @@ from playwright.sync_api import Page, expect
 from robot_api.errors import RobotError
 from tests.console.conftest import Look, Served
 from tests.console.test_desk import approve, read_all, say
+from tests.console.test_looks import in_look
 from tests.fetched import from_npm
 
-REVIEWED: Final = "/?program=robot.goto(%22pharmacy%22)%0Arobot.grab(%22unicorn%22)%0A"
-FINDINGS: Final = """async () => (await axe.run(document)).violations.flatMap(
+REVIEWED: Final = (
+    "/?program=robot.wait(600)%0Arobot.goto(%22pharmacy%22)%0Arobot.grab(%22unicorn%22)%0A"
+)
+FINDINGS: Final = """async (options) => (await axe.run(document, options)).violations.flatMap(
     ({id, nodes}) =>
         nodes.map(({target, failureSummary}) => [id, target.join(' '), failureSummary]))"""
+COLOURS: Final = {"runOnly": ["color-contrast", "link-in-text-block"]}
+"""All that can be different in the dark."""
 FOCUS: Final = """() => {
     const {activeElement: at} = document;
     return at === document.body ? 'body' : at.id || at.className || at.tagName;
@@ -121,13 +126,10 @@ def doors(look: Callable[[str], Page]) -> Iterator[Page]:
 
 
 @pytest.mark.parametrize("language", ["en", "de", "fr"])
-@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
 @pytest.mark.parametrize(
     "pages", [desk, review_and_run, floor, drive, presence, runs, routines, doors, face]
 )
-def test_axe_finds_nothing(
-    look: Look, served: Served, axe: str, pages: Any, dark: bool, language: str
-) -> None:
+def test_axe_finds_nothing(look: Look, served: Served, axe: str, pages: Any, language: str) -> None:
     if pages is runs:
         with served.robot() as robot:
             _ran(robot)
@@ -136,9 +138,13 @@ def test_axe_finds_nothing(
             new = {"name": "tea round", "language": "en", "by": "Ana"}
             with suppress(RobotError):  # taught by the same story in another language
                 robot.request("routines.keep", {**new, "sentence": "go to every ward and wave"})
-    for page in pages(lambda path: look(path, dark=dark, language=language)):
-        page.evaluate(axe)
-        assert page.evaluate(FINDINGS) == []
+    for page in pages(lambda path: look(path, language=language)):
+        if not page.evaluate("'axe' in window"):
+            page.evaluate(axe)
+        assert page.evaluate(FINDINGS, {}) == []
+        in_look(page, dark=True)
+        assert page.evaluate(FINDINGS, COLOURS) == []
+        in_look(page, dark=False)
 
 
 def _ran(robot: Any) -> None:

@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.console.conftest import Look, Picture, Served
-from tests.console.test_looks import STICKS_OUT
+from tests.console.test_looks import STICKS_OUT, resized
 from tests.console.test_runs import run_by
 
 HALVES = [(640, 360), (410, 590), (195, 422)]
@@ -70,26 +70,23 @@ def holds(page: Page, main: str, stop: bool = True) -> None:
         expect(page.locator("#stop")).to_be_in_viewport(ratio=1)
 
 
-@pytest.mark.parametrize(("width", "height"), HALVES)
-def test_a_page_twice_as_large_can_be_used(
-    look: Look, width: int, height: int, picture: Picture
-) -> None:
-    for path, main in MAIN.items():
-        page = look(path, width=width, height=height, language="de")
-        holds(page, main, stop=path not in WITHOUT_STOP)
+@pytest.mark.parametrize("path", MAIN)
+def test_a_page_twice_as_large_can_be_used(look: Look, path: str, picture: Picture) -> None:
+    page = look(path, language="de")
+    for width, height in HALVES:
+        resized(page, width, height)
+        holds(page, MAIN[path], stop=path not in WITHOUT_STOP)
         picture(page, f"zoomed-{width}{path.replace('/', '-')}")
-        page.context.close()
 
 
-@pytest.mark.parametrize(("width", "height"), HALVES)
-def test_a_run_twice_as_large_is_read_and_watched(
-    look: Look, run: int, width: int, height: int
-) -> None:
-    page = look(f"/runs/{run}", width=width, height=height, language="fr")
+def test_a_run_twice_as_large_is_read_and_watched(look: Look, run: int) -> None:
+    page = look(f"/runs/{run}", language="fr")
     expect(page.locator(".run-replay[data-ready]")).to_be_visible()
-    holds(page, "[data-play]")
-    page.locator(".run-answers").scroll_into_view_if_needed()
-    expect(page.locator(".run-answers")).to_be_in_viewport()
+    for width, height in HALVES:
+        resized(page, width, height)
+        holds(page, "[data-play]")
+        page.locator(".run-answers").scroll_into_view_if_needed()
+        expect(page.locator(".run-answers")).to_be_in_viewport()
 
 
 def test_what_the_map_shows_is_chosen_on_a_phone_twice_as_large(look: Look) -> None:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from nl2robot.deliberation import playing
 from nl2robot.deliberation.paper_robot import START, Scene
 from nl2robot.deliberation.playing import LIMITS, Course, played
 from robot_api.methods import METHODS
@@ -153,7 +155,11 @@ HOSTILE = {
 
 
 @pytest.mark.parametrize("program", HOSTILE.values(), ids=HOSTILE)
-def test_hostile_programs_end_within_their_limits(program: str) -> None:
+def test_hostile_programs_end_within_their_limits(
+    program: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # What never stops computing would do so for half a minute.
+    monkeypatch.setattr(playing, "LIMITS", replace(LIMITS, computing=2.0))
     known = scene()
     begun = time.monotonic()
     course = played(program, known)

@@ -55,6 +55,8 @@ from sim.world.loading import load_world
 from sim.world.model import World
 
 FOLDER = Path(__file__).parent
+LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+"""Every worker reads all families before the first test."""
 MOST = 60
 """Sentences of a family that are drawn, always the same, unless all are asked for."""
 FEW = 8
@@ -151,7 +153,7 @@ def knowledge(world: str) -> Knowledge:
 def load(file: Path) -> list[Family]:
     return [
         msgspec.convert(document, Family)
-        for document in yaml.safe_load_all(file.read_text(encoding="utf-8"))
+        for document in yaml.load_all(file.read_text(encoding="utf-8"), Loader=LOADER)
         if document
     ]
 
