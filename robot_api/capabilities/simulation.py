@@ -48,7 +48,6 @@ class InSimulation(Capability):
 @contextmanager
 def robot_errors(stop: StopFlag | None = None) -> Iterator[None]:
     """Raise the simulator's errors as the robot's errors of the same name."""
-
     try:
         yield
     except Interrupted:

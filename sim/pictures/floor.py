@@ -186,7 +186,6 @@ def robot_shapes(frame: Frame, x: float, y: float, theta: float, radius: float) 
 
 def tint(kind: str, saturation: float, lightness: float) -> str:
     """A colour of its own for any kind, always the same."""
-
     hue = zlib.crc32(kind.encode()) % 360 / 360
     red, green, blue = colorsys.hls_to_rgb(hue, lightness, saturation)
     return f"#{round(red * 255):02x}{round(green * 255):02x}{round(blue * 255):02x}"
@@ -372,7 +371,6 @@ def _draw_charger(world: World, frame: Frame, scene: Scene, board: Board) -> Non
 
 def _inhabitants(world: World) -> list[Inhabitant]:
     """Everybody as they are when the simulation begins."""
-
     return [
         (placing.x, placing.y, person.name, person.kind)
         for person, placing in people_at_start(world, chart_of(world))
@@ -381,7 +379,6 @@ def _inhabitants(world: World) -> list[Inhabitant]:
 
 def _things(world: World, language: str) -> list[tuple[float, float, str, str]]:
     """x, y, description and colour of every object."""
-
     return [
         (
             item.x,

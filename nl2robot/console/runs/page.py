@@ -20,6 +20,7 @@ from typing import Any
 from starlette.requests import Request
 
 from nl2robot.console import slow_pages
+from nl2robot.console.frame import frame
 from nl2robot.console.runs import files as runs_files
 from nl2robot.console.runs import view as runs_view
 from nl2robot.console.runs.asked import PROPERTIES, Asked, BadDay, asked
@@ -55,8 +56,6 @@ def part(backstage: Backstage) -> Part:
 
 def _pages(backstage: Backstage, archive: Archive) -> None:
     from nicegui import ui
-
-    from nl2robot.console.frame import frame
 
     def show(html: str) -> None:
         with frame(backstage, "runs") as visit:

@@ -22,11 +22,11 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-import vosk
 
 from nl2robot.errors import UserError
 from nl2robot.models.catalogue import ModelError, find, need
@@ -35,8 +35,6 @@ from nl2robot.speech.hear.levels import Silence, gain_for
 from nl2robot.speech.hear.rescorer import Evidence, SecondEar, second_ear
 from nl2robot.speech.hear.vocabulary import spell_numbers
 from nl2robot.speech.hear.vosk_decoder import READINGS, Decoder, Scored, helpers, scored
-
-vosk.SetLogLevel(-1)  # its C++ log goes to standard error
 
 # Before and after the speech, silence: without it the model loses the first and last sounds.
 PADDING = 0.3  # seconds
@@ -56,6 +54,15 @@ LEAST_BELIEF = 0.45  # of what is not doubtful
 CANDIDATES = 6  # of the limited decoder that it judges
 LONGEST = 30.0  # seconds that it can hear at once; nothing that long is a command
 NEWS = 0.8  # seconds of sound after which it tells anew what was said so far, where it hears alone
+
+
+@cache
+def _vosk() -> Any:
+    """The library. Its C++ log would go to standard error."""
+    import vosk
+
+    vosk.SetLogLevel(-1)
+    return vosk
 
 
 class SpeechError(UserError):
@@ -160,7 +167,7 @@ class Recogniser:
         if model is None and second is None:  # there is one, but it is damaged
             raise self._unusable
         try:
-            self._model = vosk.Model(str(model)) if model else None
+            self._model = _vosk().Model(str(model)) if model else None
         except Exception as error:  # vosk raises nothing more precise
             raise self._unusable from error
 
@@ -280,7 +287,7 @@ class Recogniser:
                 return self._idle[key].pop()
         limits = () if grammar is None else (grammar.json,)
         try:
-            kaldi = vosk.KaldiRecognizer(self._model, RATE, *limits)
+            kaldi = _vosk().KaldiRecognizer(self._model, RATE, *limits)
         except Exception as error:
             raise self._unusable from error
         kaldi.SetWords(True)
