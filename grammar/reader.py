@@ -28,6 +28,7 @@ from grammar.meanings.offers import with_offers_kept
 from grammar.memory import Command, Deliveries, People, Scene
 from grammar.names import Names
 from grammar.naming import joined_up, naming, place_called
+from grammar.number_options import with_numbers
 from grammar.plan import Plan, Text, Value
 from grammar.plausible import implausible
 from grammar.readings import read
@@ -36,7 +37,6 @@ from grammar.requests import Request
 from grammar.said import said
 from grammar.samples import nearest_phrases
 from grammar.slots import Slots
-from grammar.so_many import with_numbers
 from grammar.speech import speech
 from grammar.tidy import Unbound, charging_last, is_one_of_each, returning, scoped, without_unused
 from grammar.tokens import COMMA, Token
