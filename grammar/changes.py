@@ -7,13 +7,13 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Final
 
+from grammar.distinguish import one_told_apart, thing_alone, with_other_look
 from grammar.edits import Edit, Sentence, same_word
 from grammar.listed import RULES, Row, rows_of
 from grammar.pieces import Piece, is_pieces, pieces_of
 from grammar.plan import Call, Plan, Text, calls, methods
 from grammar.reader import Reader
 from grammar.requests import Request
-from grammar.told_apart import one_told_apart, thing_alone, with_other_look
 from grammar.turn import Turn
 from grammar.understanding import Context, Understanding, rejected
 

@@ -14,13 +14,13 @@ from grammar.answers import Answer, answer_to, other_choice
 from grammar.changes import MANNER, Changes
 from grammar.chart import TooMuch
 from grammar.discourse import Discourse
+from grammar.distinguish import one_told_apart, with_other_look
 from grammar.edits import Edit
 from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.pieces import is_pieces, leading
 from grammar.plan import methods
 from grammar.reader import Reader
-from grammar.told_apart import one_told_apart, with_other_look
 from grammar.understanding import Context, Understanding, rejected
 
 

@@ -16,12 +16,12 @@ from typing import Final
 from grammar import conversation
 from grammar.accounts import TEXTS
 from grammar.chart import TooMuch
+from grammar.distinguish import with_other_look
 from grammar.edits import Sentence
 from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.pieces import Piece, is_pieces, leading, leaves, pieces_at, words_listed
 from grammar.reader import Reader
-from grammar.told_apart import with_other_look
 from grammar.understanding import Context, Understanding
 
 MOST_REPAIRS: Final = 3
