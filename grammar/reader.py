@@ -16,7 +16,6 @@ from typing import Final
 
 import grammar.meanings.all_meanings  # noqa: F401 (what the rules name is entered there)
 from grammar.accounts import in_manner, left_out, unheeded, unspoken
-from grammar.bringing_back import told_when_all_are_asked
 from grammar.chart import Chart, Node, TooMuch
 from grammar.company import in_company
 from grammar.discourse import Discourse
@@ -33,6 +32,7 @@ from grammar.plan import Plan, Text, Value
 from grammar.plausible import implausible
 from grammar.readings import read
 from grammar.refusals import forbidden, is_half, no_thing, not_said, out_of_range, strange, why_not
+from grammar.report_after_loop import told_when_all_are_asked
 from grammar.requests import Request
 from grammar.said import said
 from grammar.samples import nearest_phrases
