@@ -10,8 +10,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
-from grammar.accounts import TEXTS
 from grammar.chart import Leaf, Node, TooMuch
+from grammar.coverage import TEXTS
 from grammar.language import Language
 from grammar.lexicon import Lexicon, Routine
 from grammar.pieces import (

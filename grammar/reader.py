@@ -15,9 +15,9 @@ from dataclasses import replace
 from typing import Final
 
 import grammar.meanings.all_meanings  # noqa: F401 (what the rules name is entered there)
-from grammar.accounts import in_manner, left_out, unheeded, unspoken
 from grammar.chart import Chart, Node, TooMuch
 from grammar.company import in_company
+from grammar.coverage import in_manner, left_out, unheeded, unspoken
 from grammar.discourse import Discourse
 from grammar.doubts import Ambiguous, NotUnderstood
 from grammar.freetext import Doubt, doubtful, words_for

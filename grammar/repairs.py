@@ -14,8 +14,8 @@ from collections.abc import Iterator
 from typing import Final
 
 from grammar import conversation
-from grammar.accounts import TEXTS
 from grammar.chart import TooMuch
+from grammar.coverage import TEXTS
 from grammar.distinguish import with_other_look
 from grammar.edits import Sentence
 from grammar.language import Language

@@ -10,8 +10,8 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Final
 
-from grammar.accounts import TEXTS
 from grammar.chart import TooMuch
+from grammar.coverage import TEXTS
 from grammar.edits import Sentence
 from grammar.language import Language
 from grammar.lexicon import Lexicon

@@ -12,8 +12,8 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grammar.accounts import NAMES, TEXTS, left_out
 from grammar.chart import Node
+from grammar.coverage import NAMES, TEXTS, left_out
 from grammar.language import languages, load_language
 from grammar.lexicon import Lexicon, Name
 from grammar.program import write_program
