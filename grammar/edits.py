@@ -33,8 +33,8 @@ from grammar.pieces import (
     pieces_of,
     words_listed,
 )
-from grammar.readings import SEQUENCE
 from grammar.tokens import Token
+from grammar.trace import SEQUENCE
 
 if TYPE_CHECKING:
     from grammar.reader import Reader

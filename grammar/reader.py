@@ -30,7 +30,6 @@ from grammar.naming import joined_up, naming, place_called
 from grammar.number_options import with_numbers
 from grammar.plan import Plan, Text, Value
 from grammar.plausible import implausible
-from grammar.readings import read
 from grammar.refusals import forbidden, is_half, no_thing, not_said, out_of_range, strange, why_not
 from grammar.report_after_loop import told_when_all_are_asked
 from grammar.requests import Request
@@ -40,6 +39,7 @@ from grammar.slots import Slots
 from grammar.speech import speech
 from grammar.tidy import Unbound, charging_last, is_one_of_each, returning, scoped, without_unused
 from grammar.tokens import COMMA, Token
+from grammar.trace import read
 from grammar.traversal import nodes
 from grammar.understanding import Clarification, Context, Understanding, rejected
 

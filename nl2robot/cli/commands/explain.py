@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from grammar.language import load_language
-from grammar.readings import Read
+from grammar.trace import Read
 from grammar.understand import understand
 from grammar.understanding import Understanding
 from nl2robot.cli.options.sentence import add_language, add_words
