@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 from grammar import plan as p
 from grammar.language import load_language
-from grammar.reading import read_program
+from grammar.program_parser import read_program
 from grammar.speech import Speech, speech
 from grammar.telling import Teller
 from grammar.told import Told, listed, sentences

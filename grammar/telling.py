@@ -12,7 +12,7 @@ from grammar import plan as p
 from grammar.identifiers import speaks_of
 from grammar.kinds import is_list, is_record
 from grammar.pauses import may_end
-from grammar.reading import CodeStep, Function
+from grammar.program_parser import CodeStep, Function
 from grammar.roles import SORTS, role
 from grammar.speech import fill, fitting, gaps
 from grammar.told import Told

@@ -19,7 +19,7 @@ from grammar.lexicon import Routine as Named
 from grammar.names import names_of
 from grammar.naming import naming
 from grammar.plan import Plan
-from grammar.reading import NotAPlan, parse_program
+from grammar.program_parser import NotAPlan, parse_program
 from grammar.requests import Request
 from grammar.samples import samples
 from grammar.understand import understand

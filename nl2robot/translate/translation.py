@@ -29,7 +29,7 @@ from grammar.planning.planner import (
     Watch,
 )
 from grammar.planning.turn import Turn
-from grammar.reading import NotAPlan, parse_program
+from grammar.program_parser import NotAPlan, parse_program
 from grammar.requests import ABOUT_RUNS, Request, agreed
 from grammar.summary import summary
 from grammar.understanding import Context

@@ -25,7 +25,7 @@ from grammar.plan import Plan
 from grammar.planning.model.expansion import program_of
 from grammar.planning.model.recogniser import CLARIFY, REFUSE
 from grammar.planning.turn import Turn
-from grammar.reading import parse_program
+from grammar.program_parser import parse_program
 from grammar.roles import FREE
 from grammar.said import forget
 from grammar.sampler import sensible
