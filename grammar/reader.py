@@ -19,7 +19,7 @@ from grammar.chart import Chart, Node, TooMuch
 from grammar.company import in_company
 from grammar.coverage import in_manner, left_out, unheeded, unspoken
 from grammar.discourse import Discourse
-from grammar.doubts import Ambiguous, NotUnderstood
+from grammar.errors import Ambiguous, NotUnderstood
 from grammar.freetext import Doubt, doubtful, words_for
 from grammar.language import Language
 from grammar.lexicon import Lexicon

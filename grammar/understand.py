@@ -14,7 +14,7 @@ from typing import Final
 from grammar import repairs, rewordings
 from grammar.chart import Node, TooMuch
 from grammar.discourse import START, Discourse, Steps
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.language import load_language
 from grammar.lexicon import Lexicon, Routine
 from grammar.meanings.registry import meaning

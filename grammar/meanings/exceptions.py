@@ -6,7 +6,7 @@ from msgspec.structs import replace
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.gone_round import last_round
 from grammar.meanings.places import place_called_after
 from grammar.meanings.registry import meaning

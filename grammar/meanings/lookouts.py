@@ -16,7 +16,7 @@ from msgspec.structs import replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.conditions import negated
 from grammar.meanings.deliveries import first_clause, inside
 from grammar.meanings.finding import look_for, speak_to

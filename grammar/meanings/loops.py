@@ -9,7 +9,7 @@ from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing, as_value
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.asking_until import until_answered
 from grammar.meanings.claims import meet_there
 from grammar.meanings.conditions import FULL_HOUR, condition_of, negated

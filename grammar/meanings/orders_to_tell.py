@@ -10,7 +10,7 @@ import msgspec
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.about_guests import host_told, who_is_told
 from grammar.meanings.absences import undelivered
 from grammar.meanings.answered_numbers import of_answers

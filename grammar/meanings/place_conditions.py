@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, START, Discourse, Meeting, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.answered import about_answer, so_many_said
 from grammar.meanings.answers import Said
 from grammar.meanings.conditions import negated

@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.finding import go
 from grammar.meanings.findings import found_told
 from grammar.meanings.gone_round import last_round, places_of, round_of, round_of_visits

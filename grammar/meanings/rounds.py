@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.answers import Said
 from grammar.meanings.conditions import negated
 from grammar.meanings.finding import speak_to

@@ -10,7 +10,7 @@ from typing import Final
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Steps
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.alternatives import itself
 from grammar.meanings.deliveries import first_clause
 from grammar.meanings.going_on import about_places, conditional, depends_on_stop

@@ -14,7 +14,7 @@ from typing import Any, Final, Literal
 
 from grammar.chart import Chart, Node, TooMuch
 from grammar.discourse import Discourse, Thing
-from grammar.doubts import Ambiguous, NotUnderstood
+from grammar.errors import Ambiguous, NotUnderstood
 from grammar.lexicon import kind_of
 from grammar.plan import Ask, Text
 from grammar.reader import Reader
