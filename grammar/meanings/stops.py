@@ -14,7 +14,7 @@ from grammar.errors import NotUnderstood
 from grammar.meanings.alternatives import itself
 from grammar.meanings.deliveries import first_clause
 from grammar.meanings.going_on import about_places, conditional, depends_on_stop
-from grammar.meanings.gone_round import round_of_visits
+from grammar.meanings.place_loops import round_of_visits
 from grammar.meanings.registry import meaning
 from grammar.memory import Scene
 from grammar.plan import Ask, Call, End, ForEach, Holds, If, Items, Recall, Step, Text, Value
