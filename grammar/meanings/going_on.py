@@ -15,7 +15,7 @@ from grammar.meanings.claims import claim_of
 from grammar.meanings.conditions import condition_of
 from grammar.meanings.deliveries import first_clause, hands_it_over, inside
 from grammar.meanings.finding import speak_to
-from grammar.meanings.found_once import found_once, says
+from grammar.meanings.first_match import found_once, says
 from grammar.meanings.lookouts import ABOUT_IT, looks_out
 from grammar.meanings.news import BACK, News, go_back
 from grammar.meanings.news import in_round as in_a_round
