@@ -23,8 +23,8 @@ from grammar.pauses import may_end
 from grammar.program_parser import CodeStep, Function
 from grammar.speech import fill, forms, speech
 from grammar.summary_sentences import Clause, Deed, Item, sentences
-from grammar.telling import Teller
-from grammar.told_values import as_call
+from grammar.telling.steps import Teller
+from grammar.telling.values import as_call
 from grammar.traversal import nodes
 from robot_api.methods import METHODS
 

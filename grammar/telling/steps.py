@@ -15,8 +15,8 @@ from grammar.pauses import may_end
 from grammar.program_parser import CodeStep, Function
 from grammar.roles import SORTS, role
 from grammar.speech import fill, fitting, gaps
-from grammar.told import Told
-from grammar.told_values import ValueTeller, as_call, signed, sort_of
+from grammar.telling.layout import Told
+from grammar.telling.values import ValueTeller, as_call, signed, sort_of
 from grammar.traversal import nodes, walk
 from grammar.which_time import asks_only_which_time
 from robot_api.methods import METHODS
