@@ -30,10 +30,10 @@ from grammar.naming import joined_up, naming, place_called
 from grammar.number_options import with_numbers
 from grammar.plan import Plan, Text, Value
 from grammar.plausible import implausible
+from grammar.prepared import prepared
 from grammar.refusals import forbidden, is_half, no_thing, not_said, out_of_range, strange, why_not
 from grammar.report_after_loop import told_when_all_are_asked
 from grammar.requests import Request
-from grammar.said import said
 from grammar.samples import nearest_phrases
 from grammar.slots import Slots
 from grammar.speech import speech
@@ -60,11 +60,11 @@ class Reader:
         self.lexicon = lexicon
         self.language = language
         self.context = context
-        self._said = said(text, lexicon, language)
-        self.names: Names = self._said.names
-        self.text, self.slips = self._said.text, self._said.slips
-        self.tokens = self._said.tokens
-        self.corrections, self.skips = self._said.corrections, self._said.skips
+        self._prepared = prepared(text, lexicon, language)
+        self.names: Names = self._prepared.names
+        self.text, self.slips = self._prepared.text, self._prepared.slips
+        self.tokens = self._prepared.tokens
+        self.corrections, self.skips = self._prepared.corrections, self._prepared.skips
 
     def understand(self) -> Understanding:
         if not self.tokens:
@@ -261,10 +261,10 @@ class Reader:
 
     @property
     def slots(self) -> Slots:
-        return self._said.slots
+        return self._prepared.slots
 
     def chart(self) -> Chart:
-        return self._said.chart
+        return self._prepared.chart
 
     @property
     def last_word(self) -> int:

@@ -20,8 +20,8 @@ from grammar.lexicon import Lexicon, Routine
 from grammar.meanings.registry import meaning
 from grammar.meanings.requests import with_own_names
 from grammar.plan import Call, Plan, Text
+from grammar.prepared import forget
 from grammar.program_parser import NotAPlan, parse_program
-from grammar.said import forget
 from grammar.tokens import Token
 from grammar.understanding import Clarification, Context, Understanding, rejected
 
