@@ -53,7 +53,7 @@ EMERGENCY: Final = "emergency"
 """The answer that matters more than why a sentence is refused."""
 
 
-class Reader:
+class SentenceReader:
     """Reads one sentence."""
 
     def __init__(self, text: str, lexicon: Lexicon, language: Language, context: Context) -> None:
