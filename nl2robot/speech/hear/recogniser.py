@@ -22,9 +22,8 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache
+from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -54,15 +53,6 @@ LEAST_BELIEF = 0.45  # of what is not doubtful
 CANDIDATES = 6  # of the limited decoder that it judges
 LONGEST = 30.0  # seconds that it can hear at once; nothing that long is a command
 NEWS = 0.8  # seconds of sound after which it tells anew what was said so far, where it hears alone
-
-
-@cache
-def _vosk() -> Any:
-    """The library. Its C++ log would go to standard error."""
-    import vosk
-
-    vosk.SetLogLevel(-1)
-    return vosk
 
 
 class SpeechError(UserError):
@@ -167,7 +157,10 @@ class Recogniser:
         if model is None and second is None:  # there is one, but it is damaged
             raise self._unusable
         try:
-            self._model = _vosk().Model(str(model)) if model else None
+            import vosk
+
+            vosk.SetLogLevel(-1)  # its C++ log goes to standard error
+            self._model = vosk.Model(str(model)) if model else None
         except Exception as error:  # vosk raises nothing more precise
             raise self._unusable from error
 
@@ -287,7 +280,9 @@ class Recogniser:
                 return self._idle[key].pop()
         limits = () if grammar is None else (grammar.json,)
         try:
-            kaldi = _vosk().KaldiRecognizer(self._model, RATE, *limits)
+            import vosk
+
+            kaldi = vosk.KaldiRecognizer(self._model, RATE, *limits)
         except Exception as error:
             raise self._unusable from error
         kaldi.SetWords(True)
