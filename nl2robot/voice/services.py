@@ -34,7 +34,6 @@ from nl2robot.speech.hear.listening import (
     SpeechEnded,
     TooLong,
 )
-from nl2robot.speech.hotword.words import WORDS
 from nl2robot.translate.thinking import Thought, published
 from nl2robot.translate.translation import Talk, Translation
 from nl2robot.wire import service, service_of_call
@@ -146,11 +145,11 @@ class Microphones:
         button is held; all that is said until it is closed is one command, and a cry of "stop" is
         told at once. `connection` is the client's. Raises `UserError` without a speech model, or
         for a rate that no voice has."""
-        from nl2robot.speech.hotword.detector import StopWord
+        from nl2robot.speech.hotword.detector import stop_word
 
         ear = self._ear(language)
         listener = ear.listener(HELD if held else COMMANDS)
-        cries = StopWord(language) if held and language in WORDS else None
+        cries = stop_word(language) if held else None
         converter, number = Converter(rate, channels), next(self._numbers)
         opened = _Open(ear, listener, converter, talk, interrupts, connection, number, cries)
         with self._lock:

@@ -156,6 +156,11 @@ class StopWord:
         self._detector.reset()
 
 
+def stop_word(language: str) -> StopWord | None:
+    """What hears the words for stop; None in a language that has none."""
+    return StopWord(language) if language in WORDS else None
+
+
 def judges(language: str, heads: Sequence[Head]) -> list[Judge | None]:
     """The second stages of these heads, where there are any."""
     return [judge_of(language, head.word, head.threshold) for head in heads]
