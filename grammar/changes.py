@@ -7,13 +7,13 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Final
 
+from grammar.distinguish import one_told_apart, thing_alone, with_other_look
 from grammar.edits import Edit, Sentence, same_word
 from grammar.listed import RULES, Row, rows_of
 from grammar.pieces import Piece, is_pieces, pieces_of
 from grammar.plan import Call, Plan, Text, calls, methods
-from grammar.reader import Reader
+from grammar.reader import SentenceReader
 from grammar.requests import Request
-from grammar.told_apart import one_told_apart, thing_alone, with_other_look
 from grammar.turn import Turn
 from grammar.understanding import Context, Understanding, rejected
 
@@ -136,7 +136,7 @@ class Changes(Turn):
             clauses = [before.reader.words(*each) for each in before.siblings()[0]]
             yield ". ".join(reversed(clauses)) if len(clauses) > 1 else None
 
-    def _row_for(self, said: str) -> tuple[Row, Reader, Piece] | None:
+    def _row_for(self, said: str) -> tuple[Row, SentenceReader, Piece] | None:
         """The only row of names that a name goes with: "add the pharmacy"."""
         before, new = self.before(), self.reader(said, Context())
         pieces = next((row for row in pieces_of(new) if len(row) == 1), [])
@@ -183,7 +183,7 @@ class Changes(Turn):
             return None  # "and in Clara's" is nothing to say, whatever was to be said
         return like or result or self.read(separate, self.base)
 
-    def _likewise(self, new: Reader) -> Understanding | None:
+    def _likewise(self, new: SentenceReader) -> Understanding | None:
         """ "and Bob", "Bob too": told or asked what somebody else was, with "you" for him, too."""
         plan = self.context.plan
         row = next((row for row in pieces_of(new) if len(row) == 1), [])

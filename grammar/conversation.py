@@ -14,13 +14,13 @@ from grammar.answers import Answer, answer_to, other_choice
 from grammar.changes import MANNER, Changes
 from grammar.chart import TooMuch
 from grammar.discourse import Discourse
+from grammar.distinguish import one_told_apart, with_other_look
 from grammar.edits import Edit
 from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.pieces import is_pieces, leading
 from grammar.plan import methods
-from grammar.reader import Reader
-from grammar.told_apart import one_told_apart, with_other_look
+from grammar.reader import SentenceReader
 from grammar.understanding import Context, Understanding, rejected
 
 
@@ -165,7 +165,7 @@ class _Conversation(Changes):
         more = new.tokens[0].norm in joins and not self.context.carried_out
         return self.first_read(self.separate(each) if more else each for each in variants)
 
-    def _hanging_on(self, reader: Reader) -> Understanding | None:
+    def _hanging_on(self, reader: SentenceReader) -> Understanding | None:
         """A command that can be read, but only makes sense after the one before, which waits to be
         carried out: "tell me how many said yes"."""
         plan = self.context.plan

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from grammar.chart import Leaf, Node
-from grammar.doubts import Ambiguous, NotUnderstood
+from grammar.errors import Ambiguous, NotUnderstood
 from grammar.language import Language
 from grammar.lexicon import Lexicon, Name
 from grammar.meanings.registry import MEANINGS

@@ -10,8 +10,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
-from grammar.accounts import TEXTS
 from grammar.chart import Leaf, Node, TooMuch
+from grammar.coverage import TEXTS
 from grammar.language import Language
 from grammar.lexicon import Lexicon, Routine
 from grammar.pieces import (
@@ -33,11 +33,11 @@ from grammar.pieces import (
     pieces_of,
     words_listed,
 )
-from grammar.readings import SEQUENCE
 from grammar.tokens import Token
+from grammar.trace import SEQUENCE
 
 if TYPE_CHECKING:
-    from grammar.reader import Reader
+    from grammar.reader import SentenceReader
     from grammar.understanding import Context
 
 EditKind = Literal[
@@ -77,7 +77,7 @@ class Edit:
 class Sentence:
     """The words of a command, as they can be changed."""
 
-    def __init__(self, reader: Reader) -> None:
+    def __init__(self, reader: SentenceReader) -> None:
         self.reader = reader
         self.text = reader.text
         self.tokens = reader.tokens
@@ -179,7 +179,7 @@ class Sentence:
         return self.reader.with_words(start, end, words)
 
     def corrected(
-        self, new: Reader, *, everywhere: bool = False, within_texts: bool = False
+        self, new: SentenceReader, *, everywhere: bool = False, within_texts: bool = False
     ) -> Iterator[str]:
         """The sentence with the parts of `new` in the places of parts of their kind, the likeliest
         first. `everywhere`: a part may stand for any noun; `within_texts`: the places are in what
@@ -192,7 +192,7 @@ class Sentence:
             if text is not None:
                 yield text
 
-    def _led_alike(self, new: Reader, said: list[Piece], places: list[Piece]) -> bool:
+    def _led_alike(self, new: SentenceReader, said: list[Piece], places: list[Piece]) -> bool:
         """Whether what new parts correct has the prepositions before it that they have, or is
         furniture as they are."""
         old = [self._counterpart(new, piece, places, set(), False) for piece in said]
@@ -205,14 +205,14 @@ class Sentence:
             for each, piece in zip(old, said, strict=True)
         )
 
-    def place_of(self, new: Reader) -> Piece | None:
+    def place_of(self, new: SentenceReader) -> Piece | None:
         """The part that a single new one is like, if it is the thing spoken of."""
         for said in pieces_of(new):
             if len(said) == 1 and said[0].rule == "thing":
                 return self._counterpart(new, said[0], self.pieces(), set(), False)
         return None
 
-    def without_repeated(self, new: Reader) -> Reader:
+    def without_repeated(self, new: SentenceReader) -> SentenceReader:
         """What is said without the words at its beginning that were said before: "tell Bob, too"
         of "tell Alice that ..." is about Bob."""
         if is_pieces(new):
@@ -226,14 +226,14 @@ class Sentence:
                 return rest
         return new
 
-    def spoken_earlier(self, new: Reader) -> bool:
+    def spoken_earlier(self, new: SentenceReader) -> bool:
         """Whether a single thing has its like before the end: "and the folder", of "pick up the
         box and take it to the lab"."""
         place = self.place_of(new)
         return place is not None and place.end < self.reader.last_word
 
     def _with_pieces(
-        self, new: Reader, said: list[Piece], places: list[Piece], everywhere: bool
+        self, new: SentenceReader, said: list[Piece], places: list[Piece], everywhere: bool
     ) -> str | None:
         changes: list[tuple[int, int, str]] = []
         taken: set[int] = set()
@@ -265,7 +265,12 @@ class Sentence:
         return sum(each.rule == old.rule for each in places) == 1
 
     def _counterpart(
-        self, new: Reader, piece: Piece, places: list[Piece], taken: set[int], everywhere: bool
+        self,
+        new: SentenceReader,
+        piece: Piece,
+        places: list[Piece],
+        taken: set[int],
+        everywhere: bool,
     ) -> Piece | None:
         """The part of the sentence that a new one most likely corrects."""
         lead = lead_words(new, piece)
@@ -296,7 +301,7 @@ class Sentence:
                 best, best_score = old, score
         return best
 
-    def with_clause(self, new: Reader) -> str | None:
+    def with_clause(self, new: SentenceReader) -> str | None:
         """The sentence with a whole clause in the place of the last one that does the like."""
         other = Sentence(new)
         doing = other.first_meaning()
@@ -340,7 +345,7 @@ class Sentence:
             visit(self.tree)
         return found
 
-    def swapped(self, old: Reader, new: Reader) -> str | None:
+    def swapped(self, old: SentenceReader, new: SentenceReader) -> str | None:
         """The sentence with some of its words put for others, wherever they stand."""
         stripped_old, stripped_new = old.lead, new.lead
         for skip in (0, stripped_old):

@@ -16,10 +16,10 @@ from dataclasses import dataclass
 
 from grammar import plan as p
 from grammar.language import load_language
-from grammar.reading import read_program
+from grammar.program_parser import read_program
 from grammar.speech import Speech, speech
-from grammar.telling import Teller
-from grammar.told import Told, listed, sentences
+from grammar.telling.layout import Told, listed, sentences
+from grammar.telling.steps import Teller
 
 
 def explain(

@@ -9,7 +9,7 @@ from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.pieces import Piece, leading, leaves, words_listed
-from grammar.reader import Reader
+from grammar.reader import SentenceReader
 
 KINDS: Final = {
     "place": "place",
@@ -43,7 +43,7 @@ class Member:
 class Row:
     """Several names that are said one after the other."""
 
-    reader: Reader
+    reader: SentenceReader
     members: tuple[Member, ...]
     begins_it: bool
     """Whether none of their kind was named before them."""
@@ -62,7 +62,7 @@ class Row:
     def reversed(self) -> str:
         return self._said(self.members[::-1])
 
-    def with_one(self, new: Reader, piece: Piece, *, first: bool = False) -> str:
+    def with_one(self, new: SentenceReader, piece: Piece, *, first: bool = False) -> str:
         """The sentence with one more name, at the end of the row or as its first."""
         more = _member(new, piece.start, piece.end, self.kind, set())
         return self._said([more, *self.members] if first else [*self.members, more])
@@ -85,7 +85,7 @@ class Row:
         )
 
 
-def rows_of(reader: Reader, tree: Node | None) -> list[Row]:
+def rows_of(reader: SentenceReader, tree: Node | None) -> list[Row]:
     """The rows of at least two names in a sentence."""
     found: list[list[Member]] = []
     for kind, start, end, called in _spots(tree):
@@ -123,7 +123,7 @@ def _called(leaf: Leaf) -> set[str]:
     return {word for each in named for word in getattr(each, "name", "").lower().split()}
 
 
-def _member(reader: Reader, start: int, end: int, kind: str, called: set[str]) -> Member:
+def _member(reader: SentenceReader, start: int, end: int, kind: str, called: set[str]) -> Member:
     first = start
     if first > 0 and _is_article(reader, first - 1):
         first -= 1
@@ -140,14 +140,14 @@ def _member(reader: Reader, start: int, end: int, kind: str, called: set[str]) -
     )
 
 
-def _is_article(reader: Reader, at: int) -> bool:
+def _is_article(reader: SentenceReader, at: int) -> bool:
     norm = (reader.tokens[at].norm,)
     others = words_listed(reader.language, "joins")
     others |= words_listed(reader.language, "prepositions")
     return reader.is_little(range(at, at + 1)) and norm not in others
 
 
-def _joined(reader: Reader, end: int, member: Member) -> bool:
+def _joined(reader: SentenceReader, end: int, member: Member) -> bool:
     """Whether nothing but a comma, an "and", a "then" stands between two names."""
     joins = words_listed(reader.language, "joins")
     between = range(end, member.start)

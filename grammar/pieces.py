@@ -14,7 +14,7 @@ from grammar.slips import command_words
 from grammar.slots import UNKNOWN_NAME
 
 if TYPE_CHECKING:
-    from grammar.reader import Reader
+    from grammar.reader import SentenceReader
 
 CORRECTABLE: Final = (
     "place_ref",
@@ -89,13 +89,13 @@ def named_until(node: Node) -> int:
     return mods.start if told and isinstance(mods, Node) else 0
 
 
-def is_pieces(reader: Reader) -> bool:
+def is_pieces(reader: SentenceReader) -> bool:
     """Whether words are nothing but parts that could be put into a sentence, and known ones: "in
     ward b"."""
     return any(all(piece.known for piece in row) for row in pieces_of(reader))
 
 
-def pieces_of(reader: Reader) -> Iterator[list[Piece]]:
+def pieces_of(reader: SentenceReader) -> Iterator[list[Piece]]:
     """The ways to read all words of a correction as parts that can be put in, the longest parts
     first."""
     try:
@@ -104,7 +104,7 @@ def pieces_of(reader: Reader) -> Iterator[list[Piece]]:
         return
 
 
-def _rows(reader: Reader, at: int, dead: set[int]) -> Iterator[list[Piece]]:
+def _rows(reader: SentenceReader, at: int, dead: set[int]) -> Iterator[list[Piece]]:
     """`dead`: where it is known already that nothing leads from to the end; there may be as many
     ways to each of them as there are ways to read a row of numbers."""
     end = reader.last_word
@@ -133,7 +133,7 @@ def _rows(reader: Reader, at: int, dead: set[int]) -> Iterator[list[Piece]]:
         dead.add(at)
 
 
-def _likely_at(reader: Reader, start: int) -> list[Piece]:
+def _likely_at(reader: SentenceReader, start: int) -> list[Piece]:
     """The parts that begin here, without unheard-of nouns where rules know better: "two minutes"
     are a time, and "stay" is something to do."""
     pieces = list(pieces_at(reader, start))
@@ -142,7 +142,7 @@ def _likely_at(reader: Reader, start: int) -> list[Piece]:
     return [piece for piece in pieces if piece.known or (piece.end > known and not begins_command)]
 
 
-def leading(reader: Reader, start: int) -> int:
+def leading(reader: SentenceReader, start: int) -> int:
     """How many words before a part belong to it: "to" of "to the pharmacy"."""
     return max(
         (
@@ -154,11 +154,11 @@ def leading(reader: Reader, start: int) -> int:
     )
 
 
-def lead_words(reader: Reader, piece: Piece) -> tuple[str, ...]:
+def lead_words(reader: SentenceReader, piece: Piece) -> tuple[str, ...]:
     return norms(reader, piece.start - leading(reader, piece.start), piece.start)
 
 
-def norms(reader: Reader, start: int, end: int) -> tuple[str, ...]:
+def norms(reader: SentenceReader, start: int, end: int) -> tuple[str, ...]:
     return tuple(token.norm for token in reader.tokens[max(start, 0) : end])
 
 
@@ -168,7 +168,7 @@ def words_listed(language: Language, name: str) -> frozenset[tuple[str, ...]]:
     return frozenset(map(language.tokens_of, language.speech.get(name, ())))
 
 
-def pieces_at(reader: Reader, start: int) -> Iterator[Piece]:
+def pieces_at(reader: SentenceReader, start: int) -> Iterator[Piece]:
     """The parts that begin here. Raises `TooMuch`."""
     for rule in CORRECTABLE:
         if rule in reader.language.rules:

@@ -2,7 +2,7 @@
 
 A plan is a list of steps over the robot methods of `robot_api.methods`, with conditions, loops and
 remembered values; it is the language-independent middle of the project. `grammar.program` writes
-it as Python, `grammar.reading` reads it back, `grammar.explain` puts it into plain words,
+it as Python, `grammar.program_parser` reads it back, `grammar.explain` puts it into plain words,
 `grammar.normal` gives the one form of all plans that say the same, `grammar.schema` the JSON
 Schema. Every node is a tagged `msgspec.Struct`, so `to_data` and `from_data` round-trip through
 JSON.

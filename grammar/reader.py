@@ -15,12 +15,11 @@ from dataclasses import replace
 from typing import Final
 
 import grammar.meanings.all_meanings  # noqa: F401 (what the rules name is entered there)
-from grammar.accounts import in_manner, left_out, unheeded, unspoken
-from grammar.bringing_back import told_when_all_are_asked
 from grammar.chart import Chart, Node, TooMuch
 from grammar.company import in_company
+from grammar.coverage import in_manner, left_out, unheeded, unspoken
 from grammar.discourse import Discourse
-from grammar.doubts import Ambiguous, NotUnderstood
+from grammar.errors import Ambiguous, NotUnderstood
 from grammar.freetext import Doubt, doubtful, words_for
 from grammar.language import Language
 from grammar.lexicon import Lexicon
@@ -28,18 +27,19 @@ from grammar.meanings.offers import with_offers_kept
 from grammar.memory import Command, Deliveries, People, Scene
 from grammar.names import Names
 from grammar.naming import joined_up, naming, place_called
+from grammar.number_options import with_numbers
 from grammar.plan import Plan, Text, Value
 from grammar.plausible import implausible
-from grammar.readings import read
+from grammar.prepared import prepared
 from grammar.refusals import forbidden, is_half, no_thing, not_said, out_of_range, strange, why_not
+from grammar.report_after_loop import told_when_all_are_asked
 from grammar.requests import Request
-from grammar.said import said
 from grammar.samples import nearest_phrases
 from grammar.slots import Slots
-from grammar.so_many import with_numbers
 from grammar.speech import speech
 from grammar.tidy import Unbound, charging_last, is_one_of_each, returning, scoped, without_unused
 from grammar.tokens import COMMA, Token
+from grammar.trace import read
 from grammar.traversal import nodes
 from grammar.understanding import Clarification, Context, Understanding, rejected
 
@@ -53,18 +53,18 @@ EMERGENCY: Final = "emergency"
 """The answer that matters more than why a sentence is refused."""
 
 
-class Reader:
+class SentenceReader:
     """Reads one sentence."""
 
     def __init__(self, text: str, lexicon: Lexicon, language: Language, context: Context) -> None:
         self.lexicon = lexicon
         self.language = language
         self.context = context
-        self._said = said(text, lexicon, language)
-        self.names: Names = self._said.names
-        self.text, self.slips = self._said.text, self._said.slips
-        self.tokens = self._said.tokens
-        self.corrections, self.skips = self._said.corrections, self._said.skips
+        self._prepared = prepared(text, lexicon, language)
+        self.names: Names = self._prepared.names
+        self.text, self.slips = self._prepared.text, self._prepared.slips
+        self.tokens = self._prepared.tokens
+        self.corrections, self.skips = self._prepared.corrections, self._prepared.skips
 
     def understand(self) -> Understanding:
         if not self.tokens:
@@ -261,10 +261,10 @@ class Reader:
 
     @property
     def slots(self) -> Slots:
-        return self._said.slots
+        return self._prepared.slots
 
     def chart(self) -> Chart:
-        return self._said.chart
+        return self._prepared.chart
 
     @property
     def last_word(self) -> int:

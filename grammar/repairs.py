@@ -14,14 +14,14 @@ from collections.abc import Iterator
 from typing import Final
 
 from grammar import conversation
-from grammar.accounts import TEXTS
 from grammar.chart import TooMuch
+from grammar.coverage import TEXTS
+from grammar.distinguish import with_other_look
 from grammar.edits import Sentence
 from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.pieces import Piece, is_pieces, leading, leaves, pieces_at, words_listed
-from grammar.reader import Reader
-from grammar.told_apart import with_other_look
+from grammar.reader import SentenceReader
 from grammar.understanding import Context, Understanding
 
 MOST_REPAIRS: Final = 3
@@ -43,11 +43,11 @@ def understood(
 ) -> Understanding:
     """Understand a sentence of a conversation, as it was put right in the end."""
     all_tried: list[str] = [] if tried_before is None else tried_before
-    reader = Reader(text, lexicon, language, context)
+    reader = SentenceReader(text, lexicon, language, context)
     for start, end in taken_back(reader) if depth < MOST_REPAIRS else ():
-        before = Reader(reader.words(0, start), lexicon, language, context)
+        before = SentenceReader(reader.words(0, start), lexicon, language, context)
         end = _behind_what_was_wrong(reader, end)
-        behind = Reader(reader.text[reader.tokens[end].start :], lexicon, language, context)
+        behind = SentenceReader(reader.text[reader.tokens[end].start :], lexicon, language, context)
         others = itertools.chain(
             _broken_off(before, behind),
             _named_instead(before, behind),
@@ -69,7 +69,7 @@ def understood(
     return conversation.understood(text, lexicon, language, context)
 
 
-def taken_back(reader: Reader) -> Iterator[tuple[int, int]]:
+def taken_back(reader: SentenceReader) -> Iterator[tuple[int, int]]:
     """Where words take back what stands before them, with the marks around them."""
     tokens, at = reader.tokens, 1
     while at < len(tokens):
@@ -81,7 +81,7 @@ def taken_back(reader: Reader) -> Iterator[tuple[int, int]]:
         at = max(end, at + 1)
 
 
-def _behind_what_was_wrong(reader: Reader, at: int) -> int:
+def _behind_what_was_wrong(reader: SentenceReader, at: int) -> int:
     """Where it is said what is meant, if it is said once more what is not: "no, not the pharmacy,
     the lab"."""
     rest = reader.tokens[at:]
@@ -92,13 +92,13 @@ def _behind_what_was_wrong(reader: Reader, at: int) -> int:
     return behind if behind < reader.last_word else at
 
 
-def _broken_off(before: Reader, behind: Reader) -> Iterator[str]:
+def _broken_off(before: SentenceReader, behind: SentenceReader) -> Iterator[str]:
     """A sentence broken off at a little word, and gone on with: "go to, no wait, the lab"."""
     if before.tokens[before.last_word - 1].norm in before.language.speech.get("half_ends", ()):
         yield f"{before.text.rstrip(' ,')} {behind.text}"
 
 
-def _named_instead(before: Reader, behind: Reader) -> Iterator[str]:
+def _named_instead(before: SentenceReader, behind: SentenceReader) -> Iterator[str]:
     """ "Tell Alice ..., no wait, she is away, tell Bob instead": the same for somebody else, where
     no other word of the last clause is new."""
     end = behind.last_word - 1
@@ -119,7 +119,7 @@ def _named_instead(before: Reader, behind: Reader) -> Iterator[str]:
                         yield before.with_words(old.start, old.end, behind.words(new.start, end))
 
 
-def _end_of_term(reader: Reader, at: int, parted: bool) -> int:
+def _end_of_term(reader: SentenceReader, at: int, parted: bool) -> int:
     """Where words that take something back end, with the marks in them and behind: "no, sorry,"; 0
     if there are none."""
     ends: dict[tuple[str, ...], int] = {(): at}
@@ -150,7 +150,7 @@ def _terms(language: Language, where: str) -> frozenset[tuple[str, ...]]:
     return frozenset(map(language.tokens_of, listed))
 
 
-def _said_aloud(reader: Reader, start: int, end: int) -> bool:
+def _said_aloud(reader: SentenceReader, start: int, end: int) -> bool:
     """Whether these words are a part of what is to be said: "tell Bob no, he must wait"."""
     try:
         tree = reader.chart().best("utterance")
@@ -161,21 +161,21 @@ def _said_aloud(reader: Reader, start: int, end: int) -> bool:
     )
 
 
-def _with_other_look(before: Reader, behind: Reader) -> Iterator[str]:
+def _with_other_look(before: SentenceReader, behind: SentenceReader) -> Iterator[str]:
     """The sentence with its last thing looking otherwise: "the blue cup, no, the red one"."""
     end = _first_mark(behind)
-    look = Reader(behind.words(0, end), behind.lexicon, behind.language, behind.context)
+    look = SentenceReader(behind.words(0, end), behind.lexicon, behind.language, behind.context)
     fixed = with_other_look(Sentence(before), look, instead=True) if look.tokens else None
     if fixed is not None:
         yield fixed.rstrip(" ,") + behind.text[behind.tokens[end - 1].end :]
 
 
-def _first_mark(reader: Reader) -> int:
+def _first_mark(reader: SentenceReader) -> int:
     marks = (at for at, token in enumerate(reader.tokens) if token.kind == "mark")
     return next(marks, reader.last_word)
 
 
-def _in_its_place(before: Reader, behind: Reader) -> Iterator[str]:
+def _in_its_place(before: SentenceReader, behind: SentenceReader) -> Iterator[str]:
     """The sentence with its last part before the words replaced by the first one behind them."""
     for new in _first_pieces(behind):
         lead, whole = leading(behind, new.start), _has_article(behind, new)
@@ -199,24 +199,24 @@ def _in_its_place(before: Reader, behind: Reader) -> Iterator[str]:
                 yield f"{kept}{said} {rest.lstrip(' ,')}"
 
 
-def _is_like_it(parts: Reader) -> bool:
+def _is_like_it(parts: SentenceReader) -> bool:
     """Whether it is another of what was spoken of: "the red one"."""
     likes = {norm for norms in words_listed(parts.language, "counted_words") for norm in norms}
     return parts.last_word > 1 and parts.tokens[parts.last_word - 1].norm in likes
 
 
-def _first_pieces(behind: Reader) -> list[Piece]:
+def _first_pieces(behind: SentenceReader) -> list[Piece]:
     """The parts that stand first, the longest before the others."""
     starts = [at for at in range(min(4, behind.last_word)) if at == 0 or leading(behind, at) == at]
     found = [piece for start in starts for piece in pieces_at(behind, start)]
     end = _first_mark(behind)
     if not found and end < behind.last_word:  # "to the lab, and give it ..." is no list of places
         words = behind.words(0, end)
-        return _first_pieces(Reader(words, behind.lexicon, behind.language, behind.context))
+        return _first_pieces(SentenceReader(words, behind.lexicon, behind.language, behind.context))
     return sorted(found, key=lambda piece: (not piece.known, -piece.end))
 
 
-def _last_pieces(before: Reader) -> list[Piece]:
+def _last_pieces(before: SentenceReader) -> list[Piece]:
     """The parts that stand last, the shortest before the others."""
     end = before.last_word
     found = [
@@ -228,18 +228,18 @@ def _last_pieces(before: Reader) -> list[Piece]:
     return sorted(found, key=lambda piece: (not piece.known, piece.end - piece.start))
 
 
-def _has_article(reader: Reader, piece: Piece) -> bool:
+def _has_article(reader: SentenceReader, piece: Piece) -> bool:
     """Whether a part of several words begins with a little one."""
     return piece.end - piece.start > 1 and reader.is_little(range(piece.start, piece.start + 1))
 
 
 def _as_a_change(
-    before: Reader, behind: Reader, words: str, context: Context
+    before: SentenceReader, behind: SentenceReader, words: str, context: Context
 ) -> Understanding | None:
     """What stands behind as a change to the command before, with what goes on behind it."""
     end = _first_mark(behind)
     change = behind.words(0, end)
-    parts = Reader(change, behind.lexicon, behind.language, context)
+    parts = SentenceReader(change, behind.lexicon, behind.language, context)
     if not parts.tokens or not (is_pieces(parts) or _is_like_it(parts)):
         return None
     rest = behind.text[behind.tokens[end - 1].end :]

@@ -27,7 +27,7 @@ from grammar.chart import TooMuch
 from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.network import RuleError
-from grammar.reader import Reader
+from grammar.reader import SentenceReader
 from grammar.templates import NOTHING, Choice, Part, Sequence, Template, Word, parse_template
 from grammar.tokens import words_of_template
 from grammar.understanding import Context
@@ -58,17 +58,19 @@ def said_plainly(text: str, lexicon: Lexicon, language: Language, context: Conte
     listed = _listed(language)
     if ANY_WORD not in listed and listed.keys().isdisjoint(language.tokens_of(text)):
         return text
-    reader = Reader(text, lexicon, language, context)
+    reader = SentenceReader(text, lexicon, language, context)
     return [text, *_reworded(reader, listed)][-1]
 
 
-def _reworded(reader: Reader, rewordings: Mapping[str, tuple[Rewording, ...]]) -> Iterator[str]:
+def _reworded(
+    reader: SentenceReader, rewordings: Mapping[str, tuple[Rewording, ...]]
+) -> Iterator[str]:
     for _ in range(MOST):
         text = next(_matches(reader, rewordings), None)
         if text is None:
             return
         yield text
-        reader = Reader(text, reader.lexicon, reader.language, reader.context)
+        reader = SentenceReader(text, reader.lexicon, reader.language, reader.context)
 
 
 @functools.cache
@@ -137,7 +139,9 @@ def _begins(template: Template) -> tuple[frozenset[str], bool]:
             return first, True
 
 
-def _matches(reader: Reader, rewordings: Mapping[str, tuple[Rewording, ...]]) -> Iterator[str]:
+def _matches(
+    reader: SentenceReader, rewordings: Mapping[str, tuple[Rewording, ...]]
+) -> Iterator[str]:
     """The sentence with the first of them replaced."""
     for at, token in enumerate(reader.tokens):
         begins = _begins_clause(reader, at)
@@ -151,17 +155,19 @@ def _matches(reader: Reader, rewordings: Mapping[str, tuple[Rewording, ...]]) ->
                 yield _replaced(reader, at, end, one, spans)
 
 
-def _begins_clause(reader: Reader, at: int) -> bool:
+def _begins_clause(reader: SentenceReader, at: int) -> bool:
     joins = reader.language.speech.get("joins", ())
     return at == 0 or reader.tokens[at - 1].kind == "mark" or reader.tokens[at - 1].norm in joins
 
 
-def _ends_clause(reader: Reader, end: int) -> bool:
+def _ends_clause(reader: SentenceReader, end: int) -> bool:
     marks = (token.kind == "mark" for token in reader.tokens[end - 1 : end + 1])
     return end >= len(reader.tokens) or any(marks)
 
 
-def _walk(template: Template, reader: Reader, at: int, spans: Spans) -> Iterator[tuple[int, Spans]]:
+def _walk(
+    template: Template, reader: SentenceReader, at: int, spans: Spans
+) -> Iterator[tuple[int, Spans]]:
     """Where a template that begins at a token can end, and what its parts stand for."""
     tokens = reader.tokens
     match template:
@@ -186,14 +192,14 @@ def _walk(template: Template, reader: Reader, at: int, spans: Spans) -> Iterator
                 yield end, {**spans, name: (at, end)}
 
 
-def _ends(reader: Reader, rule: str, at: int) -> list[int]:
+def _ends(reader: SentenceReader, rule: str, at: int) -> list[int]:
     try:
         return reader.chart().ends(rule, at) if at < len(reader.tokens) else []
     except (TooMuch, RecursionError):
         return []
 
 
-def _replaced(reader: Reader, start: int, end: int, one: Rewording, spans: Spans) -> str:
+def _replaced(reader: SentenceReader, start: int, end: int, one: Rewording, spans: Spans) -> str:
     words = one.instead
     for name, (first, last) in spans.items():
         said = _said(reader, first, last)
@@ -205,14 +211,14 @@ def _replaced(reader: Reader, start: int, end: int, one: Rewording, spans: Spans
     return f"{before}{words}{_left_of_contraction(reader, end)}{rest}"
 
 
-def _said(reader: Reader, first: int, last: int) -> str:
+def _said(reader: SentenceReader, first: int, last: int) -> str:
     """The words of some tokens; a part of a contraction in full."""
     if reader.opened(first) or _left_of_contraction(reader, last):
         return " ".join(token.norm for token in reader.tokens[first:last])
     return reader.words(first, last)
 
 
-def _left_of_contraction(reader: Reader, end: int) -> str:
+def _left_of_contraction(reader: SentenceReader, end: int) -> str:
     begin = reader.tokens[end - 1].start
     rest = itertools.takewhile(lambda token: token.start == begin, reader.tokens[end:])
     return "".join(f" {token.norm}" for token in rest)

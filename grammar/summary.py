@@ -20,11 +20,11 @@ from grammar.explain import explain
 from grammar.inference import truth
 from grammar.language import load_language
 from grammar.pauses import may_end
-from grammar.reading import CodeStep, Function
+from grammar.program_parser import CodeStep, Function
 from grammar.speech import fill, forms, speech
 from grammar.summary_sentences import Clause, Deed, Item, sentences
-from grammar.telling import Teller
-from grammar.told_values import as_call
+from grammar.telling.steps import Teller
+from grammar.telling.values import as_call
 from grammar.traversal import nodes
 from robot_api.methods import METHODS
 

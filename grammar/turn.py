@@ -10,14 +10,14 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Final
 
-from grammar.accounts import TEXTS
 from grammar.chart import TooMuch
+from grammar.coverage import TEXTS
 from grammar.edits import Sentence
 from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.pieces import is_pieces, leaves, pieces_of
 from grammar.plan import calls
-from grammar.reader import Reader
+from grammar.reader import SentenceReader
 from grammar.requests import Request
 from grammar.understanding import Context, Understanding
 
@@ -40,9 +40,9 @@ class Turn:
         self.base = context.before or Context()
         """What was known when the command before was given."""
 
-    def reader(self, text: str, context: Context) -> Reader:
+    def reader(self, text: str, context: Context) -> SentenceReader:
         """Some words, to be read in the same language and world."""
-        return Reader(text, self.lexicon, self.language, context)
+        return SentenceReader(text, self.lexicon, self.language, context)
 
     def read(self, text: str, base: Context) -> Understanding | None:
         """A sentence made from what was said, if it is one."""
@@ -77,7 +77,7 @@ class Turn:
             return before
         return Sentence(self.reader(routine.sentence, self.base))
 
-    def _is_times(self, new: Reader) -> bool:
+    def _is_times(self, new: SentenceReader) -> bool:
         return any(len(row) == 1 and row[0].rule == "times" for row in pieces_of(new))
 
     def commands(self, said: str) -> bool:
@@ -93,7 +93,7 @@ class Turn:
         """The command before and more, in sentences of their own."""
         return f"{self.context.text.rstrip(' .!?')}. {more.lstrip(' ,.')}"
 
-    def goes_on(self, new: Reader) -> bool:
+    def goes_on(self, new: SentenceReader) -> bool:
         """Whether words may go on with a sentence: "in the kitchen", "three times", "ten"."""
         begins = self.language.speech["goes_on"]
         if not new.tokens:
@@ -101,10 +101,10 @@ class Turn:
         known = new.tokens[0].norm in begins or new.tokens[0].kind in ("number", "time")
         return known or self.is_number(new) or self._is_times(new)
 
-    def is_number(self, new: Reader) -> bool:
+    def is_number(self, new: SentenceReader) -> bool:
         return any(end == new.last_word for end, _, _ in new.slots.matches("{number}", 0))
 
-    def there(self, new: Reader) -> str | None:
+    def there(self, new: SentenceReader) -> str | None:
         """ "in ward b": the command before, there."""
         words = new.words(0, new.last_word)
         return f"{words}, {self.context.text}" if is_pieces(new) else None

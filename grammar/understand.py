@@ -14,14 +14,14 @@ from typing import Final
 from grammar import repairs, rewordings
 from grammar.chart import Node, TooMuch
 from grammar.discourse import START, Discourse, Steps
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.language import load_language
 from grammar.lexicon import Lexicon, Routine
 from grammar.meanings.registry import meaning
 from grammar.meanings.requests import with_own_names
 from grammar.plan import Call, Plan, Text
-from grammar.reading import NotAPlan, parse_program
-from grammar.said import forget
+from grammar.prepared import forget
+from grammar.program_parser import NotAPlan, parse_program
 from grammar.tokens import Token
 from grammar.understanding import Clarification, Context, Understanding, rejected
 

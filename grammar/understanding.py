@@ -7,8 +7,8 @@ from typing import Literal
 
 from grammar.discourse import Thing
 from grammar.plan import Plan, Value
-from grammar.readings import Read
 from grammar.requests import Request
+from grammar.trace import Read
 
 Status = Literal["ok", "clarify", "rejected"]
 

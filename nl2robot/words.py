@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import locale
 import os
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Final
@@ -28,8 +29,6 @@ def words_in(language: str) -> Mapping[str, Any]:
 
 def terminal_language() -> str:
     """The language of the terminal, as its environment says; "" if it does not."""
-    import locale
-
     named = (os.environ.get(name) for name in ("LC_ALL", "LC_MESSAGES", "LANG"))
     setting = next(filter(None, named), "")  # the first that is set counts
     return locale.normalize(setting).partition("_")[0]

@@ -16,7 +16,9 @@ from typing import Any
 
 from robot_api.client import Robot
 from robot_api.driver import Driver, StopFlag
+from robot_api.drivers import emulated
 from robot_api.errors import Stopped
+from robot_api.server import Context, Server, Service
 
 CLIENTS = 8
 WAITING = 63
@@ -128,9 +130,6 @@ class _Watched:
 
 
 def _serve() -> None:
-    from robot_api.drivers import emulated
-    from robot_api.server import Context, Server, Service
-
     driver = _Watched(emulated())
 
     def held(params: dict[str, Any], context: Context) -> None:

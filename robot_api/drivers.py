@@ -36,6 +36,7 @@ from robot_api.interfaces import INTERFACES, implementations
 from robot_api.methods import CAPABILITIES
 from robot_api.robots.robot_file import RobotFile
 from robot_api.schema import find_method
+from sim.world.loading import load_world
 
 if TYPE_CHECKING:
     from sim.simulation import Simulation
@@ -236,7 +237,6 @@ def simulated(simulation: Simulation, sound: Sound = SILENT) -> SimulatedDriver:
 def in_default_world(sound: Sound = SILENT) -> SimulatedDriver:
     """A simulated robot for who wants no world of their own."""
     from sim.simulation import Simulation
-    from sim.world.loading import load_world
 
     return simulated(Simulation(load_world("city-hospital")), sound)
 

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from robot_api.driver import EVENTS
+from robot_api.messages import Robot
 from robot_api.methods import CAPABILITIES, CORE, METHODS, REQUIRED, Method, Parameter
 
 PAGE = Path(__file__).parents[1] / "docs" / "methods.md"
@@ -164,8 +165,6 @@ def _paper_style() -> str:
 
 
 def _messages_by_function() -> Iterator[tuple[int, list[str]]]:
-    from robot_api.messages import Robot
-
     by_number: dict[int, list[str]] = {}
     for name, make in vars(Robot).items():
         number, colon, _ = (make.__doc__ or "").partition(":")

@@ -25,6 +25,7 @@ from sim.physics.robot import Robot, RobotState
 from sim.record import Happening, Record, Sample
 from sim.snapshot import Snapshot
 from sim.world.geometry import GridMap, Segment, map_corners
+from sim.world.maps import free_floor
 from sim.world.model import Person, Place, World, Zone
 
 if TYPE_CHECKING:
@@ -488,8 +489,6 @@ def _floor(grid: GridMap, drawn: tuple[Segment, ...]) -> BaseGeometry:
     """What the map shows to be free, and what walls drawn beside it stand around: of the map, what
     is unknown is no floor."""
     import shapely
-
-    from sim.world.maps import free_floor
 
     shown = free_floor(grid)
     if not drawn:

@@ -10,7 +10,7 @@ import functools
 from collections.abc import Iterable, Iterator, Set
 from dataclasses import dataclass
 
-from grammar.accounts import same_word
+from grammar.coverage import same_word
 from grammar.language import Language
 from grammar.tokens import Token, without_accents
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from grammar.chart import Node
 from grammar.discourse import Discourse
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import Survey, asked_before, in_loop, note
 from grammar.plan import (

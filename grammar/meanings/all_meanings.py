@@ -14,7 +14,6 @@ import grammar.meanings.answering
 import grammar.meanings.answers
 import grammar.meanings.asked_to_do
 import grammar.meanings.asking_until
-import grammar.meanings.besides
 import grammar.meanings.best_places
 import grammar.meanings.body
 import grammar.meanings.branches
@@ -29,6 +28,7 @@ import grammar.meanings.descriptions
 import grammar.meanings.driving
 import grammar.meanings.exceptions
 import grammar.meanings.exchanges
+import grammar.meanings.extra_answers
 import grammar.meanings.facts
 import grammar.meanings.findings
 import grammar.meanings.found_places

@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, as_value
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.registry import meaning
 from grammar.plan import Number
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Meeting, Thing, as_value
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.agreement import same_answers
 from grammar.meanings.answers import Said, Wanted, yes
 from grammar.meanings.answers import wanted as wanted_answer

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from grammar.chart import Node
 from grammar.discourse import Discourse
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.answers import Said, is_about, names_option, silent_words
 from grammar.meanings.news import Told
 from grammar.meanings.polls import polled

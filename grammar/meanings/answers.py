@@ -8,7 +8,7 @@ from typing import Final
 
 from grammar.chart import Node
 from grammar.discourse import Discourse
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import Survey
 from grammar.plan import Condition, Either, Not, Text

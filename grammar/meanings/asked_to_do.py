@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.finding import speak_to
 from grammar.meanings.persons import guest_for
 from grammar.meanings.questions import turn_to_you

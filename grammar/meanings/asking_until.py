@@ -9,7 +9,7 @@ import msgspec
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.answered import of_those_asked
 from grammar.meanings.answers import Wanted
 from grammar.meanings.polls import counted

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing
-from grammar.meanings.gone_round import round_of
+from grammar.meanings.place_loops import round_of
 from grammar.meanings.places import kind_places, only_taken_apart, sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.rounds import best_counted

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, as_value
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.asking import remember_answer
 from grammar.meanings.finding import speak_to
 from grammar.meanings.options import split_options

@@ -14,7 +14,7 @@ from msgspec.structs import replace as structs_replace
 
 from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import ANYONE, START, Branched, Claim, Discourse, Meeting, Steps, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.absences import Addressed, addressed_before
 from grammar.meanings.alternatives import excludes
 from grammar.meanings.answered import said_so

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, START, Discourse, Steps, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.deliveries import Delivery, for_them, kept_in_hand, meant_for, ordered_now
 from grammar.meanings.finding import go, look_for, meet, where_sent
 from grammar.meanings.holders import from_whoever_has_it

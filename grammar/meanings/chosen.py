@@ -9,7 +9,7 @@ from typing import Any
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.guards import guard_finds
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import Survey, uses_answer

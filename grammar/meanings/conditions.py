@@ -7,7 +7,7 @@ from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Meeting, Steps, as_value
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.deliveries import inside
 from grammar.meanings.finding import noun_of
 from grammar.meanings.places import sought

@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.alternatives import done_first, exclusive, for_all, itself, side_by_side
 from grammar.meanings.branches import in_branch
 from grammar.meanings.finding import go

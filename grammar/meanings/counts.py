@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.descriptions import described
 from grammar.meanings.places import sought
 from grammar.meanings.registry import meaning

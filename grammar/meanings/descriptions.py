@@ -6,7 +6,7 @@ from typing import Final
 
 from grammar.chart import Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.places import (
     home_of,
     unknown_place,

@@ -7,7 +7,7 @@ from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import SETTING, Discourse, Steps, Thing, Where, as_value
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.finding import go, look_for, noun_of, where_sent
 from grammar.meanings.leading import lead
 from grammar.meanings.loops import for_each_of_them, looped

@@ -6,8 +6,8 @@ from msgspec.structs import replace
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing
-from grammar.doubts import NotUnderstood
-from grammar.meanings.gone_round import last_round
+from grammar.errors import NotUnderstood
+from grammar.meanings.place_loops import last_round
 from grammar.meanings.places import place_called_after
 from grammar.meanings.registry import meaning
 from grammar.plan import Ask, ForEach, Items, Text, Value

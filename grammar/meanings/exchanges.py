@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.carrying import deliver
 from grammar.meanings.deliveries import Delivery
 from grammar.meanings.finding import go

@@ -6,7 +6,7 @@ from typing import Final
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, as_value
-from grammar.doubts import Ambiguous, NotUnderstood
+from grammar.errors import Ambiguous, NotUnderstood
 from grammar.meanings.finding import speak_to
 from grammar.meanings.places import kind_places
 from grammar.meanings.references import answer_to, survey_named

@@ -7,7 +7,7 @@ from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.genders import gender_of_thing, pronoun_of
 from grammar.meanings.persons import is_me, together
 from grammar.meanings.places import sought

@@ -9,7 +9,6 @@ from dataclasses import replace
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, as_value
 from grammar.meanings.answers import Said
-from grammar.meanings.gone_round import last_round, round_of_visits
 from grammar.meanings.lookouts import (
     Lookout,
     another_meant,
@@ -20,6 +19,7 @@ from grammar.meanings.lookouts import (
     where_met,
 )
 from grammar.meanings.news import News, Told, in_round, not_back_yet, take_back
+from grammar.meanings.place_loops import last_round, round_of_visits
 from grammar.meanings.places import kind_places
 from grammar.meanings.polls import polled, said_in
 from grammar.meanings.questions import ask_everybody_here

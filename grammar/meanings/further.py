@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.absences import undelivered
 from grammar.meanings.asking import Audience, audience, put, remember_answer
 from grammar.meanings.questions import ask_one, worded

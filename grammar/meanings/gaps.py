@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.freetext import words_for
 from grammar.meanings.carrying import deliver
 from grammar.meanings.places import source_of

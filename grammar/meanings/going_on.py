@@ -15,12 +15,12 @@ from grammar.meanings.claims import claim_of
 from grammar.meanings.conditions import condition_of
 from grammar.meanings.deliveries import first_clause, hands_it_over, inside
 from grammar.meanings.finding import speak_to
-from grammar.meanings.found_once import found_once, says
-from grammar.meanings.gone_round import goes_to
+from grammar.meanings.first_match import found_once, says
 from grammar.meanings.lookouts import ABOUT_IT, looks_out
 from grammar.meanings.news import BACK, News, go_back
 from grammar.meanings.news import in_round as in_a_round
 from grammar.meanings.persons import is_me
+from grammar.meanings.place_loops import goes_to
 from grammar.meanings.rounds import told_after_round
 from grammar.meanings.surveys import Survey, is_in
 from grammar.meanings.there import counts_answers

@@ -9,7 +9,7 @@ from typing import Final
 
 from grammar.chart import Node, what_it_means
 from grammar.discourse import Discourse, Steps, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.deliveries import hands_it_over
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import Survey, exchanged, note

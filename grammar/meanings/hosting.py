@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from grammar.chart import Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.carrying import deliver
 from grammar.meanings.driving import go_to
 from grammar.meanings.finding import meet, named, speak_to, where_sent

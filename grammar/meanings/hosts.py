@@ -10,7 +10,7 @@ from typing import Final
 import msgspec
 
 from grammar.discourse import Discourse
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.places import is_of
 from grammar.meanings.surveys import Survey, exchanged
 from grammar.plan import Items, Recall, Sentence, Text, Value

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.carrying import deliver
 from grammar.meanings.finding import speak_to
 from grammar.meanings.news import go_back

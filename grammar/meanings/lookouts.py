@@ -16,11 +16,13 @@ from msgspec.structs import replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.conditions import negated
 from grammar.meanings.deliveries import first_clause, inside
 from grammar.meanings.finding import look_for, speak_to
-from grammar.meanings.gone_round import (
+from grammar.meanings.news import BACK, News, Told, go_back
+from grammar.meanings.persons import is_me
+from grammar.meanings.place_loops import (
     last_round,
     of_them,
     of_those,
@@ -28,8 +30,6 @@ from grammar.meanings.gone_round import (
     same_round,
     visits_alone,
 )
-from grammar.meanings.news import BACK, News, Told, go_back
-from grammar.meanings.persons import is_me
 from grammar.meanings.places import kind_places, sought
 from grammar.meanings.registry import meaning
 from grammar.meanings.rounds import found_places, summed_up

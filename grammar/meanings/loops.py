@@ -9,16 +9,16 @@ from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing, as_value
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.asking_until import until_answered
 from grammar.meanings.claims import meet_there
 from grammar.meanings.conditions import FULL_HOUR, condition_of, negated
 from grammar.meanings.deliveries import first_clause
 from grammar.meanings.finding import go, look_for, not_found, noun_of
 from grammar.meanings.going_on import about_places, brought_behind, in_round, told_last
-from grammar.meanings.gone_round import end_of_stop, goes_to_name, of_those, same_round
 from grammar.meanings.guards import guard_finds
 from grammar.meanings.news import BACK
+from grammar.meanings.place_loops import end_of_stop, goes_to_name, of_those, same_round
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.round_ends import goes_round, is_sight, round_until, seeks

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, capital
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.freetext import words_for
 from grammar.meanings.about_guests import guest_in, guest_spoken_of, host_told, others_spoken_of
 from grammar.meanings.finding import go, speak_to

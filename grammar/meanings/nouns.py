@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.deliveries import delivered_last
 from grammar.meanings.descriptions import described
 from grammar.meanings.genders import means_receiver, means_thing

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.asking import audience, put, remember_answer
 from grammar.meanings.carrying import deliver
 from grammar.meanings.registry import meaning

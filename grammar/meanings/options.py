@@ -6,7 +6,7 @@ from typing import Final
 
 from grammar.chart import Node
 from grammar.discourse import Discourse
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.names import names_of
 from grammar.plan import Ask, Items, Text, Value
 from grammar.tokens import COLON, COMMA

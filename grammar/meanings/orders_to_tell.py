@@ -10,7 +10,7 @@ import msgspec
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.about_guests import host_told, who_is_told
 from grammar.meanings.absences import undelivered
 from grammar.meanings.answered_numbers import of_answers
@@ -18,7 +18,6 @@ from grammar.meanings.arrivals import arrival_told
 from grammar.meanings.carrying import deliver
 from grammar.meanings.finding import go, speak_to
 from grammar.meanings.findings import found_told, summed_or_said
-from grammar.meanings.gone_round import last_round
 from grammar.meanings.lookouts import tell_lookout
 from grammar.meanings.news import (
     BACK,
@@ -33,6 +32,7 @@ from grammar.meanings.news import (
     told_at_end,
 )
 from grammar.meanings.persons import is_me
+from grammar.meanings.place_loops import last_round
 from grammar.meanings.places import sought
 from grammar.meanings.polls import said_by
 from grammar.meanings.registry import meaning

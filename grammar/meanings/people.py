@@ -7,7 +7,7 @@ from typing import Final
 
 from grammar.chart import Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where, as_value
-from grammar.doubts import Ambiguous, NotUnderstood
+from grammar.errors import Ambiguous, NotUnderstood
 from grammar.meanings.carrying import deliver
 from grammar.meanings.conditions import condition_of
 from grammar.meanings.deliveries import given_last, inside

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.lexicon import nearest
 from grammar.meanings.descriptions import described
 from grammar.meanings.places import (

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, START, Discourse, Meeting, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.answered import about_answer, so_many_said
 from grammar.meanings.answers import Said
 from grammar.meanings.conditions import negated
@@ -25,7 +25,7 @@ from grammar.plan import Call, Condition, Not, Recall, Text, Value
 @meaning("trait_holds")
 def trait_holds(d: Discourse, node: Node) -> Condition:
     """ "if the kitchen is empty", "if it has no stapler": found out there; "if none of them is
-    empty": on the whole round (`grammar.meanings.found_once`)."""
+    empty": on the whole round (`grammar.meanings.first_match`)."""
     place: Value | None = d.get(node, "trait_place")
     none = node.production.fixed.get("of_round") == "none"
     asked_for = about_answer(d, node) if place is None and not none else None

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.lexicon import Name, series_of
 from grammar.meanings.places import is_of, kind_places, unknown_place
 from grammar.meanings.registry import meaning

@@ -8,7 +8,7 @@ from typing import Any
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.lexicon import nearest
 from grammar.meanings.registry import meaning
 from grammar.plan import Ask, Call, Items, Recall, Remember, Text, Value

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from grammar.chart import Node
 from grammar.discourse import START, Discourse, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.found_places import first_of_round
 from grammar.meanings.hosts import place_just_named
 from grammar.meanings.places import (

@@ -15,7 +15,7 @@ import msgspec
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.answers import Said, Wanted, is_about, wanted, yes
 from grammar.meanings.follow_ups import said_in_all, said_one_by_one
 from grammar.meanings.news import Told

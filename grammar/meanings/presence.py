@@ -8,12 +8,12 @@ from msgspec.structs import replace
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.finding import go
 from grammar.meanings.findings import found_told
-from grammar.meanings.gone_round import last_round, places_of, round_of, round_of_visits
 from grammar.meanings.news import News, Told, go_back, take_back
 from grammar.meanings.persons import together
+from grammar.meanings.place_loops import last_round, places_of, round_of, round_of_visits
 from grammar.meanings.places import unknown_place
 from grammar.meanings.registry import meaning
 from grammar.meanings.some_places import Claims

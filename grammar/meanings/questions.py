@@ -9,7 +9,7 @@ from typing import Any, Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, capital
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.freetext import words_for
 from grammar.meanings.answered import says_the_same
 from grammar.meanings.asking import Audience, asked, audience, put, remember_answer

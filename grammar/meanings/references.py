@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.news import Told
 from grammar.meanings.polls import chosen_most, polled
 from grammar.meanings.registry import meaning

@@ -15,7 +15,7 @@ import msgspec
 
 from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import Discourse, Steps, Thing, Where, as_value
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.freetext import words_for
 from grammar.meanings.genders import gender_of_thing
 from grammar.meanings.options import people_named

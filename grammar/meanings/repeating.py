@@ -6,7 +6,7 @@ import itertools
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, as_value
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.conditions import condition_of
 from grammar.meanings.guards import guard_finds
 from grammar.meanings.loops import looped, one_round

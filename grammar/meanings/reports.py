@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from grammar.discourse import START, Discourse, Steps, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.arrivals import arrival
 from grammar.meanings.finding import is_here, speak_to
 from grammar.meanings.follow_ups import asked_one_after_the_other, said_in_all, said_one_by_one

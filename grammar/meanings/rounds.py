@@ -8,11 +8,13 @@ from msgspec.structs import replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.answers import Said
 from grammar.meanings.conditions import negated
 from grammar.meanings.finding import speak_to
-from grammar.meanings.gone_round import (
+from grammar.meanings.news import News, Told, go_back, take_back
+from grammar.meanings.persons import is_me
+from grammar.meanings.place_loops import (
     goes_to,
     last_round,
     looked_over,
@@ -21,8 +23,6 @@ from grammar.meanings.gone_round import (
     round_of_visits,
     visits_alone,
 )
-from grammar.meanings.news import News, Told, go_back, take_back
-from grammar.meanings.persons import is_me
 from grammar.meanings.places import sought
 from grammar.meanings.polls import ASKED_WHERE, asked_there, polled
 from grammar.meanings.registry import meaning

@@ -9,7 +9,7 @@ from msgspec import structs
 
 from grammar.chart import Node
 from grammar.discourse import START, Discourse, Steps, Thing, Where
-from grammar.doubts import Ambiguous, NotUnderstood
+from grammar.errors import Ambiguous, NotUnderstood
 from grammar.meanings.chosen import by_choice, chosen_of
 from grammar.meanings.deliveries import inside
 from grammar.meanings.finding import found, named, not_found

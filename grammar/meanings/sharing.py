@@ -12,7 +12,7 @@ from functools import partial
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.carrying import deliver
 from grammar.meanings.nouns import spoken_of
 from grammar.meanings.places import source_of

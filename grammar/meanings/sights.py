@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import ANYONE, START, Discourse, Steps, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.answered_numbers import number_answered
 from grammar.meanings.descriptions import described
 from grammar.meanings.finding import found, in_state, is_here, not_found, whether_found

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.carrying import pick_up
 from grammar.meanings.deliveries import kept_in_hand
 from grammar.meanings.finding import meet

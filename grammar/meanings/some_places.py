@@ -15,8 +15,8 @@ from grammar.meanings.carrying import deliver
 from grammar.meanings.conditions import TELLING, negated
 from grammar.meanings.deliveries import inside
 from grammar.meanings.found_places import sought_place
-from grammar.meanings.gone_round import last_round, round_of
 from grammar.meanings.news import in_round
+from grammar.meanings.place_loops import last_round, round_of
 from grammar.meanings.places import kind_places
 from grammar.meanings.registry import meaning
 from grammar.meanings.rounds import how_many

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.language import Language
 from grammar.meanings.deliveries import inside
 from grammar.meanings.registry import meaning

@@ -8,7 +8,7 @@ from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, capital
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.freetext import words_for
 from grammar.language import Language, languages, load_language
 from grammar.meanings.finding import speak_to

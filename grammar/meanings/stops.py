@@ -10,11 +10,11 @@ from typing import Final
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Steps
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.alternatives import itself
 from grammar.meanings.deliveries import first_clause
 from grammar.meanings.going_on import about_places, conditional, depends_on_stop
-from grammar.meanings.gone_round import round_of_visits
+from grammar.meanings.place_loops import round_of_visits
 from grammar.meanings.registry import meaning
 from grammar.memory import Scene
 from grammar.plan import Ask, Call, End, ForEach, Holds, If, Items, Recall, Step, Text, Value

@@ -14,7 +14,7 @@ from typing import Any
 import msgspec
 
 from grammar.discourse import Discourse, Steps, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.plan import (
     Ask,
     Call,

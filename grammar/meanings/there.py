@@ -8,7 +8,7 @@ from typing import Final
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, START, Discourse, Meeting, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.answers import yes
 from grammar.meanings.checked import checked
 from grammar.meanings.conditions import negated

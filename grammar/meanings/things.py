@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from grammar.chart import Node, what_it_means
 from grammar.discourse import ANYONE, START, Discourse, Steps, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.carrying import deliver, pick_up, take_back_delivery, the_same
 from grammar.meanings.chosen import handed_already
 from grammar.meanings.deliveries import (

@@ -7,7 +7,7 @@ from typing import Final
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.deliveries import inside
 from grammar.meanings.registry import meaning
 

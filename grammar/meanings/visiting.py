@@ -13,7 +13,7 @@ import msgspec
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.alternatives import itself
 from grammar.meanings.finding import meet, named, speak_to
 from grammar.meanings.hosts import SOMEBODY, place_of_named

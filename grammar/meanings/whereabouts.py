@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Meeting, Steps, Thing, Where
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.carrying import deliver
 from grammar.meanings.deliveries import Delivery, delivered_last, taken_back
 from grammar.meanings.finding import look_for

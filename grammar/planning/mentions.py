@@ -14,10 +14,10 @@ from typing import Any, Final, Literal
 
 from grammar.chart import Chart, Node, TooMuch
 from grammar.discourse import Discourse, Thing
-from grammar.doubts import Ambiguous, NotUnderstood
+from grammar.errors import Ambiguous, NotUnderstood
 from grammar.lexicon import kind_of
 from grammar.plan import Ask, Text
-from grammar.reader import Reader
+from grammar.reader import SentenceReader
 from grammar.slips import command_words
 
 Sort = (
@@ -77,7 +77,7 @@ class Mention:
     """How far-fetched it is."""
 
 
-def mentions(reader: Reader) -> tuple[Mention, ...]:
+def mentions(reader: SentenceReader) -> tuple[Mention, ...]:
     """All mentions of a sentence, also those that exclude each other, in the order of their words;
     of the same words and sort the likeliest first."""
     found: dict[tuple[int, int, Sort, str], Mention] = {}
@@ -89,7 +89,7 @@ def mentions(reader: Reader) -> tuple[Mention, ...]:
     return tuple(sorted(found.values(), key=lambda each: (each.start, -each.end, each.cost)))
 
 
-def _listed(reader: Reader) -> Iterator[Mention]:
+def _listed(reader: SentenceReader) -> Iterator[Mention]:
     for at in range(len(reader.tokens)):
         for slot, sort in _LISTED.items():
             for end, cost, value in reader.slots.matches("{" + slot + "}", at):
@@ -97,7 +97,7 @@ def _listed(reader: Reader) -> Iterator[Mention]:
                     yield Mention(at, end, sort, each, reader.words(at, end), cost)
 
 
-def _tails(reader: Reader, found: Sequence[Mention]) -> Iterator[Mention]:
+def _tails(reader: SentenceReader, found: Sequence[Mention]) -> Iterator[Mention]:
     """The places of which only the end of the name is said, behind others of their kind: "rooms 21
     and 22"; and those of which only a long number is said: "Bob in 106"."""
     before: list[tuple[int, str]] = [
@@ -117,7 +117,7 @@ def _tails(reader: Reader, found: Sequence[Mention]) -> Iterator[Mention]:
                     before.append((end, name.name))
 
 
-def _single_units(reader: Reader) -> Iterator[Mention]:
+def _single_units(reader: SentenceReader) -> Iterator[Mention]:
     """Lengths of time that are said without a number: "every hour", "the next minute"."""
     units: Mapping[str, float] = reader.language.numbers.get("units_of_time", {})
     for at, token in enumerate(reader.tokens):
@@ -130,7 +130,7 @@ def _single_units(reader: Reader) -> Iterator[Mention]:
                 yield Mention(*span, "seconds", value, reader.words(*span), 0.5)
 
 
-def _fractions_before(reader: Reader, at: int) -> Iterator[tuple[float, int]]:
+def _fractions_before(reader: SentenceReader, at: int) -> Iterator[tuple[float, int]]:
     """Numbers that stand up to two words before a unit: "a quarter of an hour"."""
     for start in range(max(0, at - 4), at):
         for end, _, value in reader.slots.matches("{number}", start):
@@ -138,7 +138,7 @@ def _fractions_before(reader: Reader, at: int) -> Iterator[tuple[float, int]]:
                 yield value, start
 
 
-def _written_times(reader: Reader) -> Iterator[Mention]:
+def _written_times(reader: SentenceReader) -> Iterator[Mention]:
     """Times that are written in figures as no rule reads them: "11.30", "11h30", "9h"."""
     for match in _TIME.finditer(reader.text):
         inside = [
@@ -167,7 +167,7 @@ def written(number: float) -> str:
     return f"{number:.10g}"
 
 
-def _read(reader: Reader) -> Iterator[Mention]:
+def _read(reader: SentenceReader) -> Iterator[Mention]:
     chart = reader.chart()
     known = {name for name in _READ if name in chart.network.names}
     try:
@@ -182,7 +182,7 @@ def _read(reader: Reader) -> Iterator[Mention]:
         return
 
 
-def _meant(reader: Reader, chart: Chart, rule: str, at: int, end: int) -> Iterator[Mention]:
+def _meant(reader: SentenceReader, chart: Chart, rule: str, at: int, end: int) -> Iterator[Mention]:
     node = chart.reading(rule, at, end)
     sort = _READ[rule]
     if node.cost > _MISSPELT or (sort == "thing" and _is_no_noun(reader, at, end)):
@@ -195,18 +195,18 @@ def _meant(reader: Reader, chart: Chart, rule: str, at: int, end: int) -> Iterat
         yield Mention(at, end, sort, value, reader.words(at, end), node.cost)
 
 
-def _is_name(reader: Reader, value: str) -> bool:
+def _is_name(reader: SentenceReader, value: str) -> bool:
     return any(each.name == value for each in (*reader.lexicon.places, *reader.lexicon.people))
 
 
-def _is_no_noun(reader: Reader, at: int, end: int) -> bool:
+def _is_no_noun(reader: SentenceReader, at: int, end: int) -> bool:
     """Whether words that may be a noun are an order, or none that anybody means."""
     norms = [token.norm for token in reader.tokens[at:end]]
     orders = command_words(reader.language)
     return all(norm in reader.language.closed or norm in orders for norm in norms)
 
 
-def _value(reader: Reader, node: Node) -> str:
+def _value(reader: SentenceReader, node: Node) -> str:
     """The literal of a reading; "" where it has none."""
     discourse = Discourse(reader.language, reader.lexicon, reader.tokens, reader.text)
     try:

@@ -8,7 +8,7 @@ from functools import cached_property
 from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.planning.mentions import Mention, mentions
-from grammar.reader import Reader
+from grammar.reader import SentenceReader
 from grammar.tokens import Token
 from grammar.understanding import Context
 
@@ -26,8 +26,8 @@ class Turn:
         return Turn, (self.text, self.lexicon, self.language, self.context)
 
     @cached_property
-    def reader(self) -> Reader:
-        return Reader(self.text, self.lexicon, self.language, self.context)
+    def reader(self) -> SentenceReader:
+        return SentenceReader(self.text, self.lexicon, self.language, self.context)
 
     @property
     def tokens(self) -> tuple[Token, ...]:

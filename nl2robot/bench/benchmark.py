@@ -13,7 +13,19 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
+import robot_api.benchmark
+import sandbox.benchmark
+import sim.benchmark
+from grammar.sampler import random_sentence
+from grammar.samples import samples
+from nl2robot.bench import hotword, recognition
 from nl2robot.bench.figures import Figure, megabytes, percentile
+from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
+from nl2robot.models.catalogue import find
+from nl2robot.translate.translation import translate
+from robot_api.client import Robot
+from robot_api.errors import Stopped
+from sim.world.loading import load_world
 
 
 def measure(part: str) -> Iterator[Figure]:
@@ -25,12 +37,6 @@ def measure(part: str) -> Iterator[Figure]:
 
 
 def _translate() -> Iterator[Figure]:
-    from grammar.sampler import random_sentence
-    from grammar.samples import samples
-    from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
-    from nl2robot.translate.translation import translate
-    from sim.world.loading import load_world
-
     knowledge = Knowledge(load_world(DEFAULT_WORLD))
     lexicon = knowledge.lexicon("en")
     sentences = [sentence for topic in samples(lexicon).values() for sentence in topic]
@@ -71,9 +77,7 @@ def _cold_start() -> float:
 
 
 def _wire() -> Iterator[Figure]:
-    from robot_api.benchmark import measure
-
-    figures = measure()
+    figures = robot_api.benchmark.measure()
     yield Figure("wire", "calls, one after the other", figures["calls_per_second"], "/s", "3,000")
     yield Figure("wire", "calls, eight threads", figures["calls_per_second_pipelined"], "/s")
     yield Figure("wire", "round trip, median", figures["round_trip_ms"], "ms")
@@ -83,18 +87,14 @@ def _wire() -> Iterator[Figure]:
 
 
 def _simulator() -> Iterator[Figure]:
-    from sim.benchmark import measure
-
-    figures = measure()
+    figures = sim.benchmark.measure()
     what = f"{figures['people']:.0f} people, {figures['rays']:.0f}-ray lidar, 60 Hz"
     yield Figure("simulator", what, figures["times_real_time"], "x real time", "100")
     yield Figure("simulator", "copy for a dry run", figures["copy_seconds"] * 1000, "ms")
 
 
 def _sandbox() -> Iterator[Figure]:
-    from sandbox.benchmark import measure
-
-    figures = measure()
+    figures = sandbox.benchmark.measure()
     yield Figure("sandbox", "overhead of a robot call", figures["call_us"], "µs")
     yield Figure("sandbox", "check of a program", figures["check_ms"], "ms")
     yield Figure("sandbox", "start and end of a run", figures["start_and_end_ms"], "ms")
@@ -105,19 +105,14 @@ def _sandbox() -> Iterator[Figure]:
 
 
 def _voice() -> Iterator[Figure]:
-    from nl2robot.bench.recognition import measure
-    from nl2robot.models.catalogue import find
-
     if find("en") is None:
         return
-    for what, value in measure().items():
+    for what, value in recognition.measure().items():
         yield Figure("voice", what, value, "")
 
 
 def _hotword() -> Iterator[Figure]:
-    from nl2robot.bench.hotword import measure
-
-    for what, value, unit, aim in measure():
+    for what, value, unit, aim in hotword.measure():
         yield Figure("hotword", what, value, unit, aim)
 
 
@@ -161,9 +156,6 @@ def served(*options: str) -> Iterator[tuple[int, str]]:
 
 def _stop_delay(address: str) -> float:
     """Milliseconds from a stop's request to the news that the robot stands; it is driving then."""
-    from robot_api.client import Robot
-    from robot_api.errors import Stopped
-
     driving, standing = threading.Event(), threading.Event()
 
     def on_pose(kind: str, data: Mapping[str, object]) -> None:
@@ -174,7 +166,6 @@ def _stop_delay(address: str) -> float:
             standing.set()
 
     def drive() -> None:
-
         with contextlib.suppress(Stopped):
             robot.drive(0.5, 0, 30)
 
@@ -194,7 +185,6 @@ def _stop_delay(address: str) -> float:
 
 
 def _environment(home: Path) -> dict[str, str]:
-
     return {**os.environ, "NL2ROBOT_HOME": str(home)}
 
 

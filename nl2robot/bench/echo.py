@@ -12,6 +12,7 @@ from __future__ import annotations
 import statistics
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from difflib import SequenceMatcher
 from typing import Final
 
 import numpy as np
@@ -256,8 +257,6 @@ def _spotted(sound: Samples) -> list[Detection]:
 
 def share(said: str, heard: str) -> float:
     """Of the words that were said, in their order."""
-    from difflib import SequenceMatcher
-
     words = said.lower().replace(",", "").split()
     blocks = SequenceMatcher(None, words, heard.lower().split(), False).get_matching_blocks()
     return sum(block.size for block in blocks) / len(words)

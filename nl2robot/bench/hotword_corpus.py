@@ -12,6 +12,7 @@ import zlib
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
+from pydoc_data.topics import topics
 from typing import Final
 
 import numpy as np
@@ -114,8 +115,6 @@ def _everyday(language: str, half: Half) -> list[str]:
 @cache
 def _prose(half: Half) -> list[str]:
     """English sentences that have nothing to do with robots: Python's own manual."""
-    from pydoc_data.topics import topics
-
     sentences = re.split(r"(?<=[.:])\s+", " ".join(" ".join(topics.values()).split()))
     plain = (s for s in sentences if 20 < len(s) < 80 and re.fullmatch(r"[\w ,.;:()'-]+", s))
     return _of(half, plain)

@@ -20,7 +20,7 @@ from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.language_model.client import Process
 from nl2robot.language_model.model import Branch, OnnxModel
 from nl2robot.language_model.worker import Reading
-from nl2robot.translate.planners import AUTO, installed_model, learned
+from nl2robot.translate.planners import AUTO, installed_model, language_model, learned
 from nl2robot.translate.translation import translate
 from sim.world.loading import load_world
 
@@ -50,8 +50,6 @@ PROMPT, CHUNKS = 256, (1, 2, 4, 8)
 
 def measure() -> Iterator[Figure]:
     """The figures, as they come. Raises `UserError` where there is no model."""
-    from nl2robot.translate.planners import language_model
-
     language_model()  # says what to do where there is none
     folder = installed_model()
     assert folder is not None

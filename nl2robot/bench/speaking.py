@@ -10,6 +10,8 @@ import time
 from collections.abc import Callable
 from typing import Final
 
+from nl2robot.speech.hear.recogniser import load
+from nl2robot.speech.hear.replies import Replies
 from nl2robot.speech.speak.loudspeaker import LATENCY, Handed, SoundCard
 from nl2robot.speech.speak.people import SimulatedVoices
 from nl2robot.speech.speak.speaking import Speaker
@@ -79,9 +81,6 @@ def to_silence(voice_for: Callable[[str], Voice], repeats: int = 10) -> list[flo
 def understood() -> list[tuple[str, str, str, str]]:
     """Each answer as another person says it: who, what, which option it is, which was heard, or
     else the words that were."""
-    from nl2robot.speech.hear.recogniser import load
-    from nl2robot.speech.hear.replies import Replies
-
     people = SimulatedVoices(
         replies=Replies(load, lambda language: ()),
         genders={"Alice": "female", "Clara": "female", "Grace": "female"},

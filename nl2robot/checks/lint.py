@@ -9,26 +9,29 @@ from __future__ import annotations
 
 import itertools
 import re
+import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
 
 import msgspec
 
-from grammar.language import Language, load_language
+from grammar.language import Language, languages, load_language
 from grammar.lexicon import EMPTY, Lexicon, Name
 from grammar.plan import Text
 from grammar.samples import samples
 from grammar.tidy import nodes
 from grammar.understand import understand
 from nl2robot.knowledge import Knowledge
+from nl2robot.models import catalogue as models
+from nl2robot.speech.hear.recogniser import Recogniser
+from nl2robot.speech.hear.vocabulary import missing_words
 from sim.world.builtin import BUILTIN, builtin_worlds
+from sim.world.fields import compose
 from sim.world.loading import load_world
 from sim.world.model import World
-
-if TYPE_CHECKING:
-    from nl2robot.speech.hear.recogniser import Recogniser
+from sim.world.yaml_nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 SHORTEST: Final = 4
 """Letters of words that may be one slip apart; in shorter ones a slip makes another word."""
@@ -91,8 +94,6 @@ def lint(name_or_path: str, languages: Sequence[str] | None = None) -> list[Find
 
 def languages_of(world: World) -> list[str]:
     """The languages that can be spoken here: English, and those in which things have names."""
-    from grammar.language import languages
-
     aliases = [
         *(place.aliases for place in world.places),
         *(person.aliases for person in world.people),
@@ -105,9 +106,6 @@ def languages_of(world: World) -> list[str]:
 
 def lines_of(file: Path) -> dict[tuple[str, str], int]:
     """The line of each name and alias, by section of the file."""
-    from sim.world.fields import compose
-    from sim.world.yaml_nodes import MappingNode, Node, ScalarNode, SequenceNode
-
     lines: dict[tuple[str, str], int] = {}
 
     def texts(node: Node) -> Iterator[ScalarNode]:
@@ -238,7 +236,6 @@ class _Linter:
         recogniser = self.recogniser()
         if recogniser is None:
             return
-        from nl2robot.speech.hear.vocabulary import missing_words
 
         for missing in missing_words(recogniser, [called.text for called in self.names]):
             spoken = re.compile(rf"\b{re.escape(missing.word)}\b", re.IGNORECASE)
@@ -255,15 +252,12 @@ class _Linter:
         )
 
     def recogniser(self) -> Recogniser | None:
-        from nl2robot.models import catalogue as models
-
         try:
             folder = models.find(self.language.code)
         except models.ModelError:  # there is none for this language
             return None
         if folder is None:
             return None
-        from nl2robot.speech.hear.recogniser import Recogniser
 
         return Recogniser(folder, self.language.code)
 
@@ -363,8 +357,6 @@ def alike(one: str, other: str) -> bool:
 
 def sound(word: str) -> str:
     """A word as a row of classes of consonants; vowels count at the beginning only."""
-    import unicodedata
-
     letters = unicodedata.normalize("NFD", word.lower())
     plain = "".join(each for each in letters if each.isalpha() or each == "ß")
     silent = re.sub(r"(?<=[aeiouäöü])h|^h|^k(?=n)|^w(?=r)|gh(?=t)", "", plain)

@@ -17,7 +17,7 @@ from typing import Final, Literal
 
 from grammar.plan import from_data
 from grammar.planning.rules import NAME as RULES
-from grammar.said import forget
+from grammar.prepared import forget
 from nl2robot.checks.frames import UNKNOWN, Frame, frames_of_form, frames_of_plan, parsed
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge

@@ -16,10 +16,12 @@ import sys
 import traceback
 from collections.abc import Sequence
 from pathlib import Path
+from types import ModuleType
 from typing import NoReturn
 
 from nl2robot import __version__
-from nl2robot.errors import ExitStatus, UserError
+from nl2robot.errors import ExitStatus
+from nl2robot.words import terminal_language, words_in
 
 COMMANDS = {
     "run": "translate, show, ask for approval, run",
@@ -65,34 +67,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (KeyboardInterrupt, Exception) as error:  # noqa: BLE001 - each becomes a sentence
         if "--debug" in given:
             traceback.print_exc()
-        sentence, status = _explained(error)
+        failures = _failures()
+        sentence, status = failures.explained(error)
         if arguments is None and status == ExitStatus.INTERRUPTED:
             # It ends; whoever presses Ctrl-C twice wants no more than that.
             signal.signal(signal.SIGINT, signal.SIG_IGN)
-        print(_told(sentence, given), file=sys.stderr)
+        print(failures.told(sentence, given), file=sys.stderr)
     _let_go_of_output()
     return status
 
 
 def _start() -> str:
     """What it is, and what to try first, in the language of the terminal."""
-    from nl2robot.words import terminal_language, words_in
-
     return str(words_in(terminal_language())["start"]).format(version=__version__)
 
 
-def _told(sentence: str, given: Sequence[str]) -> str:
-    """A sentence of ours in the language that was asked for with --lang, else in that of the
-    terminal; in English where there is none of it."""
-    from nl2robot.sentences import told
-    from nl2robot.words import terminal_language
+def _failures() -> ModuleType:
+    """What explains errors. It knows those of every layer, and is loaded when there is one."""
+    from nl2robot.cli import failures
 
-    language = terminal_language()
-    for number, word in enumerate(given):
-        name, _, value = word.partition("=")
-        if name in ("--lang", "--language"):
-            language = value or next(iter(given[number + 1 :]), "")
-    return told(sentence, language)
+    return failures
 
 
 class _Parser(argparse.ArgumentParser):
@@ -101,10 +95,11 @@ class _Parser(argparse.ArgumentParser):
     given: Sequence[str] = ()
 
     def error(self, message: str) -> NoReturn:
-        told = _told(message, self.given)
+        failures = _failures()
+        told = failures.told(message, self.given)
         if told == message:
             super().error(message)
-        usage = self.format_usage().replace("usage: ", _told("usage: ", self.given), 1)
+        usage = self.format_usage().replace("usage: ", failures.told("usage: ", self.given), 1)
         self.exit(ExitStatus.BAD_INPUT, f"{usage}{self.prog}: {told}\n")
 
 
@@ -169,33 +164,6 @@ def parser_of(command: str) -> argparse.ArgumentParser:
             found: argparse.ArgumentParser = action.choices[command]
             return found
     raise AssertionError("there are no commands")
-
-
-def _explained(error: BaseException) -> tuple[str, ExitStatus]:
-    """What an error of the layers below means to a user, and to a script."""
-    from robot_api.errors import InvalidCall, LostConnection, RobotError, StopNotConfirmed
-    from sim.errors import SimError
-    from sim.world.yaml_nodes import FileProblems
-
-    match error:
-        case KeyboardInterrupt():
-            return "\nInterrupted.", ExitStatus.INTERRUPTED
-        case UserError():
-            return str(error), error.status
-        case FileProblems() | SimError() | InvalidCall():
-            return str(error), ExitStatus.BAD_INPUT
-        case LostConnection() | StopNotConfirmed():
-            return str(error), ExitStatus.NO_ROBOT
-        case RobotError():
-            return str(error), ExitStatus.FAILED
-        case OSError(strerror=str() as reason):
-            what = f"The file {error.filename}" if error.filename else "The output"
-            sentence = (
-                f"{what} cannot be used ({reason}). Check its place, its rights and the disk."
-            )
-            return sentence, ExitStatus.BAD_INPUT
-    sentence = f"Something went wrong inside nl2robot ({type(error).__name__}: {error})."
-    return f"{sentence} Run it again with --debug and report what it prints.", ExitStatus.INTERNAL
 
 
 if __name__ == "__main__":

@@ -15,6 +15,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import msgspec
 
+from grammar.language import languages
+from grammar.planning.rules import NAME as RULES
+from grammar.requests import ABOUT_RUNS
 from nl2robot.cli.operator import Operator
 from nl2robot.cli.terminal import Decision, Terminal
 from nl2robot.cli.waiting import GivenUp
@@ -391,9 +394,6 @@ class Session:
         """What is typed while a program runs, or is thought of: a stop at once, answers to
         questions about it; the rest waits for its turn. Only the rules are asked, who answer at
         once: a language model may be at work on another sentence."""
-        from grammar.planning.rules import NAME as RULES
-        from grammar.requests import ABOUT_RUNS
-
         if asks_to_go_on(line, self.language) and self._state.get("state") in HELD:
             with contextlib.suppress(NotPossible):  # it was over in that very moment
                 self.operator.resume()
@@ -419,8 +419,6 @@ class Session:
 
     def _follow(self, result: Mapping[str, Any]) -> None:
         """Whom the robot speaks German with speaks German with it."""
-        from grammar.language import languages
-
         code = str(result["arguments"]["code"])[:2]
         if not result.get("error") and code in languages():
             self.language = code

@@ -32,17 +32,19 @@ from nl2robot.cli.waiting import Waiting
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.plain import visible
-from nl2robot.review.rehearsal import DryRun
-from nl2robot.review.review import Review
 from nl2robot.run.state import HELD
 from nl2robot.run.trouble import error_told, told
-from nl2robot.translate.translation import Translation
+from nl2robot.translate.teaching import topic_of
 from nl2robot.words import authorship, foreseen, words_in
 from robot_api.errors import InvalidCall, RobotError
+from sim.world.model import name_in
 
 if TYPE_CHECKING:
     from nl2robot.cli.operator import Operator
+    from nl2robot.review.rehearsal import DryRun
+    from nl2robot.review.review import Review
     from nl2robot.run.answers import Sentence
+    from nl2robot.translate.translation import Translation
     from sim.world.model import World
 
 Decision = Literal["approve", "edit", "reject"]
@@ -107,8 +109,6 @@ class Terminal:
 
     def called(self, place: str) -> str:
         """A place by the name that it has in the language spoken."""
-        from sim.world.model import name_in
-
         known = self.world.place(place) if self.world is not None else None
         return name_in(known, self.language) if known is not None else place
 
@@ -143,8 +143,6 @@ class Terminal:
 
     def show_phrases(self, phrases: Mapping[str, Sequence[str]], about: str = "") -> None:
         """What can be said, by topic; only the topic `about`, if there is one like it."""
-        from nl2robot.translate.teaching import topic_of
-
         found = topic_of(about, list(phrases)) if about else None
         for topic, sentences in {found: phrases[found]}.items() if found else phrases.items():
             # Only the first letter: "Gesten und Bildschirm".

@@ -5,9 +5,8 @@ from __future__ import annotations
 import os
 from importlib import import_module
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
-from fastapi import FastAPI
 from starlette.requests import Request
 from starlette.responses import Response
 from starlette.staticfiles import StaticFiles
@@ -17,6 +16,9 @@ from nl2robot.console.plain import Caught, failed, missing
 from nl2robot.paths import data_folder
 from nl2robot.station.part import Backstage, Part
 from robot_api.server import Service
+
+if TYPE_CHECKING:
+    from fastapi import FastAPI
 
 STATIC: Final = Path(__file__).parent / "static"
 PARTS: Final = (
@@ -62,6 +64,7 @@ class Console:
         """The application with its pages; once in a process, for NiceGUI has but one."""
         # NiceGUI makes this folder where it is started, unless it is told of another.
         os.environ.setdefault("NICEGUI_STORAGE_PATH", str(data_folder() / "console"))
+        from fastapi import FastAPI
         from nicegui import app as nicegui_app
         from nicegui import ui
 

@@ -12,9 +12,11 @@ from typing import Any, Final
 
 import msgspec
 
+from nl2robot.console.frame import frame
 from nl2robot.station.accounts import LONGEST_NAME, Session
 from nl2robot.station.entrance import PAGES_AT, Entrance
 from nl2robot.station.part import Backstage, Part
+from nl2robot.station.qr_code import as_svg
 from nl2robot.wire import service_of_call
 from robot_api.errors import AccessDenied, NotPossible
 from robot_api.server import Context, Service
@@ -33,8 +35,6 @@ def part(backstage: Backstage) -> Part:
 
     def pages() -> None:
         from nicegui import ui
-
-        from nl2robot.console.frame import frame
 
         @ui.page("/devices")
         def devices() -> None:
@@ -66,8 +66,6 @@ def _services(entrance: Entrance) -> dict[str, Service]:
         return {**told, "accounts": accounts.accounts()} if administers else told
 
     def paired(p: Mapping[str, Any], context: Context) -> Any:
-        from nl2robot.station.qr_code import as_svg
-
         if entrance.local:
             raise NotPossible(HERE_ONLY)
         code = accounts.invite(p["role"], p["label"], context.who)

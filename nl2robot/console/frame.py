@@ -15,7 +15,6 @@ from html import escape
 from typing import Any, Final
 
 import msgspec
-from nicegui import ui
 
 from nl2robot.console.visitor import LANGUAGES, LONGEST_NAME, Seat, Visitor, texts, visitor_of
 from nl2robot.station.part import Backstage
@@ -57,6 +56,8 @@ class Visit:
 
     def hand_over(self, data: Mapping[str, Any]) -> None:
         """Give data to the page's scripts, as `pageData` of `/static/page.js`; once a page."""
+        from nicegui import ui
+
         about = {"language": self.language, "role": self.role, "who": self.who}
         ui.add_head_html(_data("page-data", {**about, **data}))
 
@@ -64,6 +65,8 @@ class Visit:
 @contextmanager
 def frame(backstage: Backstage, page: str) -> Iterator[Visit]:
     """Build a page inside; to be called in the function of a `ui.page`."""
+    from nicegui import ui
+
     request = ui.context.client.request
     assert request is not None
     visitor = visitor_of(request)

@@ -13,6 +13,7 @@ from grammar.plan import Plan
 from grammar.planning.planner import Draft, Question, Refusal
 from grammar.planning.turn import Turn
 from grammar.speech import speech
+from nl2robot.deliberation.confidence import confidence
 from nl2robot.deliberation.considering import Considered, consider
 from nl2robot.knowledge import Knowledge
 
@@ -69,8 +70,6 @@ def decide(turn: Turn, drafts: Sequence[Draft], knowledge: Knowledge) -> Chosen 
     """What comes of some drafts."""
     if len(drafts) == 1 and drafts[0].exact:
         return _only(turn, drafts[0])
-    # Trying drafts needs the sandbox, which takes a moment to load.
-    from nl2robot.deliberation.confidence import confidence
     from nl2robot.deliberation.voting import count
 
     votes = count(turn, drafts, knowledge)

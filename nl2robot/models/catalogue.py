@@ -27,6 +27,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any, ClassVar, Final
+from urllib.parse import urlsplit
 
 import msgspec
 
@@ -546,8 +547,6 @@ class _Fetching:
 
 
 def _asked(source: Source) -> str:
-    from urllib.parse import urlsplit
-
     if isinstance(source, Zip | File):
         return urlsplit(source.url).netloc
     if isinstance(source, Split):

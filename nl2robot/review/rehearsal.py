@@ -18,8 +18,11 @@ import msgspec
 
 from nl2robot.review.endless import went_on
 from nl2robot.review.sought import Sought
+from robot_api.capabilities.names import one_of
 from robot_api.driver import StopFlag
+from robot_api.drivers import simulated
 from robot_api.errors import Stopped
+from sandbox.execution import Execution
 from sandbox.limits import Limits
 
 if TYPE_CHECKING:
@@ -176,10 +179,6 @@ def watched(
     recall: Recall | None = None,
 ) -> tuple[DryRun, Course]:
     """As `rehearse`, with the course of it. `recall` answers the calls that were done before."""
-    from robot_api.capabilities.names import one_of
-    from robot_api.drivers import simulated
-    from sandbox.execution import Execution
-
     driver = simulated(simulation)
     own = set(skills) - set(driver.capabilities().skills)
     began = simulation.time

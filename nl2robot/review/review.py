@@ -21,6 +21,7 @@ from nl2robot.review.rehearsal import BUDGET, DryRun, watched
 from nl2robot.review.risks import Risk, Situation, Tried, risks
 from nl2robot.work import Died, TookTooLong
 from robot_api.errors import NotPossible
+from robot_api.stub import stub
 from sandbox.check import Finding, check
 
 if TYPE_CHECKING:
@@ -89,8 +90,6 @@ def review(
     """Check a program without moving anything. `simulation` is a copy of the simulated world, in
     which the program is tried; `seed` is what its `random` will begin with; `recall` answers what
     was done of it before."""
-    from robot_api.stub import stub
-
     findings = [*check(program, stub()), *violations(program, knowledge)]
     findings.sort(key=lambda finding: (finding.line, finding.column))
     acceptable = not any(finding.severity == "error" for finding in findings)

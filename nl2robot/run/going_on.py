@@ -24,9 +24,10 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.paths import PACKAGED
 from nl2robot.review.review import reading
 from nl2robot.run.history import NOTES
-from nl2robot.run.pausing import MEASURED, PAUSED, Made, rest_of
+from nl2robot.run.pausing import MEASURED, Made, rest_of
 from nl2robot.run.rounds_left import rounds
 from nl2robot.run.runlog import LoggedCall, RunLog
+from nl2robot.run.state import PAUSED
 from nl2robot.words import decimal
 from robot_api.errors import RobotError, Stopped, error_named
 from sandbox.execution import Outcome

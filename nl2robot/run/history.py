@@ -9,17 +9,19 @@ import json
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, Protocol
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 from grammar.explain import explain_program
 from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.naming import Naming, joined_up, naming, place_called, the
 from grammar.requests import Request
-from nl2robot.run.runlog import LoggedCall, Run
 from nl2robot.run.sightings import Sightings
 from nl2robot.run.trouble import told
 from sim.world.model import World
+
+if TYPE_CHECKING:
+    from nl2robot.run.runlog import LoggedCall, Run
 
 ASKING: Final = frozenset({"ask", "listen", "touch"})
 FINDING: Final = frozenset({"find", "sees", "wait_for"})

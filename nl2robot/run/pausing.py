@@ -27,8 +27,6 @@ DRIVING: Final = frozenset(
 while the robot stands."""
 MEASURED: Final = frozenset({"move", "turn", "drive"})
 """Those of which only the rest is made after a pause or a stop."""
-PAUSED: Final = "Paused"
-"""What the log calls the end of a call that a pause broke off."""
 
 _LOOKS: Final = 0.1
 """Seconds between two looks whether the robot stands."""

@@ -32,7 +32,6 @@ from nl2robot.run.going_on import Recall
 from nl2robot.run.pausing import (
     DRIVING,
     MEASURED,
-    PAUSED,
     Made,
     Odometer,
     comes_to_rest,
@@ -44,7 +43,7 @@ from nl2robot.run.runlog import LogError, RunLog
 from nl2robot.run.runs import Approval, State, Status
 from nl2robot.run.sightings import Sightings
 from nl2robot.run.spoken_language import SpokenLanguage
-from nl2robot.run.state import HELD
+from nl2robot.run.state import HELD, PAUSED
 from nl2robot.run.trouble import told
 from robot_api.client import Robot
 from robot_api.errors import LostConnection, NotPossible, RobotError, StopNotConfirmed, Stopped

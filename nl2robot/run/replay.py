@@ -20,6 +20,7 @@ from nl2robot.run.going_on import Recall, whole_calls
 from nl2robot.run.runlog import LoggedCall, Run
 from robot_api import errors
 from robot_api.driver import StopFlag
+from robot_api.drivers import simulated
 from sandbox.execution import Execution
 from sim.errors import SimError
 from sim.simulation import Simulation
@@ -49,8 +50,6 @@ def replay(
 ) -> Replay:
     """Run the program again; `on_call(line, method, arguments)` is told of each call. `recall` has
     what was done before, if it went on with another run."""
-    from robot_api.drivers import simulated
-
     driver = simulated(simulation)
     logged = deque(whole for whole, _ in whole_calls(calls))
     differences = list(_put_at_start(run, simulation))

@@ -47,6 +47,8 @@ GOING: Final = ("running", "pausing", "paused")
 """The states of a program that is not over."""
 HELD: Final = ("pausing", "paused")
 """Those of one that was told to pause."""
+PAUSED: Final = "Paused"
+"""What the log calls the end of a call that a pause broke off."""
 
 FOLLOWS: Final[dict[str, frozenset[str]]] = {
     **dict.fromkeys(

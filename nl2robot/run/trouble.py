@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from grammar.lexicon import Lexicon
 from nl2robot.paths import PACKAGED
-from nl2robot.run.pausing import PAUSED
-from nl2robot.run.runlog import LoggedCall
+from nl2robot.run.state import PAUSED
 from nl2robot.sentences import in_language
 from robot_api.errors import Stopped
+
+if TYPE_CHECKING:
+    from nl2robot.run.runlog import LoggedCall
 
 DATA: Final = PACKAGED / "trouble.yaml"
 _STOPPED = Stopped()

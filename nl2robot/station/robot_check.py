@@ -14,6 +14,9 @@ from nl2robot.station.robots import (
     zones_of,
 )
 from robot_api.checker import Report, check_driver, check_robot
+from robot_api.drivers import simulated
+from robot_api.robots.opening import hold
+from sim.simulation import Simulation
 from sim.world.model import World
 
 
@@ -36,9 +39,6 @@ def checked(robot: Chosen, world: World, password: str | None, *, move: bool) ->
 
 
 def _simulated(robot: Chosen, world: World, move: bool) -> Report:
-    from robot_api.drivers import simulated
-    from robot_api.robots.opening import hold
-    from sim.simulation import Simulation
 
     driver = simulated(Simulation(world))
     try:

@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from nl2robot.errors import ExitStatus, UserError
-from nl2robot.paths import data_folder, made
+from nl2robot.paths import data_file, data_folder, made
 from nl2robot.speech.speak.text_normalisation import as_spoken
+from nl2robot.station.drawn_zones import DrawnZones
 from robot_api.capabilities.driving import Goal
 from robot_api.capabilities.sound import SILENT, Ears, Microphone, Sound
 from robot_api.driver import Driver
@@ -162,9 +163,6 @@ def _of_its_own(sound: Sound, world: World) -> Sound:
 
 def zones_of(world: World) -> tuple[Zone, ...]:
     """The keep-out zones of the world's file, and those that were drawn on its map."""
-    from nl2robot.paths import data_file
-    from nl2robot.station.drawn_zones import DrawnZones
-
     return (*world.zones, *DrawnZones(data_file("zones.yaml")).of(world))
 
 

@@ -37,10 +37,12 @@ from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.client import Robot
 from robot_api.composed import ComposedDriver
 from robot_api.driver import Driver, Event
+from robot_api.drivers import simulated
 from robot_api.errors import AccessDenied, NotPossible, NotTrusted, RobotError
 from robot_api.robots.opening import hold
 from robot_api.robots.places import Places
 from robot_api.robots.reading import Read
+from robot_api.robots.wire import WireDriver
 from robot_api.server import CannotListen, Server
 from sim.record import Record
 from sim.simulation import Simulation
@@ -48,7 +50,7 @@ from sim.world.model import World, Zone
 
 if TYPE_CHECKING:
     from nl2robot.console.app import Console
-    from nl2robot.speech.speak.aloud import SoundFor
+    from nl2robot.speech.speak.wishes import SoundFor
     from nl2robot.station.entrance import Entrance
 
 ANSWERS_WITHIN = 5.0
@@ -160,8 +162,6 @@ def simulated_station(
     `console`: makes the web console, `nl2robot.console.app.Console`; once in a process. `read`: the
     robot file that it keeps to.
     """
-    from robot_api.drivers import simulated
-
     simulation = Simulation(world, seed=seed, speed=speed)
     heard = sound(lambda: simulation.time) if sound else SILENT
     driver = simulated(simulation, heard)
@@ -218,8 +218,6 @@ def remote_station(
 ) -> Iterator[Station]:
     """The station at the address of a server. A robot server that runs no programs gets a runner
     here; dry runs then are simulated in `world`."""
-    from robot_api.robots.wire import WireDriver
-
     try:
         robot = Robot(address, token=token)
     except NotTrusted as error:

@@ -6,6 +6,9 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from grammar.language import load_language, spoken_name
+from grammar.naming import the
+
 if TYPE_CHECKING:
     from sim.world.model import World
 
@@ -33,9 +36,6 @@ def names_said(world: World, language: str) -> list[str]:
 
 def named_here(world: World, language: str) -> list[Named]:
     """The same, each with what it is and how it stands in a sentence."""
-    from grammar.language import load_language, spoken_name
-    from grammar.naming import the
-
     pack = load_language(language)
     aliases_first = bool(pack.speech.get("aliases_first"))
     found: dict[tuple[str, str], Named] = {}

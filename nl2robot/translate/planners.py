@@ -15,11 +15,16 @@ import os
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from importlib.metadata import entry_points
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from grammar.planning.model.request import Interrupted, Unavailable
 from grammar.planning.planner import Planner
+from grammar.planning.rules import RulesPlanner
+from nl2robot.deliberation.sufficing import will_do
 from nl2robot.errors import UserError
+from nl2robot.models.catalogue import LARGE, PLANNER, find
 from nl2robot.paths import PACKAGED
 
 if TYPE_CHECKING:
@@ -33,14 +38,11 @@ CHOSEN: Final = "NL2ROBOT_LANGUAGE_MODEL"
 
 
 def _rules() -> Planner:
-    from grammar.planning.rules import RulesPlanner
-
     return RulesPlanner()
 
 
 def _model() -> Planner:
     from grammar.planning.model.planner import ModelPlanner
-    from nl2robot.deliberation.sufficing import will_do
 
     return ModelPlanner(language_model(), will_do)
 
@@ -65,8 +67,6 @@ def planner(name: str) -> Planner:
 
 @functools.cache
 def _others() -> dict[str, Callable[[], Planner]]:
-    from importlib.metadata import entry_points
-
     def loaded(point: object) -> Callable[[], Planner]:
         return lambda: point.load()()  # type: ignore[attr-defined]
 
@@ -85,8 +85,6 @@ def _has_runtime() -> bool:
 def installed_model() -> Path | None:
     """The folder of the language model that is used here: the one that was chosen, else the largest
     that is installed and has learned what programs are."""
-    from nl2robot.models.catalogue import LARGE, PLANNER, find
-
     chosen = os.environ.get(CHOSEN)
     if chosen == "none":
         return None
@@ -113,7 +111,6 @@ def get_ready() -> None:
 
     def load() -> None:
         from grammar.planning.model.prompt import PREFIX
-        from grammar.planning.model.request import Interrupted, Unavailable
 
         with suppress(Interrupted, Unavailable, UserError):  # told when it is needed
             language_model().get_ready(PREFIX)

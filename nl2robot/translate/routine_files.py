@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from typing import ClassVar, Final, Literal
 
 from grammar.language import languages
-from grammar.reading import NotAPlan, parse_program
+from grammar.program_parser import NotAPlan, parse_program
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.translate.routines import Routine, Routines, spelled, written

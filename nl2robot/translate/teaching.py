@@ -15,10 +15,11 @@ import msgspec
 from grammar.explain import explain
 from grammar.language import Language, UnknownLanguage, load_language
 from grammar.lexicon import Lexicon
+from grammar.lexicon import Routine as Named
 from grammar.names import names_of
 from grammar.naming import naming
 from grammar.plan import Plan
-from grammar.reading import NotAPlan, parse_program
+from grammar.program_parser import NotAPlan, parse_program
 from grammar.requests import Request
 from grammar.samples import samples
 from grammar.speech import fill, speech
@@ -376,8 +377,6 @@ class Teacher:
 
     def sayable(self, name: str, words: tuple[str, ...]) -> bool:
         """Whether the name would be heard as the routine's, alone and between other commands."""
-        from grammar.lexicon import Routine as Named
-
         silent = self.pack.closed | {word for filler in self.pack.fillers for word in filler}
         telling = [word for word in words if word not in silent and any(map(str.isalpha, word))]
         if not telling or (len(words) == 1 and words[0] in self.pack.words):

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import msgspec
 
-from grammar.language import languages, load_language
+from grammar.language import UnknownLanguage, known_by_word, languages, load_language
 from grammar.naming import naming
 from grammar.normal import normal
 from grammar.plan import Plan, calls, methods, to_data
@@ -29,6 +29,7 @@ from grammar.planning.planner import (
     Watch,
 )
 from grammar.planning.turn import Turn
+from grammar.program_parser import NotAPlan, parse_program
 from grammar.requests import ABOUT_RUNS, Request, agreed
 from grammar.summary import summary
 from grammar.understanding import Context
@@ -37,13 +38,18 @@ from nl2robot.deliberation.sufficing import is_sure
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.plain import visible
+from nl2robot.run.history import told_of
 from nl2robot.translate.courtesies import courtesy
+from nl2robot.translate.other_language import language_of
 from nl2robot.translate.planners import AUTO, available, planner
+from nl2robot.translate.teaching import Reply, reply, settle
+from nl2robot.words import authorship
 from nl2robot.work import Died, Do, TookTooLong, here
+from robot_api.capabilities.matching import match_answer
 
 if TYPE_CHECKING:
     from nl2robot.run.history import History, Record
-    from nl2robot.translate.teaching import Pending, Reply
+    from nl2robot.translate.teaching import Pending
 
 
 STOP = "robot.stop()\n"
@@ -104,7 +110,6 @@ class Translation(msgspec.Struct, frozen=True, kw_only=True):
     def _authorship(self, language: str) -> list[str]:
         if self.source == "grammar":  # nearly always, and the words take a moment to read
             return []
-        from nl2robot.words import authorship
 
         return list(authorship(self, language))
 
@@ -229,8 +234,6 @@ def translate(
 
 
 def _turn(utterance: str, knowledge: Knowledge, language: str, context: Context | None) -> Turn:
-    from grammar.language import UnknownLanguage
-
     try:
         lexicon = knowledge.lexicon(language)
         return Turn(utterance, lexicon, load_language(language), context or Context())
@@ -288,8 +291,6 @@ def _is_open(turn: Turn, decided: Decided, do: Do) -> bool:
 
 
 def _seems_foreign(turn: Turn) -> bool:
-    from nl2robot.translate.other_language import language_of
-
     return language_of(turn.text, turn.language.code) is not None
 
 
@@ -321,7 +322,6 @@ def _chosen(utterance: str, turn: Turn, talk: Talk) -> Chosen | None:
     offers, talk.offers = talk.offers, ()
     if not offers:
         return None
-    from robot_api.capabilities.matching import match_answer
 
     if len(offers) == 1 and agreed(utterance, turn.language.code):
         return offers[0].chosen
@@ -353,8 +353,6 @@ def _with_program(utterance: str, turn: Turn, chosen: Chosen, started: float) ->
 def _as_kept(turn: Turn, plan: Plan) -> str | None:
     """The program of the routine that is all that was asked for, as it was kept: so it has been
     approved before. None if it is more, or something else."""
-    from grammar.reading import NotAPlan, parse_program
-
     said = " ".join(turn.language.tokens_of(turn.text))
     for routine in turn.lexicon.routines:
         if routine.program and " ".join(turn.language.tokens_of(routine.name)) in said:
@@ -367,8 +365,6 @@ def _as_kept(turn: Turn, plan: Plan) -> str | None:
 
 def _remembered(utterance: str, thing: str, told: str, started: float) -> Translation:
     """What the robot need not look for."""
-    from nl2robot.translate.teaching import Reply
-
     return _answer(utterance, Reply("ok", told), Request("found", thing), started)
 
 
@@ -398,8 +394,6 @@ def _in_another_language(
 ) -> tuple[Turn, Chosen] | None:
     """Who wants to be spoken to in another language, or cries stop, may do so in that one: "sprich
     Deutsch", "arrête". What was understood in it; None for anything else."""
-    from grammar.language import known_by_word
-
     for code in known_by_word(utterance):
         if code == language:
             continue
@@ -426,9 +420,6 @@ def _replied(
     record: Record | None,
 ) -> Reply:
     """The answer to what is asked of the application."""
-    from nl2robot.run.history import told_of
-    from nl2robot.translate.teaching import Reply, reply
-
     pack = load_language(language)
     if request.kind in ABOUT_RUNS:
         answer = told_of(request, record, knowledge.lexicon(language), pack)
@@ -459,8 +450,6 @@ def _courtesy(
     utterance: str, knowledge: Knowledge, language: str, talk: Talk, *, with_slips: bool = False
 ) -> Reply | None:
     """The answer to a courtesy; None where something else was asked back, which it may answer."""
-    from nl2robot.translate.teaching import Reply
-
     asked = talk.pending or talk.offers or (talk.context and talk.context.question)
     if asked or language not in languages():
         return None
@@ -476,7 +465,6 @@ def _settled(utterance: str, knowledge: Knowledge, talk: Talk) -> Reply | None:
     yes = agreed(utterance, pending.language)
     if yes is None:
         return None
-    from nl2robot.translate.teaching import settle
 
     return settle(pending, yes, knowledge, talk.who)
 

@@ -17,12 +17,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
+from nl2robot.speech.audio import Converter
 from nl2robot.wire import service_of_call
 from robot_api.errors import InvalidCall, NotPossible
 from robot_api.server import Context, Service
 
 if TYPE_CHECKING:
-    from nl2robot.speech.audio import Converter
     from nl2robot.speech.hotword.detector import Detector
 
 MOST: Final = 4
@@ -54,12 +54,10 @@ class Attention:
     def attend(self, connection: str, rate: int, language: str) -> int:
         """Begin to listen; returns a number. Raises `UserError` where the hot word of a language
         cannot be heard, `NotPossible` where too many listen."""
-        from nl2robot.speech.audio import Converter
-        from nl2robot.speech.hotword.detector import HotWord, StopWord
-        from nl2robot.speech.hotword.words import WORDS
+        from nl2robot.speech.hotword.detector import HotWord, stop_word
 
-        stop_word = StopWord(language) if language in WORDS else None
-        page = _Attentive(connection, Converter(rate, 1), HotWord(language), stop_word)
+        converter, cries = Converter(rate, 1), stop_word(language)
+        page = _Attentive(connection, converter, HotWord(language), cries)
         with self._lock:
             now = time.monotonic()
             self._pages = {

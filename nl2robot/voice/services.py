@@ -24,6 +24,16 @@ import msgspec
 from grammar.planning.planner import Interrupted
 from nl2robot.knowledge import Knowledge
 from nl2robot.models.catalogue import need
+from nl2robot.speech.audio import Converter
+from nl2robot.speech.hear.listening import (
+    COMMANDS,
+    HELD,
+    NothingHeard,
+    PartialText,
+    SpeechBegan,
+    SpeechEnded,
+    TooLong,
+)
 from nl2robot.translate.thinking import Thought, published
 from nl2robot.translate.translation import Talk, Translation
 from nl2robot.wire import service, service_of_call
@@ -34,7 +44,7 @@ from robot_api.errors import InvalidCall
 from robot_api.server import Service
 
 if TYPE_CHECKING:
-    from nl2robot.speech.audio import Converter, Samples
+    from nl2robot.speech.audio import Samples
     from nl2robot.speech.hear.listening import Event, Listener
     from nl2robot.speech.hear.recogniser import Heard
     from nl2robot.speech.hotword.detector import Detector
@@ -135,14 +145,11 @@ class Microphones:
         button is held; all that is said until it is closed is one command, and a cry of "stop" is
         told at once. `connection` is the client's. Raises `UserError` without a speech model, or
         for a rate that no voice has."""
-        from nl2robot.speech.audio import Converter
-        from nl2robot.speech.hear.listening import COMMANDS, HELD
-        from nl2robot.speech.hotword.detector import StopWord
-        from nl2robot.speech.hotword.words import WORDS
+        from nl2robot.speech.hotword.detector import stop_word
 
         ear = self._ear(language)
         listener = ear.listener(HELD if held else COMMANDS)
-        cries = StopWord(language) if held and language in WORDS else None
+        cries = stop_word(language) if held else None
         converter, number = Converter(rate, channels), next(self._numbers)
         opened = _Open(ear, listener, converter, talk, interrupts, connection, number, cries)
         with self._lock:
@@ -240,14 +247,6 @@ class Microphones:
             return self._ears[language]
 
     def _told(self, opened: _Open, event: Event) -> dict[str, Any]:
-        from nl2robot.speech.hear.listening import (
-            NothingHeard,
-            PartialText,
-            SpeechBegan,
-            SpeechEnded,
-            TooLong,
-        )
-
         match event:
             case SpeechBegan():
                 if opened.interrupts:

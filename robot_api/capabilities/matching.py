@@ -17,8 +17,6 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from rapidfuzz import fuzz
-
 from robot_api.capabilities.languages import (
     Language,
     Words,
@@ -310,6 +308,8 @@ def _alike(one: str, other: str) -> float:
         return 100.0
     if min(len(one), len(other)) < 4 or one[0] != other[0] or _has_digit(one + other):
         return 0.0
+    from rapidfuzz import fuzz
+
     likeness = fuzz.ratio(one, other)
     shared = next(
         (at for at, (a, b) in enumerate(zip(one, other, strict=False)) if a != b),

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from rapidfuzz import fuzz, process
-
 from robot_api.capabilities.languages import fold
 from robot_api.errors import UnknownPerson, UnknownPlace
 
@@ -21,6 +19,8 @@ def one_of(wanted: str, known: Iterable[str]) -> str | None:
 
 def nearest(wanted: str, known: Iterable[str]) -> str | None:
     """The name most like the wanted one, if any is like it."""
+    from rapidfuzz import fuzz, process
+
     found = process.extractOne(
         " ".join(fold(wanted)),
         {name: " ".join(fold(name)) for name in known},

@@ -10,6 +10,7 @@ from robot_api.capabilities.base import Capability
 from robot_api.capabilities.names import unknown_place
 from robot_api.driver import StopFlag
 from robot_api.errors import Stopped, error_named
+from sim.errors import Interrupted, SimError
 
 if TYPE_CHECKING:
     from sim.simulation import Behaviour, Simulation
@@ -47,8 +48,6 @@ class InSimulation(Capability):
 @contextmanager
 def robot_errors(stop: StopFlag | None = None) -> Iterator[None]:
     """Raise the simulator's errors as the robot's errors of the same name."""
-    from sim.errors import Interrupted, SimError
-
     try:
         yield
     except Interrupted:

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from robot_api.driver import Driver
+from robot_api.drivers import emulated, in_default_world
 from robot_api.robots.registry import RobotKind, Setup
 
 
 def _simulated(setup: Setup) -> Driver:
-    from robot_api.drivers import in_default_world
-
     return in_default_world(setup.sound)
 
 
 def _emulated(setup: Setup) -> Driver:
-    from robot_api.drivers import emulated
-
     places = {place.name: place.kind for place in setup.places.named.values()}
     return emulated(places=places or None, sound=setup.sound)
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
-from typing import Final
+from typing import Any, Final
 
 import msgspec
 
@@ -79,7 +79,7 @@ class RobotKind:
     example: str
     """An address: "ros2://HOST:9090"."""
     connect: Callable[[Setup], Driver]
-    """Reaches the robot. It imports what it needs when it is called. Raises `LostConnection` (the
+    """Reaches the robot (`when_called`). Raises `LostConnection` (the
     robot cannot be reached), `AccessDenied` (it wants a login), `NotSupported` (it is not what its
     file says)."""
     brake: Callable[[Setup], Brake] | None = None
@@ -115,6 +115,14 @@ class RobotKind:
             else "Its package's documentation says how to install it"
         )
         return f"{self.title} needs {need}. {how}."
+
+
+def when_called(name: str, *more: Any) -> Callable[[Setup], Any]:
+    """The function "module:name", for `connect` and `brake`; `more` is what it takes besides the
+    setup. Its module is imported when it is called, for what speaks with a robot needs libraries
+    that who has another robot has not."""
+    module, _, function = name.partition(":")
+    return lambda setup: getattr(import_module(module), function)(setup, *more)
 
 
 @dataclass(frozen=True)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import colorsys
 import itertools
 import math
 import zlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from sim.hospital import chart_of
+from sim.physics.placing import people_at_start, things_at_start
 from sim.pictures.labels import Board, label_area, label_spot
 from sim.pictures.scene import (
     Area,
@@ -27,6 +30,7 @@ from sim.pictures.scene import (
     mixed,
 )
 from sim.world.geometry import Pose, polygon_area, rectangle
+from sim.world.maps import painted
 from sim.world.model import Door, Furniture, Place, Thing, World, name_in
 
 LARGEST = (1480.0, 1080.0)
@@ -182,8 +186,6 @@ def robot_shapes(frame: Frame, x: float, y: float, theta: float, radius: float) 
 
 def tint(kind: str, saturation: float, lightness: float) -> str:
     """A colour of its own for any kind, always the same."""
-    import colorsys
-
     hue = zlib.crc32(kind.encode()) % 360 / 360
     red, green, blue = colorsys.hls_to_rgb(hue, lightness, saturation)
     return f"#{round(red * 255):02x}{round(green * 255):02x}{round(blue * 255):02x}"
@@ -220,8 +222,6 @@ def _extent(world: World) -> tuple[float, float, float, float]:
 def _draw_rooms(world: World, frame: Frame, scene: Scene, language: str) -> None:
     rooms = scene.layer("rooms")
     if world.map is not None:
-        from sim.world.maps import painted
-
         for what, outline in painted(world.map):
             rooms.append(Area(frame.spots(outline), _ON_A_MAP[what], note=what))
     places = sorted(
@@ -371,9 +371,6 @@ def _draw_charger(world: World, frame: Frame, scene: Scene, board: Board) -> Non
 
 def _inhabitants(world: World) -> list[Inhabitant]:
     """Everybody as they are when the simulation begins."""
-    from sim.hospital import chart_of
-    from sim.physics.placing import people_at_start
-
     return [
         (placing.x, placing.y, person.name, person.kind)
         for person, placing in people_at_start(world, chart_of(world))
@@ -382,9 +379,6 @@ def _inhabitants(world: World) -> list[Inhabitant]:
 
 def _things(world: World, language: str) -> list[tuple[float, float, str, str]]:
     """x, y, description and colour of every object."""
-    from sim.hospital import chart_of
-    from sim.physics.placing import things_at_start
-
     return [
         (
             item.x,

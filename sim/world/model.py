@@ -25,6 +25,7 @@ from sim.world.geometry import (
     polygon_area,
     rectangle,
 )
+from sim.world.maps import roomiest_pose, trace_walls
 from sim.world.yaml_nodes import FileProblems
 from sim.world.yaml_nodes import Problem as Problem
 from sim.world.yaml_nodes import key as key
@@ -194,7 +195,6 @@ class World(msgspec.Struct, frozen=True, kw_only=True, dict=True):
         """All walls, the doors cut out. Reads the map's image if there is one."""
         if self.map is None:
             return self.drawn_walls
-        from sim.world.maps import trace_walls
 
         return self.drawn_walls + trace_walls(self.map)
 
@@ -238,8 +238,6 @@ class World(msgspec.Struct, frozen=True, kw_only=True, dict=True):
             if place.pose is not None:
                 return place.pose
         if self.map is not None:
-            from sim.world.maps import roomiest_pose
-
             return roomiest_pose(self.map)
         return None
 

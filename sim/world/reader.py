@@ -19,6 +19,7 @@ from sim.world.checks import Entries, check_zones, cut_doors, kind_of, settle
 from sim.world.fields import MAX_TEXT, compose
 from sim.world.geometry import Point, Segment
 from sim.world.map_reader import MapReader, is_ros_map
+from sim.world.masks import MaskError, masked_areas
 from sim.world.model import Place, World, WorldError
 from sim.world.yaml_nodes import Hopeless, MappingNode, Node, ScalarNode, short
 from sim.world.zones import trouble_with
@@ -227,8 +228,6 @@ class _Reader(MapReader):
         ]
 
     def _masked(self, node: Node, path: Path) -> tuple[g.Polygon, ...]:
-        from sim.world.masks import MaskError, masked_areas
-
         mask = self.map(node, path, "keep-out mask")
         try:
             return masked_areas(mask) if mask is not None else ()

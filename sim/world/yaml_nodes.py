@@ -8,6 +8,7 @@ values are counted. Knows nothing of worlds.
 
 from __future__ import annotations
 
+import difflib
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -219,8 +220,6 @@ def key(name: str) -> str:
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
-    import difflib
-
     table: dict[str, str] = {}
     for name in known:
         table.setdefault(key(name), name)

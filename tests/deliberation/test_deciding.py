@@ -7,7 +7,7 @@ import pytest
 
 from grammar.planning.planner import Draft, Refusal
 from grammar.understanding import Context
-from nl2robot.deliberation import confidence, deciding
+from nl2robot.deliberation import deciding
 from nl2robot.deliberation.considering import consider
 from nl2robot.deliberation.deciding import Chosen, Open, between, decide
 from nl2robot.knowledge import Knowledge
@@ -41,7 +41,7 @@ def test_drafts_that_do_the_same_leave_no_question() -> None:
 
 
 def test_what_is_doubtful_is_asked_about(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(confidence, "confidence", lambda *known: 0.3)
+    monkeypatch.setattr(deciding, "confidence", lambda *known: 0.3)
     opened = decided("ward a should get a wave", 'goto("ward a")\ngesture("wave")\n')
     assert isinstance(opened, Open)
     assert opened.question.message == (
@@ -54,7 +54,7 @@ def test_what_is_doubtful_is_asked_about(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_what_is_more_than_doubtful_is_not_even_asked(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(confidence, "confidence", lambda *known: 0.1)
+    monkeypatch.setattr(deciding, "confidence", lambda *known: 0.1)
     refusal = decided("ward a should get a wave", 'goto("ward a")\ngesture("wave")\n')
     assert isinstance(refusal, Refusal)
     assert refusal.message == turn("").language.phrase("not_sure_enough")
@@ -157,7 +157,7 @@ def test_two_planners_of_which_neither_is_sure_are_asked_about_by_what_differs(
 ) -> None:
     text = "ward a should get a wave or a hello"
     rules = of_rules(text, 'goto("ward a")\nsay("Hello!")\n')
-    monkeypatch.setattr(confidence, "confidence", lambda *known: 0.3)
+    monkeypatch.setattr(deciding, "confidence", lambda *known: 0.3)
     model = decided(text, 'goto("ward a")\ngesture("wave")\n')
     question = between(turn(text), rules, model)
     assert isinstance(question, Open)
@@ -170,7 +170,7 @@ def test_what_two_planners_mean_is_right_however_unsure_each_is(
 ) -> None:
     text = "ward a should get a wave"
     rules = of_rules(text, 'goto("ward a")\ngesture("wave")\n')
-    monkeypatch.setattr(confidence, "confidence", lambda *known: 0.3)
+    monkeypatch.setattr(deciding, "confidence", lambda *known: 0.3)
     model = decided(text, 'goto("ward a")\ngesture("wave")\n')
     assert between(turn(text), rules, model) is rules
 

@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from grammar import plan as p
 from grammar.explain import explain
 from grammar.program import write_program
-from grammar.reading import parse_program
+from grammar.program_parser import parse_program
 from robot_api.stub import stub
 from sandbox.check import check
 from tests.grammar import sensible_plans

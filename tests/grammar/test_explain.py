@@ -12,7 +12,7 @@ from grammar import plan as p
 from grammar.explain import explain, explain_program, explain_steps
 from grammar.network import RuleError
 from grammar.program import write_program
-from grammar.reading import parse_program, read_program
+from grammar.program_parser import parse_program, read_program
 from grammar.speech import gaps, languages, speech
 from grammar.traversal import walk
 from robot_api.methods import METHODS

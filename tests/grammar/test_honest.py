@@ -12,12 +12,12 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grammar.accounts import NAMES, TEXTS, left_out
 from grammar.chart import Node
+from grammar.coverage import NAMES, TEXTS, left_out
 from grammar.language import languages, load_language
 from grammar.lexicon import Lexicon, Name
 from grammar.program import write_program
-from grammar.reader import Reader
+from grammar.reader import SentenceReader
 from grammar.sampler import random_sentence
 from grammar.understand import understand
 from grammar.understanding import Context
@@ -107,7 +107,7 @@ def test_programs_know_all_names_and_sentences_lose_no_word(sentence: str) -> No
         return
     assert not unbound(write_program(understood.plan)), program(understood.plan)
     language = load_language("en")
-    reader = Reader(sentence, WARD, language, Context())
+    reader = SentenceReader(sentence, WARD, language, Context())
     tree = reader.chart().best("utterance")
     assert isinstance(tree, Node)
     lost = left_out(tree, reader.tokens, understood.plan, language, WARD, NAMES | TEXTS)

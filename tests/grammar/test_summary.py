@@ -14,7 +14,7 @@ from grammar import plan as p
 from grammar.explain import explain
 from grammar.language import load_language
 from grammar.naming import naming
-from grammar.reading import parse_program
+from grammar.program_parser import parse_program
 from grammar.summary import QUIET, summary
 from grammar.traversal import nodes
 from grammar.understand import understand

@@ -14,7 +14,7 @@ from grammar.language import load_language
 from grammar.planning.model.planner import LONGEST
 from grammar.planning.model.request import Written
 from grammar.planning.planner import Interrupted, Watch
-from nl2robot.deliberation import confidence
+from nl2robot.deliberation import deciding
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.language_model.scripted import ScriptedWriter
@@ -436,7 +436,7 @@ def test_an_order_that_says_more_is_no_answer(scripted: Scripted) -> None:
 def test_a_yes_to_what_is_doubtful_shows_it(
     answer: str, shown: bool, scripted: Scripted, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(confidence, "confidence", lambda *known: 0.3)
+    monkeypatch.setattr(deciding, "confidence", lambda *known: 0.3)
     scripted({ODD["en"]: [WAVE]})
     talk = Talk()
     asked = said(ODD["en"], talk=talk)

@@ -22,7 +22,7 @@ from robot_api.stub import stub
 from sandbox.check import check
 from sim.simulation import Simulation
 from sim.world.loading import load_world
-from tests.grammar.told import untold
+from tests.grammar.program_words import untold
 
 STUB = stub()
 WORLD = load_world(DEFAULT_WORLD)

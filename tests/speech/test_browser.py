@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 
 from nl2robot.cli import main as cli
 from nl2robot.errors import ExitStatus
-from nl2robot.speech.speak.aloud import Wishes, aloud
+from nl2robot.speech.speak.aloud import aloud
 from nl2robot.speech.speak.browser import PIECE, Browsers
 from nl2robot.speech.speak.voices import Sound
+from nl2robot.speech.speak.wishes import Wishes
 from robot_api.client import Robot
 from robot_api.driver import Event
 from robot_api.drivers import simulated

@@ -21,12 +21,13 @@ from nl2robot.models import catalogue as models
 from nl2robot.speech.audio import RATE
 from nl2robot.speech.hear.recogniser import Recogniser
 from nl2robot.speech.hear.replies import AtMicrophone, Microphone, Replies
-from nl2robot.speech.speak.aloud import RobotVoice, Wishes, aloud
+from nl2robot.speech.speak.aloud import RobotVoice, aloud
 from nl2robot.speech.speak.loudspeaker import Handed
 from nl2robot.speech.speak.people import FEMALE, MALE, SimulatedVoices, person_called
 from nl2robot.speech.speak.speaking import Speaker
 from nl2robot.speech.speak.voices import Sound as Samples
 from nl2robot.speech.speak.voices import voice
+from nl2robot.speech.speak.wishes import Wishes
 from robot_api.capabilities.sound import Asked, Sound
 from robot_api.driver import StopFlag
 from robot_api.drivers import emulated, simulated

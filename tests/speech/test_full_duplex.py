@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from nl2robot.cli.commands import chat
-from nl2robot.cli.commands.options import robot_of
+from nl2robot.cli.options.robot import robot_of
 from nl2robot.speech.audio import RATE, AudioError, Samples
 from nl2robot.speech.hear import full_duplex as module
 from nl2robot.speech.hear.echo_cancelling import Played
@@ -23,10 +23,11 @@ from nl2robot.speech.hear.full_duplex import BargeIn, FullDuplex, Over, full_dup
 from nl2robot.speech.hear.listening import FRAME
 from nl2robot.speech.hear.open_microphone import BEFORE, OpenMicrophone
 from nl2robot.speech.speak import aloud as aloud_module
-from nl2robot.speech.speak.aloud import RobotVoice, Wishes, aloud
+from nl2robot.speech.speak.aloud import RobotVoice, aloud
 from nl2robot.speech.speak.loudspeaker import Nowhere, SoundCard
 from nl2robot.speech.speak.speaking import Speaker
 from nl2robot.speech.speak.voices import Sound
+from nl2robot.speech.speak.wishes import Wishes
 from robot_api.driver import StopFlag
 from sim.world.loading import load_world
 

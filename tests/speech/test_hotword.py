@@ -301,7 +301,7 @@ def test_a_recording_of_an_hour_is_heard_in_the_memory_of_a_second(
         for _ in range(minutes):
             sound.write(noise)
     ears = Counts()
-    monkeypatch.setattr("nl2robot.speech.hotword.detector.HotWord", lambda *_: ears)
+    monkeypatch.setattr("nl2robot.cli.commands.hotword.HotWord", lambda *_: ears)
     tracemalloc.start()
     try:
         assert main(["hotword", "--wav", str(file)]) == 0

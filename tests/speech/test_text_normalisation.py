@@ -9,8 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grammar.language import languages
-from nl2robot.speech.speak.aloud import Wishes, aloud
+from nl2robot.speech.speak.aloud import aloud
 from nl2robot.speech.speak.text_normalisation import as_spoken
+from nl2robot.speech.speak.wishes import Wishes
 from nl2robot.station.robots import _of_its_own
 from robot_api.capabilities.base import Hub
 from robot_api.capabilities.sound import Sound

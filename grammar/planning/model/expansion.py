@@ -33,7 +33,7 @@ from grammar.plan import (
     Value,
 )
 from grammar.planning.model.expressions import CALLS, DAYS
-from grammar.reading import NotAPlan, parse_program
+from grammar.program_parser import NotAPlan, parse_program
 from grammar.roles import ANYBODY
 from grammar.speech import speech
 from grammar.tidy import BODIES, nodes

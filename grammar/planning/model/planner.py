@@ -30,7 +30,7 @@ from grammar.planning.planner import (
     Watch,
 )
 from grammar.planning.turn import Turn
-from grammar.reading import NotAPlan
+from grammar.program_parser import NotAPlan
 from grammar.understanding import Context
 
 NAME: Final = "model"

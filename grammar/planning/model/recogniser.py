@@ -6,7 +6,7 @@
     draft.is_whole                            # whether it could end here
 
 The dialect is Python without `robot.` before the robot's methods; every line of it has a plan
-(`grammar.reading`). A draft never changes: several may grow from one.
+(`grammar.program_parser`). A draft never changes: several may grow from one.
 """
 
 from __future__ import annotations

@@ -9,11 +9,13 @@ import time
 from contextlib import closing
 from datetime import datetime
 
+from nl2robot.cli.options.values import user_name
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.paths import authority_file, data_folder
 from nl2robot.station.accounts import INVITED_FOR, Accounts
 from nl2robot.station.entrance import PAGES_AT
 from nl2robot.station.passwords import SHORTEST
+from nl2robot.station.qr_code import in_terminal
 from robot_api.serving.roles import PAIRED, ROLES
 
 
@@ -94,8 +96,6 @@ def _list(accounts: Accounts) -> None:
 
 
 def _pair(accounts: Accounts, options: argparse.Namespace) -> None:
-    from nl2robot.station.qr_code import in_terminal
-
     pages = options.address or accounts.noted(PAGES_AT)
     if pages is None:
         raise UserError("Where are the robot's pages? Start `nl2robot serve --host 0.0.0.0` first.")
@@ -117,8 +117,6 @@ def _password(name: str) -> str:
 
 
 def _who() -> str:
-    from nl2robot.cli.commands.options import user_name
-
     return user_name()
 
 

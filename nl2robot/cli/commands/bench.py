@@ -7,14 +7,10 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
+from nl2robot.bench import benchmark, console, hearing, planner, robots
+from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus
-
-if TYPE_CHECKING:
-    from nl2robot.bench.figures import Figure
-    from nl2robot.cli.terminal import Terminal
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -24,14 +20,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="*",
         help="parts (default: all but hearing, console, planner and robots)",
     )
-    hearing = parser.add_argument_group(
+    group = parser.add_argument_group(
         "hearing", "with the part hearing: commands and answers, synthesised and in noise"
     )
-    hearing.add_argument("--quick", action="store_true", help="a smaller sample")
-    hearing.add_argument("--lang", default="en", help="the language that is spoken (en, de, fr)")
-    hearing.add_argument("--seed", type=int, default=1, help="for another sample")
-    robots = parser.add_argument_group("robots", "with the part robots")
-    robots.add_argument(
+    group.add_argument("--quick", action="store_true", help="a smaller sample")
+    group.add_argument("--lang", default="en", help="the language that is spoken (en, de, fr)")
+    group.add_argument("--seed", type=int, default=1, help="for another sample")
+    group = parser.add_argument_group("robots", "with the part robots")
+    group.add_argument(
         "--robot",
         action="append",
         default=[],
@@ -41,9 +37,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from nl2robot.bench.benchmark import PARTS, measure
-    from nl2robot.cli.terminal import Terminal
-
     terminal = Terminal()
     if "hearing" in options.only:
         return _hearing(options, terminal)
@@ -53,8 +46,8 @@ def run(options: argparse.Namespace) -> int:
         return _robots(options, terminal)
     table = terminal.table("part", "what", "measured", "aim")
     results = []
-    for part in options.only or PARTS:
-        for figure in _planner() if part == "planner" else measure(part):
+    for part in options.only or benchmark.PARTS:
+        for figure in planner.measure() if part == "planner" else benchmark.measure(part):
             results.append(figure)
             table.add_row(figure.part, figure.what, figure.shown, figure.aim)
     if options.json:
@@ -64,21 +57,13 @@ def run(options: argparse.Namespace) -> int:
     return ExitStatus.OK
 
 
-def _planner() -> Iterator[Figure]:
-    from nl2robot.bench.planner import measure
-
-    return measure()
-
-
 def _console(options: argparse.Namespace, terminal: Terminal) -> int:
     from rich.progress import Progress
-
-    from nl2robot.bench.console import measure
 
     rows: list[tuple[str, float, str, str]] = []
     with Progress(console=terminal.console, transient=True) as progress:
         progress.add_task("Looking at the pages", total=None)
-        rows.extend(measure())
+        rows.extend(console.measure())
     if options.json:
         print(json.dumps({what: [round(figure, 1), unit] for what, figure, unit, _ in rows}))
         return ExitStatus.OK
@@ -92,17 +77,15 @@ def _console(options: argparse.Namespace, terminal: Terminal) -> int:
 def _robots(options: argparse.Namespace, terminal: Terminal) -> int:
     from rich.progress import Progress
 
-    from nl2robot.bench.robots import WHAT, measure
-
     measured: dict[str, dict[str, float]] = {}
     with Progress(console=terminal.console, transient=True) as progress:
         progress.add_task("Driving to and fro", total=None)
-        measured.update(measure(options.robot))
+        measured.update(robots.measure(options.robot))
     if options.json:
         print(json.dumps(measured))
         return ExitStatus.OK
     table = terminal.table("what", *measured, "aim")
-    for key, (what, unit, aim) in WHAT.items():
+    for key, (what, unit, aim) in robots.WHAT.items():
         figures = [robot.get(key) for robot in measured.values()]
         shown = ["" if figure is None else f"{_rounded(figure)} {unit}" for figure in figures]
         table.add_row(what, *shown, f"{aim} {unit}" if aim else "")
@@ -117,11 +100,9 @@ def _rounded(figure: float) -> str:
 def _hearing(options: argparse.Namespace, terminal: Terminal) -> int:
     from rich.progress import Progress
 
-    from nl2robot.bench.hearing import CONDITIONS, megabytes, run
-
     with Progress(console=terminal.console, transient=True) as progress:
         task = progress.add_task("Listening", total=None)
-        tally = run(
+        tally = hearing.run(
             options.lang,
             "quick" if options.quick else "full",
             options.seed,
@@ -131,15 +112,15 @@ def _hearing(options: argparse.Namespace, terminal: Terminal) -> int:
     speed = {
         "from the end of the sound to the program, median (ms)": round(tally.seconds * 1000),
         "real-time factor, median": round(tally.real_time_factor, 3),
-        "memory (MB)": round(megabytes()),
+        "memory (MB)": round(hearing.megabytes()),
         "trials": len(tally.outcomes),
     }
     if options.json:
-        columns = [*CONDITIONS, "all"]
+        columns = [*hearing.CONDITIONS, "all"]
         shares = {what: dict(zip(columns, figures, strict=True)) for what, figures in rows}
         print(json.dumps({**shares, **speed}))
         return ExitStatus.OK
-    table = terminal.table("what", *CONDITIONS, "all")
+    table = terminal.table("what", *hearing.CONDITIONS, "all")
     for what, figures in rows:
         table.add_row(what, *figures)
     terminal.console.print(table)

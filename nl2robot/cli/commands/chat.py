@@ -13,20 +13,17 @@ import yaml
 
 from grammar.language import load_language
 from grammar.naming import joined_up
-from nl2robot.cli.commands.options import (
-    add_asking,
-    add_language,
-    add_planner,
-    add_robot,
-    add_sound,
-    robot_of,
-)
 from nl2robot.cli.commands.run import open_session
 from nl2robot.cli.line_editor import Complete, LineEditor
+from nl2robot.cli.options.robot import add_robot, robot_of
+from nl2robot.cli.options.sentence import add_language, add_planner
+from nl2robot.cli.options.sound import add_sound
+from nl2robot.cli.options.values import add_asking
 from nl2robot.cli.session import Session
 from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus
 from nl2robot.paths import PACKAGED, data_file
+from nl2robot.speech.hear.full_duplex import full_duplex
 from nl2robot.station.robots import Chosen
 from nl2robot.translate import planners
 from nl2robot.translate.completing import Named, completions, named_here
@@ -108,8 +105,6 @@ def _duplex(options: argparse.Namespace, robot: Chosen) -> FullDuplex | None:
     """Where the robot's loudspeaker and the microphone are both here."""
     if not (options.voice is True and options.speak is True and not robot.is_server):
         return None
-    from nl2robot.speech.hear.full_duplex import full_duplex
-
     return full_duplex(lambda message: print(message, file=sys.stderr, flush=True))
 
 

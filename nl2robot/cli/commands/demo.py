@@ -10,15 +10,21 @@ import argparse
 import os
 from pathlib import Path
 
-from nl2robot.cli.commands.options import open_log, user_name
 from nl2robot.cli.operator import Operator
+from nl2robot.cli.options.values import user_name
+from nl2robot.cli.run_log import open_log
 from nl2robot.cli.session import Session
 from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
+from nl2robot.models.catalogue import LARGE, get
+from nl2robot.models.download import shown
 from nl2robot.paths import PACKAGED
 from nl2robot.run.runlog import RunLog
+from nl2robot.speech.speak.voices import voices
 from nl2robot.station.station import simulated_station
+from nl2robot.translate.planners import CHOSEN
+from nl2robot.voice.hearing import Ear
 from sim.world.loading import load_world
 
 TYPED = (
@@ -59,8 +65,6 @@ def run(options: argparse.Namespace) -> int:
 def how_to_hear() -> str:
     """How the robot speaks aloud, which it did not here; what it needs is installed only where
     somebody asks for it."""
-    from nl2robot.speech.speak.voices import voices
-
     if voices("en"):
         return 'Aloud:                  [bold].venv/bin/nl2robot run "say good morning" --speak[/]'
     return (
@@ -91,10 +95,6 @@ def _perform(
 
 def _hear(terminal: Terminal) -> str | None:
     """What the recording says, or None (and why) where there is no speech model."""
-    from nl2robot.models.catalogue import get
-    from nl2robot.models.download import shown
-    from nl2robot.voice.hearing import Ear
-
     try:
         with shown() as progress:
             get("en", progress)
@@ -108,10 +108,6 @@ def _hear(terminal: Terminal) -> str | None:
 
 def _has_model(terminal: Terminal) -> bool:
     """Whether there is a language model, fetched if need be; told why where there is none."""
-    from nl2robot.models.catalogue import LARGE, get
-    from nl2robot.models.download import shown
-    from nl2robot.translate.planners import CHOSEN
-
     chosen = os.environ.get(CHOSEN, LARGE)
     if chosen == "none":
         terminal.console.print(f"\nThe language model is left out, as {CHOSEN} says.")

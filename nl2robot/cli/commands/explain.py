@@ -11,19 +11,17 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from grammar.language import load_language
-from grammar.readings import Read
+from grammar.trace import Read
 from grammar.understand import understand
 from grammar.understanding import Understanding
-from nl2robot.cli.commands.options import (
-    add_language,
-    add_words,
-    add_world,
-    names_of,
-    read_program,
-)
+from nl2robot.cli.options.sentence import add_language, add_words
+from nl2robot.cli.options.values import read_program
+from nl2robot.cli.options.world import add_world, names_of
+from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus
 from nl2robot.knowledge import Knowledge
 from nl2robot.plain import visible
+from nl2robot.review.review import review
 from nl2robot.translate.routines import open_routines
 from nl2robot.translate.translation import Translation, translate
 from nl2robot.words import decimal, words_in
@@ -69,9 +67,6 @@ def _is_file(words: str) -> bool:
 
 def _show_program(program: str, knowledge: Knowledge, options: argparse.Namespace) -> int:
     """What it does in plain words, and what is wrong with it; it is not tried."""
-    from nl2robot.cli.terminal import Terminal
-    from nl2robot.review.review import review
-
     made = review(program, knowledge, language=options.lang)
     if options.json:
         print(msgspec.json.encode(made).decode())
@@ -81,8 +76,6 @@ def _show_program(program: str, knowledge: Knowledge, options: argparse.Namespac
 
 
 def _show(translation: Translation, understood: Understanding, language: str) -> None:
-    from nl2robot.cli.terminal import Terminal
-
     terminal = Terminal(language=language)
     console, plain, words = terminal.console, terminal.plain, terminal.words["explained"]
     if understood.utterance != translation.utterance:

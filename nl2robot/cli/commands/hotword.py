@@ -9,8 +9,14 @@ import sys
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from nl2robot.cli.commands.options import add_language, words
+from nl2robot.cli.options.sentence import add_language
+from nl2robot.cli.options.values import words
 from nl2robot.errors import ExitStatus
+from nl2robot.speech.audio import RATE
+from nl2robot.speech.hear.microphone import Microphone
+from nl2robot.speech.hear.recording import opened
+from nl2robot.speech.hotword.detector import HotWord, StopWord
+from nl2robot.words import words_in
 
 if TYPE_CHECKING:
     from nl2robot.speech.audio import Samples
@@ -41,16 +47,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from nl2robot.speech.hotword.detector import HotWord, StopWord
-
     ears = StopWord(options.lang) if options.stop else HotWord(options.lang, options.word)
     if options.mic:
-        from nl2robot.speech.hear.microphone import Microphone
-
         with Microphone(options.device) as microphone, contextlib.suppress(KeyboardInterrupt):
             _listen(ears, microphone.blocks(), options.json)
         return ExitStatus.OK
-    from nl2robot.speech.hear.recording import opened
 
     with opened(options.wav) as recording:
         _listen(ears, _in_view(recording, options.lang), options.json)
@@ -65,9 +66,6 @@ def _in_view(recording: Recording, language: str) -> Iterator[Samples]:
         return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
-
-    from nl2robot.speech.audio import RATE
-    from nl2robot.words import words_in
 
     columns = (TextColumn("{task.description}"), BarColumn(), TimeRemainingColumn())
     # What is found is written above the bar, unless a pipe gets it.

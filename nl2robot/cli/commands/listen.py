@@ -12,18 +12,34 @@ from typing import TYPE_CHECKING, Final, Protocol, TextIO
 
 import msgspec
 
-from nl2robot.cli.commands.options import add_language, add_planner, add_world, names_of
+from nl2robot.cli.options.sentence import add_language, add_planner
+from nl2robot.cli.options.world import add_world, names_of
 from nl2robot.cli.waiting import GivenUp, thought_aloud
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.models.catalogue import lacking_beside, need
 from nl2robot.sentences import told
+from nl2robot.speech.audio import read
+from nl2robot.speech.hear.answers import Answer, expect, hear_answer
+from nl2robot.speech.hear.listening import (
+    ANSWERS,
+    COMMANDS,
+    Listener,
+    NothingHeard,
+    PartialText,
+    SpeechEnded,
+    TooLong,
+    has_speech,
+)
+from nl2robot.speech.hear.microphone import Microphone
+from nl2robot.speech.hear.recogniser import load
 from nl2robot.translate.routines import open_routines
+from nl2robot.voice.hearing import Ear
 from nl2robot.words import words_in
 
 if TYPE_CHECKING:
     from nl2robot.speech.audio import Audio, Samples
-    from nl2robot.speech.hear.listening import Event, Listener, SpeechEnded
+    from nl2robot.speech.hear.listening import Event
     from nl2robot.speech.hear.recogniser import Heard
 
 PATIENCE: Final = 30.0
@@ -58,7 +74,6 @@ def run(options: argparse.Namespace) -> int:
         print(told(sentence, options.lang), file=sys.stderr)
     if not options.mic:
         return recordings(options.wav, _hearing(options), options.lang)
-    from nl2robot.speech.hear.microphone import Microphone
 
     microphone = Microphone(options.device)  # before the model is loaded, for it may be missing
     hearing = _hearing(options)
@@ -71,9 +86,7 @@ class Hearing(Protocol):
     """What is made of speech, and printed."""
 
     def recording(self, audio: Audio) -> None: ...
-
     def listener(self) -> Listener: ...
-
     def spoken(self, speech: SpeechEnded) -> None: ...
 
 
@@ -83,8 +96,6 @@ def _hearing(options: argparse.Namespace) -> Hearing:
 
 class _Commands:
     def __init__(self, options: argparse.Namespace) -> None:
-        from nl2robot.voice.hearing import Ear
-
         self._options = options
         self._words = words_in(options.lang)
         knowledge = Knowledge(names_of(options), routines=open_routines())
@@ -96,8 +107,6 @@ class _Commands:
         self._print(self._ear.hear(audio))
 
     def listener(self) -> Listener:
-        from nl2robot.speech.hear.listening import COMMANDS
-
         return self._ear.listener(replace(COMMANDS, patience=PATIENCE))
 
     def spoken(self, speech: SpeechEnded) -> None:
@@ -120,18 +129,12 @@ class _Commands:
 
 class _Answers:
     def __init__(self, options: argparse.Namespace) -> None:
-        from nl2robot.speech.hear.answers import expect
-        from nl2robot.speech.hear.recogniser import load
-
         self._json = options.json
         self._words = words_in(options.lang)
         self._expected = expect(options.expect, options.lang)
         self._recogniser = load(options.lang)
 
     def recording(self, audio: Audio) -> None:
-        from nl2robot.speech.hear.answers import Answer, hear_answer
-        from nl2robot.speech.hear.listening import has_speech
-
         if has_speech(audio):
             heard = hear_answer(self._recogniser, audio, self._expected)
         else:
@@ -145,8 +148,6 @@ class _Answers:
             print(told, flush=True)
 
     def listener(self) -> Listener:
-        from nl2robot.speech.hear.listening import ANSWERS, Listener
-
         # So short a speech is decoded as a whole when it has ended.
         return Listener(manner=replace(ANSWERS, patience=PATIENCE))
 
@@ -157,8 +158,6 @@ class _Answers:
 def recordings(files: Sequence[str], hearing: Hearing, language: str = "en") -> int:
     """Hear every file; one that cannot be used does not keep the others from being heard, which is
     told in a language."""
-    from nl2robot.speech.audio import read
-
     status = ExitStatus.OK
     for file in files:
         try:
@@ -181,8 +180,6 @@ def live(
 ) -> int:
     """Hear what is said until Ctrl-C, or until the sound ends. Partial words are shown where they
     can be overwritten, unless `quiet`; what else is told, in that language. Raises `AudioError`."""
-    from nl2robot.speech.hear.listening import NothingHeard, PartialText, SpeechEnded, TooLong
-
     texts = words_in(language)
     listener = hearing.listener()
     line = _Line(output, shown=output.isatty() and not quiet)

@@ -5,13 +5,12 @@ from __future__ import annotations
 import argparse
 import json
 from datetime import datetime
-from pathlib import Path
-from typing import Any
 
 import msgspec
 
 from nl2robot.changes import difference
-from nl2robot.cli.commands.options import open_log, whole
+from nl2robot.cli.options.values import whole
+from nl2robot.cli.run_log import open_log
 from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.plain import visible
@@ -71,7 +70,9 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         print(json.dumps(log.whole(row), ensure_ascii=False))
     elif options.replay:
-        return _replay(log, row, terminal, options.picture)
+        from nl2robot.cli.replaying import replayed
+
+        return replayed(log, row, terminal, options.picture)
     else:
         _show(log, row, terminal)
     return ExitStatus.OK
@@ -151,40 +152,6 @@ def _show(log: RunLog, row: Run, terminal: Terminal) -> None:
     terminal.console.print(table, markup=False)
     for text in log.output(row.id):
         terminal.console.print(f"printed: {visible(text).rstrip()}", markup=False)
-
-
-def _replay(log: RunLog, row: Run, terminal: Terminal, picture: str | None) -> int:
-    from nl2robot.run.going_on import recall_of
-    from nl2robot.run.replay import replay
-    from nl2robot.station.station import check_picture, draw
-    from sim.simulation import Simulation
-    from sim.world.loading import load_world
-
-    if row.seed is None or row.world is None:
-        raise UserError(
-            f"Run {row.id} was not simulated, so it cannot be replayed."
-            f" See what happened in it with: nl2robot log {row.id}."
-        )
-    if picture is not None:
-        check_picture(Path(picture))
-    world = load_world(row.world)
-    simulation = Simulation(world, seed=row.seed)
-
-    def on_call(line: int, method: str, arguments: dict[str, Any]) -> None:
-        about = {"what": "call", "line": line, "method": method, "arguments": arguments}
-        terminal.show_event("program", about)
-
-    recall = recall_of(log, row.continues)
-    again = replay(row, log.calls(row.id), simulation, on_call, recall)
-    terminal.show_end(again.status, again.message)
-    for each in again.differences:
-        terminal.console.print(each, style="yellow", markup=False)
-    if not again.differences:
-        terminal.console.print("Every call came out as it did the first time.")
-    if picture is not None:
-        draw(simulation.record, world, Path(picture))
-        terminal.console.print(f"Picture: {picture}", soft_wrap=True, markup=False)
-    return ExitStatus.OK if not again.differences else ExitStatus.FAILED
 
 
 def _how(row: Run) -> str:

@@ -7,9 +7,13 @@ import json
 import random
 from pathlib import Path
 
-from nl2robot.checks.paraphrases import DEFAULT_WORLD, Total
-from nl2robot.cli.commands.options import add_planner, whole
+from nl2robot.checks.paraphrases import DEFAULT_WORLD, Total, by_kind, load, score, total
+from nl2robot.cli.options.sentence import add_planner
+from nl2robot.cli.options.values import whole
+from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus
+from nl2robot.knowledge import Knowledge
+from sim.world.loading import load_world
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -31,11 +35,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     from rich.console import Console
     from rich.progress import track
-
-    from nl2robot.checks.paraphrases import by_kind, load, score, total
-    from nl2robot.cli.terminal import Terminal
-    from nl2robot.knowledge import Knowledge
-    from sim.world.loading import load_world
 
     knowledge = Knowledge(load_world(options.world, names_only=True))
     rows = load(Path(options.file))

@@ -7,8 +7,10 @@ import argparse
 import json
 from importlib import import_module
 
-from nl2robot.cli.commands.options import add_ca, add_robot_file, add_world, trust, world_of
+from nl2robot.cli.options.robot import add_ca, add_robot_file, trust
+from nl2robot.cli.options.world import add_world, world_of
 from nl2robot.errors import ExitStatus
+from nl2robot.station.robots import chosen
 from robot_api.robots.registry import RobotKind, known
 
 
@@ -76,7 +78,6 @@ def _as_json(kind: RobotKind) -> dict[str, object]:
 
 def _check(options: argparse.Namespace) -> int:
     from nl2robot.station.robot_check import checked
-    from nl2robot.station.robots import chosen
 
     robot = chosen(options.robot, options.robot_file)
     if robot.is_server:

@@ -7,7 +7,9 @@ import argparse
 import json
 from pathlib import Path
 
-from nl2robot.cli.commands.options import add_language, add_world, names_of, user_name, words
+from nl2robot.cli.options.sentence import add_language
+from nl2robot.cli.options.values import user_name, words
+from nl2robot.cli.options.world import add_world, names_of
 from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge

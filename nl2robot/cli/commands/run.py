@@ -9,21 +9,13 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nl2robot.cli.commands.options import (
-    add_asking,
-    add_language,
-    add_planner,
-    add_robot,
-    add_sound,
-    add_words,
-    open_log,
-    read_program,
-    robot_of,
-    sound_of,
-    user_name,
-    world_of,
-)
 from nl2robot.cli.operator import Operator
+from nl2robot.cli.options.robot import add_robot, robot_of
+from nl2robot.cli.options.sentence import add_language, add_planner, add_words
+from nl2robot.cli.options.sound import add_sound, sound_of
+from nl2robot.cli.options.values import add_asking, read_program, user_name
+from nl2robot.cli.options.world import world_of
+from nl2robot.cli.run_log import open_log
 from nl2robot.cli.session import Session
 from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import UserError

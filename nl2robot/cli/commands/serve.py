@@ -12,18 +12,12 @@ from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from nl2robot.cli.commands.options import (
-    add_address,
-    add_seed,
-    add_sound,
-    add_world,
-    open_log,
-    robot_of,
-    sound_of,
-    speed,
-    whole,
-    world_of,
-)
+from nl2robot.cli.options.robot import add_address, robot_of
+from nl2robot.cli.options.sound import add_sound, sound_of
+from nl2robot.cli.options.values import add_seed, speed, whole
+from nl2robot.cli.options.world import add_world, world_of
+from nl2robot.cli.run_log import open_log
+from nl2robot.console.app import Console
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.paths import authority_file, data_folder, pictures_folder
 from nl2robot.review.review import get_ready
@@ -113,8 +107,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from nl2robot.console.app import Console
-
     sys.setswitchinterval(SWITCHES_WITHIN)
     allow_open_files()
     robot = robot_of(options)
@@ -185,7 +177,6 @@ def _certificate(options: argparse.Namespace) -> Certificate | None:
     """None for this machine alone, which nobody can listen in on, unless one was given."""
     if options.plain_http or (is_loopback(options.host) and not options.certificate):
         return None
-    # Not before it is needed: it takes its time.
     from nl2robot.station.certificates import LocalCertificate, given
 
     if options.certificate:

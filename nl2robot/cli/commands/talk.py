@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-from nl2robot.cli.commands.options import names_of
+from nl2robot.cli.options.world import names_of
 from nl2robot.cli.terminal import answers
 from nl2robot.cli.voice_terminal import VoiceTerminal
 from nl2robot.knowledge import Knowledge

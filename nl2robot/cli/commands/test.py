@@ -12,6 +12,7 @@ import msgspec
 
 from nl2robot.checks import baseline, canned
 from nl2robot.errors import ExitStatus
+from sim.world.loading import load_world
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -28,8 +29,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from sim.world.loading import load_world
-
     world = load_world(options.world) if options.world else None
     before = None
     if options.baseline is not None and options.baseline.exists():

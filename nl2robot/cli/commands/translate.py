@@ -7,10 +7,12 @@ import sys
 from functools import partial
 
 from grammar.planning.planner import Watch
-from nl2robot.cli.commands.options import add_language, add_planner, add_words, add_world, names_of
+from nl2robot.cli.options.sentence import add_language, add_planner, add_words
+from nl2robot.cli.options.world import add_world, names_of
 from nl2robot.cli.waiting import thought_aloud
 from nl2robot.errors import ExitStatus
 from nl2robot.knowledge import Knowledge
+from nl2robot.translate.other_language import hint, language_of
 from nl2robot.translate.routines import open_routines
 from nl2robot.translate.translation import Translation, translate
 
@@ -46,8 +48,6 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _show_other_language(line: str, language: str) -> None:
-    from nl2robot.translate.other_language import hint, language_of
-
     code = language_of(line, language)
     if code is not None:
         print(hint(code, language), file=sys.stderr)

@@ -10,8 +10,21 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nl2robot.cli.commands.options import words
+from nl2robot.cli.options.values import words
 from nl2robot.errors import ExitStatus, UserError
+from nl2robot.paths import data_file
+from nl2robot.station.drawn_zones import DrawnZones
+from nl2robot.station.named_places import NamedPlaces, not_in
+from nl2robot.station.world_file import beginning, exported, write_world
+from robot_api.robots.address import BadAddress, parse
+from sim.world.builtin import BUILTIN
+from sim.world.fields import compose
+from sim.world.loading import load_world
+from sim.world.map_image import ImageError
+from sim.world.map_reader import is_ros_map
+from sim.world.map_saving import save_map
+from sim.world.maps import free_cells
+from sim.world.yaml_nodes import Hopeless
 
 if TYPE_CHECKING:
     from sim.world.model import World
@@ -62,8 +75,6 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _from_map(options: argparse.Namespace) -> int:
-    from nl2robot.station.world_file import beginning, write_world
-
     fetched = "://" in options.map
     map_file = _file_for_fetched(options) if fetched else Path(options.map)
     out: Path = options.out or map_file.with_name(f"{_stem(map_file)}-world.yaml")
@@ -110,11 +121,6 @@ def _check_new(file: Path, force: bool) -> None:
 
 def _map_alone(file: Path) -> World:
     """The world that is nothing but this map. Raises `WorldError`, `UserError`."""
-    from sim.world.fields import compose
-    from sim.world.loading import load_world
-    from sim.world.map_reader import is_ros_map
-    from sim.world.yaml_nodes import Hopeless
-
     if file.suffix.lower() in (".pgm", ".png", ".bmp"):
         raise UserError(f"{file} is an image. Give the YAML that map_server wrote beside it.")
     if not file.exists():
@@ -130,10 +136,6 @@ def _map_alone(file: Path) -> World:
 
 def _fetch(address: str, map_file: Path) -> None:
     """Write the map of a robot with ROS. Raises `UserError`, `RobotError`."""
-    from robot_api.robots.address import BadAddress, parse
-    from sim.world.map_image import ImageError
-    from sim.world.map_saving import save_map
-
     try:
         robot = parse(address)
     except BadAddress as error:
@@ -170,8 +172,6 @@ def _fetch(address: str, map_file: Path) -> None:
 
 def _check(name: str) -> int:
     """The exit status is 1 if the robot could not go to some place."""
-    from sim.world.loading import load_world
-
     world = load_world(name)
     _tell(world)
     if not world.has_geometry:
@@ -196,8 +196,6 @@ def _tell(world: World) -> None:
         f" keep-out zones: {len(world.zones)}."
     )
     if world.map is not None:
-        from sim.world.maps import free_cells
-
         free = free_cells(world.map).sum() * world.map.resolution**2
         print(f"Its map shows {free:.1f} m² of free floor.")
     start = world.start
@@ -209,13 +207,6 @@ def _tell(world: World) -> None:
 
 
 def _export(options: argparse.Namespace) -> int:
-    from nl2robot.paths import data_file
-    from nl2robot.station.drawn_zones import DrawnZones
-    from nl2robot.station.named_places import NamedPlaces, not_in
-    from nl2robot.station.world_file import exported, write_world
-    from sim.world.builtin import BUILTIN
-    from sim.world.loading import load_world
-
     world = load_world(options.world)
     kept_places, kept_zones = NamedPlaces(), DrawnZones(data_file("zones.yaml"))
     named, zones = tuple(not_in(world, kept_places.of(world))), kept_zones.of(world)

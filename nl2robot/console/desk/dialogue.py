@@ -18,6 +18,7 @@ import msgspec
 
 from grammar.plan import from_data
 from grammar.planning.planner import Interrupted
+from grammar.samples import samples
 from nl2robot.console.desk.thought import Thought
 from nl2robot.console.visitor import texts
 from nl2robot.errors import UserError
@@ -343,8 +344,6 @@ class Dialogue:
 
     def topics(self, language: str) -> dict[str, list[str]]:
         """What can be said here, by topic."""
-        from grammar.samples import samples
-
         return samples(self._backstage.runner.knowledge.lexicon(language), language)
 
     # --- review

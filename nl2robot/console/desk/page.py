@@ -10,6 +10,8 @@ from __future__ import annotations
 from nl2robot.console.desk.desk import Desk
 from nl2robot.console.desk.dialogues import Dialogues
 from nl2robot.console.desk.run_view import run_view
+from nl2robot.console.floor import page as map_page
+from nl2robot.console.frame import frame
 from nl2robot.paths import data_folder
 from nl2robot.station.part import Backstage, Part
 from nl2robot.wire import service
@@ -21,9 +23,6 @@ def part(backstage: Backstage) -> Part:
 
     def pages() -> None:
         from nicegui import ui
-
-        from nl2robot.console.floor import page as map_page
-        from nl2robot.console.frame import frame
 
         @ui.page("/")
         def desk() -> None:

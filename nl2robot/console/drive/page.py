@@ -5,14 +5,13 @@ Its inside is JavaScript, under `static/drive`; what it does goes through `servi
 
 from __future__ import annotations
 
+from nl2robot.console.frame import frame
 from nl2robot.station.part import Backstage, Part
 
 
 def part(backstage: Backstage) -> Part:
     def pages() -> None:
         from nicegui import ui
-
-        from nl2robot.console.frame import frame
 
         @ui.page("/drive")
         def drive() -> None:

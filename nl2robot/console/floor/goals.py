@@ -21,6 +21,8 @@ from nl2robot.console.visitor import LANGUAGES, texts
 from nl2robot.errors import UserError
 from nl2robot.station.part import Backstage, Part
 from nl2robot.wire import service
+from sim.hospital import chart_of
+from sim.spots import is_reached, room_near, zone_around
 
 if TYPE_CHECKING:
     from sim.world.model import World
@@ -123,7 +125,6 @@ def free_spot(world: World, x: float, y: float, within: float) -> tuple[float, f
         raise UserError("That is no spot on this map. Click on the map.")
     if not world.has_geometry:
         return x, y, 0.0  # a robot with a map of its own, of which nothing is known here
-    from sim.spots import is_reached, room_near, zone_around
 
     spot = room_near(world, x, y, within)
     if spot is None:
@@ -144,8 +145,6 @@ def free_spot(world: World, x: float, y: float, within: float) -> tuple[float, f
 
 def _has_room(world: World, x: float, y: float) -> bool:
     """Whether the robot could stand right there, if only in people's way."""
-    from sim.hospital import chart_of
-
     return chart_of(world).nearest_free(x, y) == (x, y)
 
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nicegui import ui
-
 from nl2robot.console.desk.desk import Desk
 from nl2robot.console.frame import frame
 from nl2robot.station.part import Backstage
@@ -17,6 +15,7 @@ if TYPE_CHECKING:
 
 def pages(backstage: Backstage, dialogues: Dialogues) -> None:
     """Register the page."""
+    from nicegui import ui
 
     @ui.page("/map")
     def map_page() -> None:

@@ -23,7 +23,10 @@ from nl2robot.paths import data_file
 from nl2robot.station.drawn_zones import DrawnZones
 from nl2robot.station.named_places import NamedByHand, NamedPlaces, not_in, with_places
 from nl2robot.station.part import Backstage, Part
+from nl2robot.station.world_file import exported
 from nl2robot.wire import service
+from robot_api.capabilities.driving import Goal
+from robot_api.robots.places import NamedPlace
 from sim.world.checks import kind_of
 from sim.world.loading import load_world
 from sim.world.model import Aliases, Place, World, WorldError, key
@@ -142,8 +145,6 @@ class Naming:
         return {"places": self.listed(), "moved": 0.0}
 
     def exported(self) -> dict[str, str]:
-        from nl2robot.station.world_file import exported
-
         zones = DrawnZones(data_file("zones.yaml")).of(self._bare)
         text = exported(self._bare, self._named, zones)
         return {"file": f"{key(self._bare.name).replace(' ', '-')}.yaml", "text": text}
@@ -191,9 +192,6 @@ def _as_its_file_has_it(world: World, named: tuple[NamedByHand, ...]) -> World:
 
 def _tell_driver(named: dict[str, Any], world: World) -> None:
     """Let the driver of a real robot know the places."""
-    from robot_api.capabilities.driving import Goal
-    from robot_api.robots.places import NamedPlace
-
     for place in world.places:
         pose = place.pose
         named[place.name] = NamedPlace(

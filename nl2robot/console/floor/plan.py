@@ -7,6 +7,7 @@ from typing import Any
 
 from sim.view import ThingSeen
 from sim.world.geometry import Point, Polygon
+from sim.world.maps import outlines, painted
 from sim.world.model import Door, Furniture, Person, Place, Thing, World
 
 Names = dict[str, str]
@@ -35,7 +36,6 @@ def _ground(world: World) -> Iterable[Polygon]:
     """The outlines of the free floor of an image map."""
     if world.map is None:
         return ()
-    from sim.world.maps import outlines
 
     return outlines(world.map)
 
@@ -44,7 +44,6 @@ def _map(world: World) -> list[tuple[str, list[Point]]]:
     """An image map as areas to paint one over the other: what is free, occupied, unknown."""
     if world.map is None:
         return []
-    from sim.world.maps import painted
 
     return [(what, _polygon(outline)) for what, outline in painted(world.map)]
 

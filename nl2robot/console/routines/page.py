@@ -22,6 +22,7 @@ from starlette.responses import HTMLResponse, PlainTextResponse, Response
 from starlette.routing import Route
 
 from nl2robot.console import slow_pages
+from nl2robot.console.frame import frame
 from nl2robot.console.rendering import rendered
 from nl2robot.console.routines import view as routine_view
 from nl2robot.console.routines.view import Body, Card, Viewer
@@ -60,8 +61,6 @@ def part(backstage: Backstage) -> Part:
 
     def pages() -> None:
         from nicegui import ui
-
-        from nl2robot.console.frame import frame
 
         def show(html: str) -> None:
             with frame(backstage, "routines") as visit:

@@ -32,6 +32,8 @@ from nl2robot.run.archive import Archive, Brief
 from nl2robot.run.kept_record import unpacked
 from nl2robot.run.runlog import Run, RunLog
 from nl2robot.station.part import Backstage
+from sim.world.loading import load_world
+from sim.world.model import WorldError
 
 MOST_EXPORTED: Final = 100_000
 """Runs in a file."""
@@ -171,8 +173,6 @@ def _floor(world: str, language: str) -> str | None:
     """The floor of a world as it is now, with the names of a language; None if it is not to be
     found any more."""
     from sim.pictures.drawing import floor_svg
-    from sim.world.loading import load_world
-    from sim.world.model import WorldError
 
     try:
         loaded = load_world(world)

@@ -21,6 +21,7 @@ from starlette.requests import Request
 
 from grammar.speech import fill, fitting, speech
 from nl2robot.console import slow_pages
+from nl2robot.console.frame import frame
 from nl2robot.console.runs import files as runs_files
 from nl2robot.console.runs import view as runs_view
 from nl2robot.console.runs.asked import PROPERTIES, Asked, BadDay, asked
@@ -58,8 +59,6 @@ def part(backstage: Backstage) -> Part:
 
 def _pages(backstage: Backstage, archive: Archive) -> None:
     from nicegui import ui
-
-    from nl2robot.console.frame import frame
 
     def show(html: str) -> None:
         with frame(backstage, "runs") as visit:

@@ -21,8 +21,8 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.run.answers import answer
 from nl2robot.run.archive import STATES, Page, state_of
 from nl2robot.run.going_on import unfinished
-from nl2robot.run.pausing import PAUSED
 from nl2robot.run.runlog import LoggedCall, Run, RunLog
+from nl2robot.run.state import PAUSED
 from nl2robot.run.trouble import call_trouble, told
 
 CALLS_SHOWN: Final = 500

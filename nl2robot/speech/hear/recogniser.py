@@ -26,7 +26,6 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
-import vosk
 
 from nl2robot.errors import UserError
 from nl2robot.models.catalogue import ModelError, find, need
@@ -35,8 +34,6 @@ from nl2robot.speech.hear.levels import Silence, gain_for
 from nl2robot.speech.hear.rescorer import Evidence, SecondEar, second_ear
 from nl2robot.speech.hear.vocabulary import spell_numbers
 from nl2robot.speech.hear.vosk_decoder import READINGS, Decoder, Scored, helpers, scored
-
-vosk.SetLogLevel(-1)  # its C++ log goes to standard error
 
 # Before and after the speech, silence: without it the model loses the first and last sounds.
 PADDING = 0.3  # seconds
@@ -160,6 +157,9 @@ class Recogniser:
         if model is None and second is None:  # there is one, but it is damaged
             raise self._unusable
         try:
+            import vosk
+
+            vosk.SetLogLevel(-1)  # its C++ log goes to standard error
             self._model = vosk.Model(str(model)) if model else None
         except Exception as error:  # vosk raises nothing more precise
             raise self._unusable from error
@@ -280,6 +280,8 @@ class Recogniser:
                 return self._idle[key].pop()
         limits = () if grammar is None else (grammar.json,)
         try:
+            import vosk
+
             kaldi = vosk.KaldiRecognizer(self._model, RATE, *limits)
         except Exception as error:
             raise self._unusable from error

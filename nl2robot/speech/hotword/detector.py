@@ -23,9 +23,11 @@ import numpy as np
 from nl2robot.errors import UserError
 from nl2robot.speech.audio import Samples
 from nl2robot.speech.embeddings import STEP, STEP_SECONDS, Embeddings, EmbeddingStream
+from nl2robot.speech.hear.recogniser import load
 from nl2robot.speech.hotword.detection import HELD, Detection
 from nl2robot.speech.hotword.head import Head, load_head, probability
 from nl2robot.speech.hotword.judge import Judge, judge_of
+from nl2robot.speech.hotword.spotting import Spotter
 from nl2robot.speech.hotword.words import WORDS, Words
 
 SMOOTH: Final = 3
@@ -154,6 +156,11 @@ class StopWord:
         self._detector.reset()
 
 
+def stop_word(language: str) -> StopWord | None:
+    """What hears the words for stop; None in a language that has none."""
+    return StopWord(language) if language in WORDS else None
+
+
 def judges(language: str, heads: Sequence[Head]) -> list[Judge | None]:
     """The second stages of these heads, where there are any."""
     return [judge_of(language, head.word, head.threshold) for head in heads]
@@ -173,8 +180,5 @@ def _words(language: str) -> Words:
 
 
 def _spotter(language: str, word: str) -> Detector:
-    from nl2robot.speech.hear.recogniser import load
-    from nl2robot.speech.hotword.spotting import Spotter
-
     _words(language)
     return Spotter(load(language), word)

@@ -12,50 +12,32 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Literal
+from typing import TYPE_CHECKING
 
+from nl2robot.speech.hear.answers import expect
 from nl2robot.speech.hear.full_duplex import FullDuplex, full_duplex
+from nl2robot.speech.hear.microphone import Microphone
+from nl2robot.speech.hear.open_microphone import OpenMicrophone
+from nl2robot.speech.hear.recogniser import load
+from nl2robot.speech.hear.replies import AtMicrophone, Replies
+from nl2robot.speech.hear.vocabulary import number_words
 from nl2robot.speech.speak.browser import Browsers
 from nl2robot.speech.speak.loudspeaker import Nowhere, Output, SoundCard, SoundError, WavFile
+from nl2robot.speech.speak.people import SimulatedVoices
 from nl2robot.speech.speak.sound_cache import KeptSounds, folder
 from nl2robot.speech.speak.speaking import Speaker, Utterance
 from nl2robot.speech.speak.text_normalisation import as_spoken
 from nl2robot.speech.speak.voices import Voice, espeak, voice
+from nl2robot.speech.speak.wishes import IN_BROWSERS, Clock, SoundFor, Wishes
 from robot_api.capabilities.sound import Ears, Sound, Voices
 from robot_api.capabilities.sound import Microphone as RobotsMicrophone
 
 if TYPE_CHECKING:
     from nl2robot.speech.audio import Samples
-    from nl2robot.speech.hear.replies import Replies
     from robot_api.driver import StopFlag
     from sim.world.model import World
-
-InBrowsers = Literal["browser"]
-IN_BROWSERS: Final[InBrowsers] = "browser"
-Clock = Callable[[], float]
-"""Seconds of simulated time."""
-SoundFor = Callable[[Clock], Sound]
-"""What a robot is given, once there is a clock that its sounds go by."""
-
-
-@dataclass(frozen=True)
-class Wishes:
-    """What is to be heard."""
-
-    speak: bool | Path | InBrowsers = False
-    """The robot speaks: on the loudspeaker, into a file, or on the pages that are open."""
-    voices: bool = False
-    """The simulated people answer aloud, and the robot has to hear them."""
-    voice: str | None = None
-    """The robot's voice, by name or kind ("piper", "espeak")."""
-    language: str = "en"
-    """The one that it begins with."""
-    microphone: bool | str = False
-    """Somebody real answers, at the microphone; or at the one with this in its name."""
-    seed: int = 0
 
 
 @contextmanager
@@ -156,8 +138,6 @@ def ears_at(world: World) -> Callable[[RobotsMicrophone], Ears]:
     def made(microphone: RobotsMicrophone) -> Ears:
         import numpy as np
 
-        from nl2robot.speech.hear.replies import AtMicrophone
-
         @contextmanager
         def opened() -> Iterator[Iterator[Samples]]:
             with microphone() as blocks:
@@ -169,26 +149,17 @@ def ears_at(world: World) -> Callable[[RobotsMicrophone], Ears]:
 
 
 def _replies(language: str, world: World) -> Replies:
-    from nl2robot.speech.hear.recogniser import load
-
     load(language)
     return _replies_here(world)
 
 
 def _replies_here(world: World) -> Replies:
-    from nl2robot.speech.hear.recogniser import load
-    from nl2robot.speech.hear.replies import Replies
-
     return Replies(load, cache(lambda language: _said_here(world, language)))
 
 
 @contextmanager
 def _ears(wishes: Wishes, replies: Replies, duplex: FullDuplex | None) -> Iterator[Ears]:
     """With `duplex`, the microphone stays open: who answers may interrupt the question."""
-    from nl2robot.speech.hear.microphone import Microphone
-    from nl2robot.speech.hear.open_microphone import OpenMicrophone
-    from nl2robot.speech.hear.replies import AtMicrophone
-
     device = wishes.microphone if isinstance(wishes.microphone, str) else None
 
     @contextmanager
@@ -226,8 +197,6 @@ def _output(wishes: Wishes, tell: Callable[[str], None], duplex: FullDuplex | No
 def _people(
     wishes: Wishes, world: World, replies: Replies, speaker: Speaker, clock: Clock
 ) -> Voices:
-    from nl2robot.speech.speak.people import SimulatedVoices
-
     return SimulatedVoices(
         replies=replies,
         genders={person.name: person.gender for person in world.people},
@@ -239,9 +208,6 @@ def _people(
 
 def _said_here(world: World, language: str) -> Sequence[str]:
     """What people may answer to any question: yes and no, numbers, what there is here."""
-    from nl2robot.speech.hear.answers import expect
-    from nl2robot.speech.hear.vocabulary import number_words
-
     named = (world.places, world.people, world.objects)
     names = [
         name

@@ -16,6 +16,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
+from grammar.speech import speech
 from nl2robot.paths import PACKAGED
 from nl2robot.speech.speak.numbers_aloud import Numbers
 
@@ -433,8 +434,6 @@ class _Normaliser:
 
     def _is_feminine(self, noun: str) -> bool:
         """As the grammar's nouns have it, else by how the word ends."""
-        from grammar.speech import speech
-
         article = speech(self.language).nouns.indefinite(noun).partition(" ")[0]
         if article in ("eine", "une"):
             return True

@@ -30,7 +30,7 @@ from grammar.planning.model.expansion import expanded
 from grammar.planning.model.prompt import vocabulary
 from grammar.planning.planner import Draft, Drafts, Watch
 from grammar.planning.turn import Turn
-from grammar.reading import NotAPlan
+from grammar.program_parser import NotAPlan
 from nl2robot.deliberation.confidence import WEIGHTS, features
 from nl2robot.deliberation.considering import consider
 from nl2robot.deliberation.deciding import ACCEPTED

@@ -16,8 +16,8 @@ from grammar.language import load_language
 from grammar.planning.model.expansion import expanded
 from grammar.planning.model.prompt import hints, vocabulary
 from grammar.planning.model.recogniser import CLARIFY, REFUSE, Partial
+from grammar.prepared import forget
 from grammar.program import write_program
-from grammar.said import forget
 from nl2robot.deliberation.paper_robot import Event
 from nl2robot.deliberation.playing import played
 from nl2robot.deliberation.staging import scenes

@@ -29,7 +29,7 @@ import yaml
 from grammar.language import languages, load_language
 from grammar.planning.model.expansion import program_of
 from grammar.planning.turn import Turn
-from grammar.reading import parse_program
+from grammar.program_parser import parse_program
 from grammar.understanding import Context
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge

@@ -25,9 +25,9 @@ from grammar.plan import Plan
 from grammar.planning.model.expansion import program_of
 from grammar.planning.model.recogniser import CLARIFY, REFUSE
 from grammar.planning.turn import Turn
-from grammar.reading import parse_program
+from grammar.prepared import forget
+from grammar.program_parser import parse_program
 from grammar.roles import FREE
-from grammar.said import forget
 from grammar.sampler import sensible
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.training.planner.corpus import files, load

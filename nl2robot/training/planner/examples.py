@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Final
 
 from grammar.planning.model.prompt import request
-from grammar.said import forget
+from grammar.prepared import forget
 from nl2robot.language_model.files import TOKENS
 from nl2robot.language_model.tokens import Tokens
 from nl2robot.training.planner.corpus import Item, files, knowledge, load

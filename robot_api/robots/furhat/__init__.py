@@ -12,26 +12,16 @@ its capabilities, `driver` what puts them together. docs/robots/furhat.md says w
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from robot_api.robots.furhat.settings import DEFAULT_PORT, FurhatSettings
-from robot_api.robots.registry import RobotKind, Setup
-
-if TYPE_CHECKING:
-    from robot_api.robots.furhat.driver import FurhatDriver
-
-
-def _connect(setup: Setup) -> FurhatDriver:
-    from robot_api.robots.furhat.driver import connect
-
-    return connect(setup)
-
+from robot_api.robots.registry import RobotKind, when_called
 
 FURHAT: Final = RobotKind(
     scheme="furhat",
     title="A Furhat, by its Realtime API",
     example="furhat://HOST",
-    connect=_connect,
+    connect=when_called("robot_api.robots.furhat.driver:connect"),
     modules=("websockets",),
     port=DEFAULT_PORT,
     section="furhat",

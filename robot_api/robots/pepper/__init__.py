@@ -17,33 +17,15 @@ Nothing here imports `qi` until a robot is connected to.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from robot_api.robots.pepper.settings import PepperSettings
-from robot_api.robots.registry import Brake, RobotKind, Setup
-
-if TYPE_CHECKING:
-    from robot_api.driver import Driver
-
-
-def _connect(setup: Setup) -> Driver:
-    from robot_api.robots.pepper.driver import connect
-
-    return connect(setup)
-
-
-def _brake(setup: Setup) -> Brake:
-    from robot_api.robots.pepper.driver import brake
-
-    return brake(setup)
-
+from robot_api.robots.registry import RobotKind, when_called
 
 PEPPER = RobotKind(
     scheme="pepper",
     title="A Pepper with NAOqi 2.5, or 2.9 with a login",
     example="pepper://HOST",
-    connect=_connect,
-    brake=_brake,
+    connect=when_called("robot_api.robots.pepper.driver:connect"),
+    brake=when_called("robot_api.robots.pepper.driver:brake"),
     modules=("qi",),
     extra="pepper",
     port=9559,

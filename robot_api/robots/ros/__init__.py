@@ -12,45 +12,15 @@ guard       a script for the robot's side that stops it when we are gone
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from robot_api.robots.registry import Brake, RobotKind, Setup
+from robot_api.robots.registry import RobotKind, when_called
 from robot_api.robots.ros.settings import RosSettings
-
-if TYPE_CHECKING:
-    from robot_api.driver import Driver
-
-
-def _ros1(setup: Setup) -> Driver:
-    from robot_api.robots.ros.driver import connect
-
-    return connect(setup, 1)
-
-
-def _ros2(setup: Setup) -> Driver:
-    from robot_api.robots.ros.driver import connect
-
-    return connect(setup, 2)
-
-
-def _ros1_brake(setup: Setup) -> Brake:
-    from robot_api.robots.ros.driver import brake
-
-    return brake(setup, 1)
-
-
-def _ros2_brake(setup: Setup) -> Brake:
-    from robot_api.robots.ros.driver import brake
-
-    return brake(setup, 2)
-
 
 ROS2 = RobotKind(
     scheme="ros2",
     title="A robot with ROS 2 and Nav2, through rosbridge",
     example="ros2://HOST:9090",
-    connect=_ros2,
-    brake=_ros2_brake,
+    connect=when_called("robot_api.robots.ros.driver:connect", 2),
+    brake=when_called("robot_api.robots.ros.driver:brake", 2),
     modules=("roslibpy",),
     extra="ros",
     port=9090,
@@ -61,8 +31,8 @@ ROS1 = RobotKind(
     scheme="ros1",
     title="A robot with ROS 1 and move_base, through rosbridge",
     example="ros1://HOST:9090",
-    connect=_ros1,
-    brake=_ros1_brake,
+    connect=when_called("robot_api.robots.ros.driver:connect", 1),
+    brake=when_called("robot_api.robots.ros.driver:brake", 1),
     modules=("roslibpy",),
     extra="ros",
     port=9090,

@@ -7,7 +7,7 @@ import pytest
 from grammar.language import load_language
 from grammar.planning.model.expansion import expanded, program_of
 from grammar.program import write_program
-from grammar.reading import NotAPlan
+from grammar.program_parser import NotAPlan
 from tests.grammar.ward import WARD, program
 
 EN, DE = load_language("en"), load_language("de")

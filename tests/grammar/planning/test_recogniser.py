@@ -18,7 +18,7 @@ from grammar.planning.model.recogniser import DEEPEST, MOST_LINES, Partial
 from grammar.planning.model.vocabulary import Vocabulary
 from grammar.planning.turn import Turn
 from grammar.program import write_program
-from grammar.reading import parse_program
+from grammar.program_parser import parse_program
 from tests.grammar.ward import WARD
 
 MODEST = settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))

@@ -24,7 +24,7 @@ MOST_KEPT: Final = 64
 """Wordings of one sentence that are remembered at once."""
 
 
-class Said:
+class Prepared:
     """Some words in a language and a world."""
 
     def __init__(self, text: str, lexicon: Lexicon, language: Language) -> None:
@@ -79,22 +79,22 @@ class _Lately(threading.local):
     """What was prepared while this thread reads one sentence."""
 
     def __init__(self) -> None:
-        self.said: dict[str, Said] = {}
+        self.prepared: dict[str, Prepared] = {}
 
 
 _lately: Final = _Lately()
 
 
-def said(text: str, lexicon: Lexicon, language: Language) -> Said:
+def prepared(text: str, lexicon: Lexicon, language: Language) -> Prepared:
     """Some words, prepared unless they were just now."""
-    known = _lately.said.get(text)
+    known = _lately.prepared.get(text)
     if known is None or known.lexicon is not lexicon or known.language is not language:
-        if len(_lately.said) >= MOST_KEPT:
+        if len(_lately.prepared) >= MOST_KEPT:
             forget()
-        known = _lately.said[text] = Said(text, lexicon, language)
+        known = _lately.prepared[text] = Prepared(text, lexicon, language)
     return known
 
 
 def forget() -> None:
     """Begin a new sentence."""
-    _lately.said.clear()
+    _lately.prepared.clear()

@@ -9,7 +9,7 @@ import msgspec
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Thing
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.registry import meaning
 from grammar.meanings.surveys import Survey, exchanged
 from grammar.plan import Condition, If, Items, Not, Recall, Step, Text

@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from grammar import plan as p
 from grammar.normal import normal
 from grammar.program import write_program
-from grammar.reading import NotAPlan, parse_program
+from grammar.program_parser import NotAPlan, parse_program
 from tests.grammar import random_plans, sensible_plans
 
 MODEST = settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))

@@ -6,7 +6,7 @@ from typing import Final
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps
-from grammar.doubts import NotUnderstood
+from grammar.errors import NotUnderstood
 from grammar.meanings.news import News
 from grammar.meanings.places import kind_places
 from grammar.meanings.searches import searched, searches

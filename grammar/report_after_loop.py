@@ -9,7 +9,7 @@ from __future__ import annotations
 from msgspec.structs import replace
 
 from grammar.discourse import Discourse
-from grammar.meanings.found_once import is_said
+from grammar.meanings.first_match import is_said
 from grammar.meanings.news import BACK
 from grammar.plan import (
     Ask,

@@ -11,13 +11,13 @@ from grammar.pieces import PRONOUNS, leading, words_listed
 
 if TYPE_CHECKING:
     from grammar.edits import Sentence
-    from grammar.reader import Reader
+    from grammar.reader import SentenceReader
 
 MOST_ENDING: Final = 3
 """Letters that an adjective may be longer than another of its forms."""
 
 
-def with_other_look(before: Sentence, new: Reader, *, instead: bool = False) -> str | None:
+def with_other_look(before: Sentence, new: SentenceReader, *, instead: bool = False) -> str | None:
     """ "no, the red one": the last thing with another word for how it looks. `instead`: only
     if there is a word for that already."""
     language, lexicon = before.reader.language, before.reader.lexicon
@@ -59,7 +59,7 @@ def with_other_look(before: Sentence, new: Reader, *, instead: bool = False) -> 
     return before.with_words(head, head + 1, f"{look} {noun}" if first_noun else f"{noun} {look}")
 
 
-def one_told_apart(before: Sentence, new: Reader) -> Reader | None:
+def one_told_apart(before: Sentence, new: SentenceReader) -> SentenceReader | None:
     """ "the one in the lobby": the last thing or kind of person, with what tells it from others."""
     ones = words_listed(new.language, "ones")
     those = (each for each in reversed(before.pieces()) if each.rule in ("thing", "person_ref"))
@@ -75,7 +75,7 @@ def one_told_apart(before: Sentence, new: Reader) -> Reader | None:
     return None
 
 
-def thing_alone(before: Sentence, new: Reader) -> Reader | None:
+def thing_alone(before: Sentence, new: SentenceReader) -> SentenceReader | None:
     """The thing of a command that names nothing else, and is another one of what was spoken
     of: "take the red cup"."""
     pieces = [each for each in type(before)(new).pieces() if each.means not in PRONOUNS]

@@ -12,11 +12,11 @@ from grammar import plan as p
 from grammar.identifiers import speaks_of
 from grammar.kinds import is_list, is_record
 from grammar.pauses import may_end
-from grammar.reading import CodeStep, Function
+from grammar.program_parser import CodeStep, Function
 from grammar.roles import SORTS, role
 from grammar.speech import fill, fitting, gaps
-from grammar.told import Told
-from grammar.told_values import ValueTeller, as_call, signed, sort_of
+from grammar.telling.layout import Told
+from grammar.telling.values import ValueTeller, as_call, signed, sort_of
 from grammar.traversal import nodes, walk
 from grammar.which_time import asks_only_which_time
 from robot_api.methods import METHODS
