@@ -14,7 +14,7 @@ from typing import Any
 
 import msgspec
 
-FOLDER = Path(__file__).with_name("languages")
+from grammar.languages import registry
 
 _GAP = re.compile(r"\{(\w+)(?:!(\w+))?\}")
 _QUOTED = re.compile(r"(„[^“]*“|“[^”]*”|«[^»]*»|`[^`]*`)")
@@ -193,23 +193,29 @@ class Speech(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return "".join(parts)
 
 
-def languages() -> list[str]:
-    """The codes of the languages that plans can be explained in."""
-    return sorted(path.parent.name for path in FOLDER.glob("*/explain.yaml"))
-
-
 @lru_cache
 def speech(language: str) -> Speech:
-    """The phrases of a language. Raises `LookupError` if there are none for it."""
+    """The phrases of a language; what one that somebody added has no words for, in English. Raises
+    `UnknownLanguage`; `msgspec.ValidationError` where something is of the wrong shape."""
+    data = _read(registry.folder_of(language))
+    if not registry.is_ours(language):
+        data = under(data, _read(registry.folder_of(registry.ENGLISH)))
+    return msgspec.convert(data, Speech)
+
+
+def _read(folder: Path) -> Any:
     import yaml
 
-    path = FOLDER / language / "explain.yaml"
-    if language not in languages():
-        raise LookupError(f"There are no explanations in the language {language!r} yet.")
-    data: Any = yaml.load(
-        path.read_text(encoding="utf-8"), Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-    )
-    return msgspec.convert(data, Speech)
+    path = folder / "explain.yaml"
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    return yaml.load(path.read_text(encoding="utf-8"), Loader=loader) if path.exists() else {}
+
+
+def under(data: Any, english: Any) -> Any:
+    """What stands in one, and what only the other has besides."""
+    if not (isinstance(data, dict) and isinstance(english, dict)):
+        return data
+    return {**english, **{key: under(value, english.get(key)) for key, value in data.items()}}
 
 
 def gaps(pattern: str) -> set[str]:

@@ -9,9 +9,10 @@ from hypothesis import HealthCheck, given, settings
 
 from grammar import plan as p
 from grammar.explain import explain, explain_program, explain_steps
+from grammar.language import languages
 from grammar.program import write_program
 from grammar.reading import parse_program, read_program
-from grammar.speech import gaps, languages, speech
+from grammar.speech import gaps, speech
 from grammar.traversal import walk
 from robot_api.methods import METHODS
 from tests.grammar.random_plans import plans
