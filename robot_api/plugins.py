@@ -13,12 +13,12 @@ from __future__ import annotations
 
 import functools
 import sys
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from robot_api.errors import cause
 
@@ -87,6 +87,23 @@ class Plugin:
         )
 
 
+_Found = TypeVar("_Found")
+
+
+def remembered(find: Callable[[], _Found]) -> Callable[[], _Found]:
+    """What is looked for in packages, looked for once: until Python looks for them elsewhere."""
+    found: dict[tuple[str, ...], _Found] = {}
+
+    @functools.wraps(find)
+    def once() -> _Found:
+        where = tuple(sys.path)
+        if where not in found:
+            found[where] = find()
+        return found[where]
+
+    return once
+
+
 def plugins(group: str, ours: Collection[str] = ()) -> dict[str, Plugin]:
     """What packages add to a group, by name, without what is called as one of `ours` is."""
     return {name: plugin for name, plugin in _named(group).items() if name not in ours}
@@ -103,15 +120,15 @@ def left_out(group: str, ours: Collection[str]) -> dict[str, str]:
 
 def _named(group: str) -> dict[str, Plugin]:
     found: dict[str, Plugin] = {}
-    for point in _points(tuple(sys.path)):
+    for point in _points():
         if point.group == group:
             package = point.dist.name if point.dist is not None else point.value
             found.setdefault(point.name, Plugin(point.name, group, package, point))
     return dict(sorted(found.items()))
 
 
-@functools.lru_cache(maxsize=1)
-def _points(path: tuple[str, ...]) -> tuple[EntryPoint, ...]:
-    """Those of our groups, where Python looks for packages now; that takes 50 ms, once."""
+@remembered
+def _points() -> tuple[EntryPoint, ...]:
+    """All of our groups; looking through the packages takes 50 ms."""
     everything = entry_points()
     return tuple(point for group in GROUPS for point in everything.select(group=group))

@@ -14,13 +14,12 @@ from __future__ import annotations
 
 import functools
 import re
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from robot_api.plugins import LANGUAGES, PluginError, left_out, plugins
+from robot_api.plugins import LANGUAGES, PluginError, left_out, plugins, remembered
 
 FOLDER: Final = Path(__file__).parent
 ENGLISH: Final = "en"
@@ -53,8 +52,13 @@ def ours() -> list[str]:
 
 def added() -> Added:
     """Those of other packages, and of whoever tries one out."""
-    found = _added(tuple(sys.path))
+    found = _added()
     return Added({**found.folders, **_TRIED}, found.troubles)
+
+
+def codes() -> tuple[str, ...]:
+    """Of all of them, usable or not, English first."""
+    return tuple(sorted({*ours(), *added().folders}, key=lambda code: (code != ENGLISH, code)))
 
 
 def try_out(code: str, folder: Path) -> None:
@@ -101,8 +105,8 @@ def _ours(folder: Path) -> list[str]:
     )
 
 
-@functools.lru_cache(maxsize=1)
-def _added(path: tuple[str, ...]) -> Added:
+@remembered
+def _added() -> Added:
     folders: dict[str, Path] = {}
     troubles = left_out(LANGUAGES, ours())
     for code, plugin in plugins(LANGUAGES, ours()).items():

@@ -12,9 +12,18 @@ from urllib.parse import unquote
 import yaml
 from starlette.requests import HTTPConnection
 
+from grammar.language import languages
+from grammar.languages import registry
+from nl2robot.texts import brought
+from robot_api.capabilities.languages import language_data
 from robot_api.serving.access import Guest
 
-LANGUAGES: Final = {"en": "English", "de": "Deutsch", "fr": "Français"}
+LANGUAGES: Final = {
+    code: language_data(code).own_name or code
+    for code in registry.codes()
+    if code in languages()
+}
+"""What the pages can be seen in, each with what it calls itself."""
 TEXTS: Final = Path(__file__).parent / "texts"
 LONGEST_NAME: Final = 60
 
@@ -77,7 +86,9 @@ def _language(request: HTTPConnection) -> str:
 
 @cache
 def texts(page: str, language: str) -> Mapping[str, str]:
-    """The texts of a page in a language."""
+    """The texts of a page in a language; in English what a language that somebody added has none
+    for."""
     file = TEXTS / f"{page}.yaml"
     said: dict[str, Any] = yaml.safe_load(file.read_text(encoding="utf-8"))
-    return {key: ways[language] for key, ways in said.items()}
+    theirs = brought(language, f"console/{page}")
+    return {key: ways.get(language) or theirs.get(key, ways["en"]) for key, ways in said.items()}

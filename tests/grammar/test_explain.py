@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 
 from grammar import plan as p
 from grammar.explain import explain, explain_program, explain_steps
-from grammar.language import languages
+from grammar.language import UnknownLanguage, languages
 from grammar.program import write_program
 from grammar.reading import parse_program, read_program
 from grammar.speech import gaps, speech
@@ -269,7 +269,7 @@ def test_nothing_to_do() -> None:
 
 
 def test_an_unknown_language_is_said_so() -> None:
-    with pytest.raises(LookupError, match="tlh"):
+    with pytest.raises(UnknownLanguage, match="tlh"):
         explain(p.Plan(()), "tlh")
 
 
