@@ -19,9 +19,7 @@ from robot_api.capabilities.languages import language_data
 from robot_api.serving.access import Guest
 
 LANGUAGES: Final = {
-    code: language_data(code).own_name or code
-    for code in registry.codes()
-    if code in languages()
+    code: language_data(code).own_name or code for code in registry.codes() if code in languages()
 }
 """What the pages can be seen in, each with what it calls itself."""
 TEXTS: Final = Path(__file__).parent / "texts"

@@ -15,6 +15,8 @@ from grammar.language import languages, load_language
 from grammar.plan import Ask, Call, Node, Recall
 from grammar.program import write_program
 from grammar.tidy import nodes
+from grammar.languages import registry
+from grammar.languages.checker import METHODS_FILE
 from grammar.understand import understand
 from grammar.understanding import Context, Understanding
 from robot_api.methods import METHODS
@@ -26,7 +28,7 @@ UNDERSTOOD_AT_LEAST = 0.9
 """Share of the sentences that were written before they were tried."""
 
 
-def read(name: str) -> Any:
+def read(name: str | Path) -> Any:
     return yaml.load((HERE / name).read_text(encoding="utf-8"), Loader=yaml.BaseLoader)
 
 
@@ -67,7 +69,7 @@ def test_ten_people_are_understood(file: str) -> None:
 
 @pytest.mark.parametrize("language", languages())
 def test_every_robot_method_can_be_asked_for(language: str) -> None:
-    commands = read(f"methods_{language}.yaml")
+    commands = read(registry.FOLDER / language / METHODS_FILE)
     assert commands.keys() == METHODS.keys()
     for method, sentence in commands.items():
         understood = understand(sentence, hospital(language), language)
