@@ -76,5 +76,8 @@ def stem(word: str) -> str:
 
 @functools.cache
 def evidence_of(language: Language) -> Evidence:
+    """What was counted in a language; nothing, where nobody has counted yet."""
     path = FOLDER / f"{language.code}.msgpack"
+    if not path.exists():
+        return Evidence(1.0, {}, {}, {}, [])
     return msgspec.msgpack.decode(path.read_bytes(), type=Evidence)

@@ -31,7 +31,7 @@ from grammar.normal import normal
 from grammar.plan import Ask, Call, Plan
 from grammar.program import write_program
 from grammar.reading import NotAPlan, parse_program
-from grammar.samples import samples
+from grammar.samples import filled, samples
 from grammar.speech import speech
 from grammar.traversal import nodes
 from grammar.understand import understand
@@ -279,13 +279,16 @@ def _of_methods(pack: Language, path: Path, lexicon: Lexicon) -> Iterator[Findin
         return
     commands = {key.value: (value.value, key.start_mark.line + 1) for key, value in _entries(root)}
     for method, (sentence, line) in commands.items():
-        plan, wrong = _understood(str(sentence), lexicon, pack)
+        said = filled(str(sentence), lexicon, pack)
+        if said is None:  # nobody in this world could say it
+            continue
+        plan, wrong = _understood(said, lexicon, pack)
         if method not in METHODS:
             wrong = f"There is no robot method called {method!r}."
         elif not wrong and (plan is None or method not in _methods(plan)):
             wrong = f"This does not ask for {method!r}."
         if wrong:
-            yield Finding("error", path.name, line, f"“{sentence}”: {wrong}")
+            yield Finding("error", path.name, line, f"“{said}”: {wrong}")
     missing = METHODS.keys() - commands.keys()
     if missing:
         message = f"{len(missing)} of {len(METHODS)} methods have no command: {few(missing)}."
@@ -313,8 +316,4 @@ def _understood(sentence: str, lexicon: Lexicon, pack: Language) -> tuple[Plan |
 
 
 def _methods(plan: Plan) -> set[str]:
-    return {
-        "ask" if isinstance(each, Ask) else each.method
-        for each in nodes(plan.steps)
-        if isinstance(each, Call | Ask)
-    }
+    return {each.method for each in nodes(plan.steps) if isinstance(each, Call | Ask)}

@@ -25,9 +25,9 @@ FOLDER: Final = Path(__file__).parent
 ENGLISH: Final = "en"
 """What stands in where a language that somebody added has no words."""
 OTHERS: Final = frozenset({"explain", "methods", "robot"})
-"""Files of a language that hold no rules: the words of explanations (`grammar.speech`), a command for
-each robot method (`grammar.languages.checker`), and the words that a robot asks and is answered with
-(`robot_api.capabilities.languages`)."""
+"""Files of a language that hold no rules: the words of explanations (`grammar.speech`), a command
+for each robot method (`grammar.languages.checker`), and the words that a robot asks and is answered
+with (`robot_api.capabilities.languages`)."""
 
 _CODE: Final = re.compile(r"[a-z]{2}")
 _TRIED: Final[dict[str, Path]] = {}

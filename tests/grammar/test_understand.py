@@ -12,11 +12,12 @@ from hypothesis import strategies as st
 
 from grammar.discourse import START
 from grammar.language import languages, load_language
-from grammar.plan import Ask, Call, Node, Recall
-from grammar.program import write_program
-from grammar.tidy import nodes
 from grammar.languages import registry
 from grammar.languages.checker import METHODS_FILE
+from grammar.plan import Ask, Call, Node, Recall
+from grammar.program import write_program
+from grammar.samples import filled
+from grammar.tidy import nodes
 from grammar.understand import understand
 from grammar.understanding import Context, Understanding
 from robot_api.methods import METHODS
@@ -71,7 +72,9 @@ def test_ten_people_are_understood(file: str) -> None:
 def test_every_robot_method_can_be_asked_for(language: str) -> None:
     commands = read(registry.FOLDER / language / METHODS_FILE)
     assert commands.keys() == METHODS.keys()
-    for method, sentence in commands.items():
+    for method, command in commands.items():
+        sentence = filled(command, hospital(language), load_language(language))
+        assert sentence is not None, f"Nobody in the hospital could say: {command}"
         understood = understand(sentence, hospital(language), language)
         assert understood.plan is not None, f"{sentence}: {understood.message}"
         used = [
