@@ -14,7 +14,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
-BLOCK = re.compile(r"^```(console|python title=\"([\w.]+)\")\n(.*?)^```$", re.M | re.S)
+BLOCK = re.compile(r"^```(console|\w+ title=\"([\w./]+)\")\n(.*?)^```$", re.M | re.S)
 
 
 def commands(block: str) -> Iterator[tuple[str, list[str]]]:
@@ -38,6 +38,7 @@ def test_a_tutorial_says_what_happens(page: Path, tmp_path: Path) -> None:
     ran = 0
     for kind, name, text in BLOCK.findall(page.read_text("utf-8")):
         if kind != "console":
+            (work / name).parent.mkdir(exist_ok=True)
             (work / name).write_text(text, encoding="utf-8")
             continue
         for command, lines in commands(text):
