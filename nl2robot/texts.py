@@ -13,6 +13,7 @@ from typing import Any, Final
 
 from grammar.languages import registry
 from nl2robot.paths import PACKAGED
+from robot_api.capabilities.languages import language_data
 
 ENGLISH: Final = registry.ENGLISH
 FOLDER: Final = "texts"
@@ -26,6 +27,17 @@ def texts_in(language: str, name: str) -> Mapping[str, Any]:
     """What the file of this name in `data/` says in a language, else in English."""
     ours = _ours(name)
     return ours.get(language) or {**ours[ENGLISH], **brought(language, name)}
+
+
+def stand_in(language: str) -> str | None:
+    """What to tell somebody who speaks a language that English lends words; None for ours."""
+    if registry.is_ours(language):
+        return None
+    called = language_data(language).own_name or language
+    return (
+        f"English stands in for what {called} has no words for."
+        f" `nl2robot languages check {language}` tells what that is."
+    )
 
 
 def brought(language: str, name: str) -> Mapping[str, Any]:

@@ -1,6 +1,6 @@
 """Whether a language is as it should be: a checker for ours and for anybody's.
 
-    for finding in check_language("nl", lexicon):
+    for finding in check_language("nl", lambda: lexicon):
         print(finding)              # commands.yaml:12: There is no meaning ...
 
 An error is something that is written down and wrong; a note tells what is lacking, where English
@@ -10,7 +10,7 @@ stands in or which words nobody can say yet.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from string import Formatter
@@ -38,8 +38,8 @@ from grammar.understand import understand
 from robot_api.methods import METHODS
 
 Severity = Literal["error", "note"]
-Place = tuple[str, int]
-"""A file's name, and a line in it."""
+Place = tuple[str, int | None]
+"""A file's name, and a line in it where that is known."""
 
 KEYS: Final = frozenset(
     {"closed", "conjugation", "extended", "fillers", "help", "kinds", "known_by", "lists"}
@@ -55,7 +55,7 @@ DIGITS: Final = frozenset(range(10))
 MOST_NAMED: Final = 8
 """Names in a sentence; of more it is said how many there are."""
 
-_RULE: Final = re.compile(r"<(\w+)>|rule '(\w+)'")
+_QUOTED: Final = re.compile(r"'(.+?)'(?!\w)|(<\w+>)")
 
 
 @dataclass(frozen=True)
@@ -72,9 +72,9 @@ class Finding:
         return f"{where}: {self.message}"
 
 
-def check_language(code: str, lexicon: Lexicon) -> list[Finding]:
-    """What is wrong with the language of this code, and what it lacks, with the names of a world in
-    its samples. Raises `UnknownLanguage`."""
+def check_language(code: str, names: Callable[[], Lexicon]) -> list[Finding]:
+    """What is wrong with the language of this code, and what it lacks; `names`, those of a world as
+    the language has them, stand in its samples. Raises `UnknownLanguage`."""
     folder, files = registry.folder_of(code), registry.files_of(code)
     places: dict[tuple[str, str], Place] = {}
     found: list[Finding] = []
@@ -92,8 +92,9 @@ def check_language(code: str, lexicon: Lexicon) -> list[Finding]:
         pack = load_language(code)
         own = put_together({path: path.read_bytes() for path in files})
     except RuleError as error:
-        return [*found, _of_rules(error, folder, places)]
-    found += _of_slots(pack, lexicon, places)
+        return [*found, _of_rules(error, files)]
+    lexicon = names()
+    found += _of_slots(pack, lexicon, files)
     found += _of_phrases(pack, own.get("phrases", {}), places)
     found += _of_answers(pack)
     wrong = list(_of_explanations(code, folder))
@@ -148,24 +149,31 @@ def _of_meanings(entries: yaml.Node, file: str) -> Iterator[Finding]:
                 yield Finding("error", file, value.start_mark.line + 1, message)
 
 
-def _of_rules(error: RuleError, folder: Path, places: Mapping[tuple[str, str], Place]) -> Finding:
-    """What stood in the way when the rules were put together, where its rule stands."""
-    named = _RULE.search(str(error))
-    rule = (named[1] or named[2]) if named else ""
-    file, line = places.get(("rules", rule), (folder.name, None))
+def _of_rules(error: RuleError, files: Sequence[Path]) -> Finding:
+    """What stood in the way when the rules were put together: where what it names last stands."""
+    named = [quoted or rule for quoted, rule in _QUOTED.findall(str(error))]
+    places = (_place_of(each, files) for each in reversed(named))
+    file, line = next((place for place in places if place[1] is not None), (files[0].name, None))
     return Finding("error", file, line, f"{str(error)[:1].upper()}{str(error)[1:]}.")
 
 
-def _of_slots(
-    pack: Language, lexicon: Lexicon, places: Mapping[tuple[str, str], Place]
-) -> Iterator[Finding]:
+def _place_of(text: str, files: Sequence[Path]) -> Place:
+    """The first line that a text stands in."""
+    for path in files:
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            if text in line:
+                return path.name, number
+    return files[0].name, None
+
+
+def _of_slots(pack: Language, lexicon: Lexicon, files: Sequence[Path]) -> Iterator[Finding]:
     """Rules that nothing can be said by, and the one that all begin with."""
     if "utterance" not in pack.rules:
         yield Finding("error", pack.code, None, "There is no rule 'utterance', which all else is.")
     known = names_of(pack, lexicon).tries.keys() | _open_slots()
     for rule in pack.rules:
         for slot in sorted(_slots(pack, rule) - known):
-            file, line = places.get(("rules", rule), (pack.code, None))
+            file, line = _place_of(f"{{{slot}", files)
             message = f"Nothing can stand for {{{slot}}}: give it a list of that name."
             yield Finding("error", file, line, message)
 

@@ -99,7 +99,7 @@ def _read(path: Path) -> dict[str, Any]:
 
 def check(code: str, world: World) -> list[Finding]:
     """What is wrong with a language, and what it lacks. Raises `UnknownLanguage`."""
-    found = check_language(code, names(world, code))
+    found = check_language(code, lambda: names(world, code))
     if not registry.is_ours(code):
         folder = registry.folder_of(code)
         found += [*_of_robot(folder / FILE), *_of_texts(code, folder)]

@@ -58,6 +58,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return ExitStatus.OK
         options = _parser(given).parse_args(given)
         command = importlib.import_module(f"nl2robot.cli.commands.{options.command}")
+        _tell_of_stand_in(options)
         status = int(command.run(options))
         sys.stdout.flush()
         return status
@@ -129,6 +130,16 @@ def _prepare() -> None:
         for name in ("SIGTERM", "SIGHUP"):
             if hasattr(signal, name):
                 signal.signal(getattr(signal, name), signal.default_int_handler)
+
+
+def _tell_of_stand_in(options: argparse.Namespace) -> None:
+    """Once, to whoever speaks a language that somebody added and that has not all words."""
+    from nl2robot.texts import stand_in
+
+    language = getattr(options, "lang", None)
+    told = stand_in(language) if isinstance(language, str) else None
+    if told is not None:
+        print(told, file=sys.stderr)
 
 
 def _let_go_of_output() -> None:
