@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, Final
 
 from grammar.languages import registry
@@ -18,6 +19,8 @@ from robot_api.capabilities.languages import language_data
 ENGLISH: Final = registry.ENGLISH
 FOLDER: Final = "texts"
 """In the folder of a language that is added."""
+CONSOLE: Final = Path(__file__).parent / "console" / "texts"
+"""The texts of the pages, by page and name."""
 BY_LANGUAGE: Final = ("answers", "courtesies", "going_on", "risks", "sightings", "terminal")
 """The files of `data/` that may be brought so."""
 

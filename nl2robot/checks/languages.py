@@ -15,12 +15,11 @@ from grammar.languages import registry
 from grammar.languages.checker import Finding, check_language, few, unreadable
 from grammar.lexicon import Lexicon
 from grammar.samples import samples
-from nl2robot.console.visitor import TEXTS
 from nl2robot.knowledge import Knowledge
 from nl2robot.models import catalogue
 from nl2robot.paths import PACKAGED
 from nl2robot.speech.speak.voices import voices
-from nl2robot.texts import BY_LANGUAGE, ENGLISH, FOLDER, brought
+from nl2robot.texts import BY_LANGUAGE, CONSOLE, ENGLISH, FOLDER, brought
 from robot_api.capabilities.languages import FILE, Faulty, language_data, read_added
 from robot_api.drivers import simulated
 from sim.simulation import Simulation
@@ -85,7 +84,7 @@ def _percent(code: str) -> int:
 def _english() -> dict[str, Mapping[str, Any]]:
     """All that the application says in English, by the name of its file."""
     data = {name: _read(PACKAGED / f"{name}.yaml")[ENGLISH] for name in BY_LANGUAGE}
-    pages = {f"console/{path.stem}": _read(path) for path in sorted(TEXTS.glob("*.yaml"))}
+    pages = {f"console/{path.stem}": _read(path) for path in sorted(CONSOLE.glob("*.yaml"))}
     return {**data, **pages}
 
 

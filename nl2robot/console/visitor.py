@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Any, Final, Literal
 from urllib.parse import unquote
 
@@ -14,7 +13,7 @@ from starlette.requests import HTTPConnection
 
 from grammar.language import languages
 from grammar.languages import registry
-from nl2robot.texts import brought
+from nl2robot.texts import CONSOLE, brought
 from robot_api.capabilities.languages import language_data
 from robot_api.serving.access import Guest
 
@@ -22,7 +21,6 @@ LANGUAGES: Final = {
     code: language_data(code).own_name or code for code in registry.codes() if code in languages()
 }
 """What the pages can be seen in, each with what it calls itself."""
-TEXTS: Final = Path(__file__).parent / "texts"
 LONGEST_NAME: Final = 60
 
 Look = Literal["auto", "light", "dark"]
@@ -86,7 +84,7 @@ def _language(request: HTTPConnection) -> str:
 def texts(page: str, language: str) -> Mapping[str, str]:
     """The texts of a page in a language; in English what a language that somebody added has none
     for."""
-    file = TEXTS / f"{page}.yaml"
+    file = CONSOLE / f"{page}.yaml"
     said: dict[str, Any] = yaml.safe_load(file.read_text(encoding="utf-8"))
     theirs = brought(language, f"console/{page}")
     return {key: ways.get(language) or theirs.get(key, ways["en"]) for key, ways in said.items()}
