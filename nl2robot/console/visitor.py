@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 from typing import Any, Final, Literal
 from urllib.parse import unquote
 
@@ -80,11 +81,15 @@ def _language(request: HTTPConnection) -> str:
     return "en"
 
 
-@cache
 def texts(page: str, language: str) -> Mapping[str, str]:
     """The texts of a page in a language; in English what a language that somebody added has none
     for."""
-    file = CONSOLE / f"{page}.yaml"
+    return texts_of(CONSOLE / f"{page}.yaml", language)
+
+
+@cache
+def texts_of(file: Path, language: str) -> Mapping[str, str]:
+    """The same of a page whose texts are in this file."""
     said: dict[str, Any] = yaml.safe_load(file.read_text(encoding="utf-8"))
-    theirs = brought(language, f"console/{page}")
+    theirs = brought(language, f"console/{file.stem}") if file.parent == CONSOLE else {}
     return {key: ways.get(language) or theirs.get(key, ways["en"]) for key, ways in said.items()}
