@@ -40,6 +40,7 @@ COMMANDS = {
     "test": "check canned utterances against what they should do",
     "lint": "look for names in a world that cannot be said or told apart",
     "models": "speech models: list, get, verify",
+    "voices": "the voices of this machine by language, and a check of one",
     "paraphrases": "measure how well commands with logical forms are understood",
     "bench": "measure how fast everything is on this machine",
     "demo": "a typed and a spoken command in the simulated hospital, with pictures",
