@@ -34,6 +34,7 @@ COMMANDS = {
     "accounts": "who may come in to the server here: people, and tablets by a QR code",
     "robots": "the kinds of robots there are drivers for, and a check of one robot",
     "languages": "what each language has, and a check of one",
+    "planners": "what turns words into plans here, and a check of one",
     "pages": "the pages of the console that other packages add, and a check of one",
     "log": "show past runs, and replay them in the simulator",
     "world": "begin a world from a robot's map, check one, put what was drawn into its file",
