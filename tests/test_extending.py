@@ -84,9 +84,9 @@ def test_the_planner_of_the_page_plans_and_keeps_to_what_is_promised(
     installed(site, plugins.PLANNERS, "night_planner.py")
     assert main(["translate", "--planner", "night", "please say good night"]) == 0
     assert 'robot.say("Good night.")' in capsys.readouterr().out
-    assert main(["planners", "check", "night"]) == 0
-    assert main(["planners"]) == 0
-    assert "night\n" in capsys.readouterr().out
+    assert main(["plugins", "check", "planner", "night"]) == 0
+    assert main(["plugins"]) == 0
+    assert "planner night, of the package ward-extra\n" in capsys.readouterr().out
 
 
 BAD_PLANNER = """
@@ -118,7 +118,7 @@ def test_what_is_wrong_with_a_planner_is_told(
 ) -> None:
     monkeypatch.setattr("nl2robot.translate.planner_checker.ENDS_WITHIN", 0.1)
     site(plugins.PLANNERS, "bad = bad_planner:Bad", {"bad_planner.py": BAD_PLANNER})
-    assert main(["planners", "check", "bad"]) == 1
+    assert main(["plugins", "check", "planner", "bad"]) == 1
     told = capsys.readouterr().out
     for wrong in (
         "It prints: 'thinking'",
@@ -138,7 +138,7 @@ def test_a_planner_that_cannot_be_made_is_a_sentence_and_ours_goes_on(
     site(plugins.PLANNERS, "bad = bad_planner:broken", {"bad_planner.py": BAD_PLANNER})
     with pytest.raises(UserError, match=r"'bad' of the package ward-extra.*no weights.*uninstall"):
         planners.planner("bad")
-    assert main(["planners"]) == 0
+    assert main(["plugins"]) == 0
     assert "no weights" in capsys.readouterr().out
     assert main(["translate", "stop"]) == 0
 
@@ -210,7 +210,7 @@ def test_the_page_of_the_page_is_in_the_console_and_keeps_to_what_is_promised(
     site: Site, tmp_path: Path
 ) -> None:
     installed(site, plugins.PAGES, "ward_visits.py", "ward_visits.yaml")
-    checked = check("pages", "check", "visits")
+    checked = check("plugins", "check", "page", "visits")
     assert (checked.returncode, checked.stdout) == (0, "It keeps to what is promised.\n")
     with serving(tmp_path / "home") as served:
 
@@ -255,7 +255,7 @@ def part(backstage):
 def test_what_is_wrong_with_a_page_is_told(site: Site) -> None:
     texts = "title: {en: Odd, de: Seltsam}\nso: {en: 'So {many}', de: 'So', fr: 'Tant'}\n"
     site(plugins.PAGES, "odd = odd_page:part", {"odd_page.py": WRONG_PAGE, "odd_page.yaml": texts})
-    checked = check("pages", "check", "odd")
+    checked = check("plugins", "check", "page", "odd")
     assert checked.returncode == 1
     for wrong in (
         "The service 'odd.do' does not say what it does.",
