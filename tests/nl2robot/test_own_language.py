@@ -16,7 +16,7 @@ from grammar.speech import speech
 from grammar.understand import understand
 from nl2robot.checks.languages import check
 from nl2robot.cli.main import main
-from nl2robot.console.visitor import texts
+from nl2robot.console.visitor import texts, texts_of
 from nl2robot.knowledge import DEFAULT_WORLD
 from nl2robot.texts import texts_in
 from robot_api.driver import StopFlag
@@ -38,7 +38,7 @@ Install = Callable[..., None]
 @pytest.fixture
 def pip_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Install]:
     """Forgets what was known of such packages, before and after."""
-    known = (load_language, speech, texts, texts_in)
+    known = (load_language, speech, texts_of, texts_in)
 
     def forget() -> None:
         for each in known:
