@@ -15,9 +15,9 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from grammar import plan as p
-from grammar.language import load_language
+from grammar.language import load_language, speech
 from grammar.program_parser import read_program
-from grammar.speech import Speech, speech
+from grammar.speech import Speech
 from grammar.telling.layout import Told, listed, sentences
 from grammar.telling.steps import Teller
 

@@ -12,8 +12,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final
 
+from grammar.language import languages, speech
 from grammar.layout import Prefix, String, lay_out
-from grammar.speech import NumberWords, languages, speech
+from grammar.speech import NumberWords
 
 
 @dataclass(frozen=True)

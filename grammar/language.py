@@ -1,4 +1,4 @@
-"""A language as data: reads `grammar/languages/<code>/*.yaml` and compiles its rules.
+"""A language as data: reads the files of its folder (`grammar.languages`) and compiles its rules.
 
 Every file may hold any of these keys; those of all files are put together:
 
@@ -19,6 +19,7 @@ Every file may hold any of these keys; those of all files are put together:
     help          topics with example phrases
     methods       what is said of a robot method, besides those of `explain.yaml` (`grammar.speech`)
     sayings       what else people say, for the recogniser
+    known_by      words by which a language that is added is known while another is spoken
 """
 
 from __future__ import annotations
@@ -36,7 +37,10 @@ import msgspec
 import yaml
 
 from grammar.cache import kept
+from grammar.languages import registry
+from grammar.languages.registry import UnknownLanguage as UnknownLanguage
 from grammar.network import Network, Production, RuleError, compile_rules
+from grammar.speech import Speech, explained
 from grammar.templates import (
     NOTHING,
     Choice,
@@ -50,16 +54,10 @@ from grammar.templates import (
 from grammar.tokens import Spelling, words_of, words_of_template
 from grammar.verbs import forms, ordered
 
-_FOLDER: Final = Path(__file__).parent / "languages"
-_NOT_RULES: Final = frozenset({"explain"})
 _COMPILED: Final = frozenset(
     {"rules", "verbs", "conjugation", "orders", "lists", "fillers", "closed"}
 )
 """Keys that only matter when a language is compiled."""
-
-
-class UnknownLanguage(ValueError):
-    """There is no folder for this language."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +83,7 @@ class Language:
     """More templates like these, which nobody is shown."""
     methods: Mapping[str, Any]
     """robot method -> what is said of it (`grammar.speech`)"""
+    known_by: tuple[str, ...]
     words: frozenset[str]
     """Normal forms of all words of rules and lists."""
     spelled_words: frozenset[str]
@@ -141,54 +140,115 @@ def spoken_name(name: str, language: Language) -> str:
     return name if proper else form.format(name=name)
 
 
+@functools.lru_cache
+def speech(code: str) -> Speech:
+    """The phrases in which plans are told, with what other files of the language say of robot
+    methods. Raises as `grammar.speech.explained`, and `RuleError` where a method has two."""
+    data, methods = explained(code), load_language(code).methods
+    twice = next(iter(methods.keys() & data["methods"].keys()), None)
+    if twice is not None and registry.is_ours(code):
+        raise RuleError(f"explain.yaml and another file of {code} both speak of {twice!r}")
+    return msgspec.convert({**data, "methods": {**data["methods"], **methods}}, Speech)
+
+
 def languages() -> list[str]:
-    """The codes of the languages there are: the folders with rules and words of explanations."""
-    return sorted(
-        path.name
-        for path in _FOLDER.iterdir()
-        if (path / "control.yaml").exists() and (path / "explain.yaml").exists()
-    )
+    """The codes of the languages there are: ours, and those of other packages that can be used."""
+    return sorted((*registry.ours(), *(code for code in registry.added().folders if usable(code))))
+
+
+def usable(code: str) -> bool:
+    """Whether a language can be loaded; whoever made it is told why not by `languages check`."""
+    try:
+        load_language(code)
+        speech(code)
+    except (ValueError, LookupError, OSError, msgspec.MsgspecError, yaml.YAMLError):
+        return False
+    return True
+
+
+def troubles() -> dict[str, str]:
+    """By code, a sentence on each language of another package that cannot be used."""
+    found = registry.added()
+    broken = {
+        code: f"The language {code!r} in {folder} cannot be used."
+        f" Run `nl2robot languages check {code}` to see why."
+        for code, folder in found.folders.items()
+        if not usable(code)
+    }
+    return {**found.troubles, **broken}
 
 
 def known_by_word(text: str) -> list[str]:
     """The languages that a word of a text is known by everywhere: "Deutsch", "arrête". Does not
-    load them."""
+    load ours."""
     said = {word.casefold() for word in re.findall(r"[^\W\d_]+", text)}
-    return [code for code, words in _known_everywhere().items() if not said.isdisjoint(words)]
+    words = {
+        code: load_language(code).known_by for code in languages() if not registry.is_ours(code)
+    }
+    everywhere = {**words, **_known_everywhere()}
+    return [code for code, theirs in everywhere.items() if not said.isdisjoint(theirs)]
 
 
 @functools.cache
 def _known_everywhere() -> Mapping[str, list[str]]:
-    words: dict[str, list[str]] = yaml.safe_load((_FOLDER / "everywhere.yaml").read_bytes())
+    words: dict[str, list[str]] = yaml.safe_load((registry.FOLDER / "everywhere.yaml").read_bytes())
     return words
 
 
 @functools.cache
 def load_language(code: str) -> Language:
     """The language of this code. Raises `UnknownLanguage`; `RuleError` where its data are wrong."""
-    folder = _FOLDER / code
-    files = sorted(path for path in folder.glob("*.yaml") if path.stem not in _NOT_RULES)
-    if not files:
-        raise UnknownLanguage(
-            f"There is no language {code!r}. There are: {', '.join(languages())}."
-        )
-    sources = [path.read_bytes() for path in files]
+    files = registry.files_of(code)
+    english = [] if registry.is_ours(code) else registry.files_of(registry.ENGLISH)
+    sources = {path: path.read_bytes() for path in (*files, *english)}
 
     def compile_language() -> Compiled:
-        contents = [_read(path, source) for path, source in zip(files, sources, strict=True)]
-        _no_name_twice(files, contents)
-        data: dict[str, Any] = {}
-        for path, content in zip(files, contents, strict=True):
-            for key, value in content.items():
-                _merge(data, key, value, path)
+        data = put_together({path: sources[path] for path in files})
+        if english:
+            data = _completed(data, put_together({path: sources[path] for path in english}))
         return _compiled(data)
 
-    compiled = kept(f"grammar-{code}", [*sources, *_own_code()], Compiled, compile_language)
-    language = _language(code, compiled)
+    made_from = [*sources.values(), *_own_code()]
+    language = _language(code, kept(f"grammar-{code}", made_from, Compiled, compile_language))
     # Its hundred thousand objects live as long as the process: a collection that looked through
     # them all would make some sentence wait for 60 ms.
     gc.freeze()
     return language
+
+
+def put_together(sources: Mapping[Path, bytes]) -> dict[str, Any]:
+    """What the files of a language say together. Raises `RuleError`, `yaml.YAMLError`."""
+    contents = {path: _read(path, source) for path, source in sources.items()}
+    _no_name_twice(contents)
+    data: dict[str, Any] = {}
+    for path, content in contents.items():
+        for key, value in content.items():
+            _merge(data, key, value, path)
+    return data
+
+
+def _completed(data: dict[str, Any], english: dict[str, Any]) -> dict[str, Any]:
+    """A language that lacks some of its data: English phrases stand in, and what else English has
+    words for is there without any."""
+    return {
+        **data,
+        "phrases": {**english["phrases"], **data.get("phrases", {})},
+        "speech": _with_gaps(data.get("speech", {}), english["speech"]),
+        "lists": {**{name: {} for name in english["lists"]}, **data.get("lists", {})},
+    }
+
+
+def _with_gaps(data: dict[str, Any], english: dict[str, Any]) -> dict[str, Any]:
+    filled = dict(data)
+    for key, value in english.items():
+        match value:
+            case dict():
+                filled[key] = _with_gaps(data.get(key) or {}, value)
+            case list():
+                filled.setdefault(key, [])
+            case _:
+                filled.setdefault(key, value)
+    return filled
 
 
 def _own_code() -> Iterator[bytes]:
@@ -240,12 +300,12 @@ _Loader.yaml_implicit_resolvers = {
 _Loader.add_implicit_resolver("tag:yaml.org,2002:bool", re.compile("true|false"), list("tf"))
 
 
-def _no_name_twice(files: list[Path], contents: list[dict[str, Any]]) -> None:
+def _no_name_twice(contents: Mapping[Path, dict[str, Any]]) -> None:
     """Two files that call different things by one name would be merged in silence. A rule that is
     meant to get entries from several files ("command", "thing") is listed under `extended`."""
-    extended = {rule for content in contents for rule in content.get("extended", ())}
+    extended = {rule for content in contents.values() for rule in content.get("extended", ())}
     home: dict[str, Path] = {}
-    for path, content in zip(files, contents, strict=True):
+    for path, content in contents.items():
         for rule in content.get("rules", ()):
             if rule in home and rule not in extended:
                 raise RuleError(
@@ -299,6 +359,7 @@ def _language(code: str, compiled: Compiled) -> Language:
         help={topic: tuple(examples) for topic, examples in data.get("help", {}).items()},
         sayings=tuple(data.get("sayings", ())),
         methods=data.get("methods", {}),
+        known_by=tuple(data.get("known_by", ())),
         words=compiled.words,
         spelled_words=compiled.spelled_words,
     )

@@ -11,6 +11,7 @@ import functools
 from dataclasses import dataclass, field
 from typing import Final
 
+from grammar.languages import registry
 from robot_api.methods import SUGGESTED_EMOTIONS, SUGGESTED_GESTURES
 
 LIKE_ENOUGH: Final = 55
@@ -71,7 +72,7 @@ class Lexicon:
     joints: tuple[str, ...] = ()
     skills: tuple[str, ...] = ()
     """The robot's own extra skills, for `do`."""
-    languages: tuple[str, ...] = ("en", "de", "fr")
+    languages: tuple[str, ...] = field(default_factory=registry.codes)
     questions: tuple[Question, ...] = ()
     routines: tuple[Routine, ...] = ()
     """Commands that people gave a name."""

@@ -12,9 +12,9 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from grammar.language import Language, spoken_name
+from grammar.language import Language, speech, spoken_name
 from grammar.lexicon import Lexicon
-from grammar.speech import Speech, fill, speech
+from grammar.speech import Speech, fill
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ def samples(lexicon: Lexicon, language: str = "en") -> dict[str, list[str]]:
 def _samples(lexicon: Lexicon, language: Language) -> dict[str, list[str]]:
     result: dict[str, list[str]] = {}
     for topic, examples in language.help.items():
-        phrases = [filled for each in examples if (filled := _filled(each, lexicon, language))]
+        phrases = [said for each in examples if (said := filled(each, lexicon, language))]
         if phrases:
             result[topic] = phrases
     return result
@@ -44,21 +44,21 @@ def all_samples(lexicon: Lexicon, code: str = "en") -> tuple[str, ...]:
     examples = [example for topic in language.help.values() for example in topic]
     slots = {slot for one in examples for slot, _ in _slots(one)}
     most = max((len(names_for(slot, lexicon)) for slot in slots), default=1)
-    filled = (_filled(one, lexicon, language, shift) for shift in range(most) for one in examples)
+    helpful = (filled(one, lexicon, language, shift) for shift in range(most) for one in examples)
     # Each with other names: those of the world get their turn all the same.
     said = (
-        _filled(one, lexicon, language, NAMED * number + shift)
+        filled(one, lexicon, language, NAMED * number + shift)
         for number, one in enumerate(language.sayings)
         for shift in range(NAMED)
     )
-    return tuple(dict.fromkeys(each for each in (*filled, *said) if each))
+    return tuple(dict.fromkeys(each for each in (*helpful, *said) if each))
 
 
 def _slots(example: str) -> list[tuple[str, str]]:
     return _SLOT.findall(example)
 
 
-def _filled(example: str, lexicon: Lexicon, language: Language, shift: int = 0) -> str | None:
+def filled(example: str, lexicon: Lexicon, language: Language, shift: int = 0) -> str | None:
     """The example with names of the lexicon in its slots, from the one of this number on; None
     where there are none."""
     used: dict[str, int] = {}

@@ -9,16 +9,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
-from grammar.language import load_language
-from grammar.network import RuleError
-
-FOLDER = Path(__file__).with_name("languages")
+from grammar.languages import registry
 
 _GAP = re.compile(r"\{(\w+)(?:!(\w+))?\}")
 _QUOTED = re.compile(r"(„[^“]*“|“[^”]*”|«[^»]*»|`[^`]*`)")
@@ -205,27 +201,33 @@ class Speech(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return "".join(parts)
 
 
-def languages() -> list[str]:
-    """The codes of the languages that plans can be explained in."""
-    return sorted(path.parent.name for path in FOLDER.glob("*/explain.yaml"))
+def explained(language: str) -> dict[str, Any]:
+    """What `explain.yaml` of a language says; what one that somebody added has no words for, in
+    English. Raises `UnknownLanguage`; `msgspec.ValidationError` where something is of the wrong
+    shape."""
+    data = _read(registry.folder_of(language))
+    if not registry.is_ours(language):
+        data = under(data, _read(registry.folder_of(registry.ENGLISH)))
+    msgspec.convert(data, Speech)
+    return data
 
 
-@lru_cache
-def speech(language: str) -> Speech:
-    """The phrases of a language. Raises `LookupError` if there are none for it."""
+def _read(folder: Path) -> dict[str, Any]:
     import yaml
 
-    path = FOLDER / language / "explain.yaml"
-    if language not in languages():
-        raise LookupError(f"There are no explanations in the language {language!r} yet.")
-    data: Any = yaml.load(
-        path.read_text(encoding="utf-8"), Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-    )
-    methods = load_language(language).methods
-    twice = next(iter(methods.keys() & data["methods"].keys()), None)
-    if twice is not None:
-        raise RuleError(f"{path.name} and another file of {language} both speak of {twice!r}")
-    return msgspec.convert({**data, "methods": {**data["methods"], **methods}}, Speech)
+    path = folder / "explain.yaml"
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    if not path.exists():
+        return {}
+    data: dict[str, Any] = yaml.load(path.read_text(encoding="utf-8"), Loader=loader)
+    return data
+
+
+def under(data: Any, english: Any) -> Any:
+    """What stands in one, and what only the other has besides."""
+    if not (isinstance(data, dict) and isinstance(english, dict)):
+        return data
+    return {**english, **{key: under(value, english.get(key)) for key, value in data.items()}}
 
 
 def gaps(pattern: str) -> set[str]:

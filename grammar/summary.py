@@ -18,10 +18,10 @@ from typing import Final
 from grammar import plan as p
 from grammar.explain import explain
 from grammar.inference import truth
-from grammar.language import load_language
+from grammar.language import load_language, speech
 from grammar.pauses import may_end
 from grammar.program_parser import CodeStep, Function
-from grammar.speech import fill, forms, speech
+from grammar.speech import fill, forms
 from grammar.summary_sentences import Clause, Deed, Item, sentences
 from grammar.telling.steps import Teller
 from grammar.telling.values import as_call

@@ -2,29 +2,21 @@
 
 from __future__ import annotations
 
-import functools
 import locale
 import os
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
-from nl2robot.paths import PACKAGED
+from nl2robot.texts import texts_in
 
 if TYPE_CHECKING:
     from nl2robot.review.rehearsal import DryRun
     from nl2robot.translate.translation import Translation
 
-DATA: Final = PACKAGED / "terminal.yaml"
 
-
-@functools.cache
 def words_in(language: str) -> Mapping[str, Any]:
     """What the terminal says in a language; in English where it does not speak that."""
-    import yaml
-
-    words: dict[str, dict[str, Any]] = yaml.safe_load(DATA.read_text(encoding="utf-8"))
-    found: Mapping[str, Any] = words.get(language, words["en"])
-    return found
+    return texts_in(language, "terminal")
 
 
 def terminal_language() -> str:

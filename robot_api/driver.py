@@ -14,6 +14,7 @@ from typing import Any, Protocol
 
 import msgspec
 
+from robot_api.capabilities.languages import known_languages
 from robot_api.errors import Stopped
 from robot_api.methods import METHODS
 
@@ -27,7 +28,7 @@ class Capabilities(msgspec.Struct, frozen=True, kw_only=True):
     """"simulator", "emulator", "pepper" ..."""
     methods: tuple[str, ...]
     """The names from the method table that it has, its own or through a shared implementation."""
-    languages: tuple[str, ...] = ("en", "de", "fr")
+    languages: tuple[str, ...] = msgspec.field(default_factory=known_languages)
     emotions: tuple[str, ...] = ()
     gestures: tuple[str, ...] = ()
     joints: dict[str, tuple[float, float]] = {}

@@ -12,9 +12,10 @@ import pytest
 ROOT = Path(__file__).parents[1]
 OURS = {"nl2robot", "robot_api", "grammar", "sandbox", "sim"}
 TABLE = {"robot_api.methods"}
+PLUGINS = {"robot_api.plugins"}
 MAY_IMPORT = {
     "sim": set(),
-    "grammar": TABLE,
+    "grammar": TABLE | PLUGINS,
     "sandbox": TABLE | {f"robot_api.{part}" for part in ("schema", "stub", "values", "errors")},
     "robot_api": {"sim"},
     "nl2robot": OURS,
@@ -48,6 +49,8 @@ SEAMS = {
     "nl2robot.station.certificates": "the keys of a server that others can reach",
     "nl2robot.station.robot_check": "the check of a robot; `nl2robot robots` only lists them",
     "nl2robot.cli.commands.talk": "a conversation by voice, which `nl2robot chat` can be",
+    "nl2robot.console.checker": "the pages, with NiceGUI; other checks do without",
+    "nl2robot.texts": "the words of added languages, when somebody has asked for one",
     "nl2robot.cli.replaying": "the simulator; `nl2robot log` only lists runs",
     "nl2robot.cli.failures": "the errors of all layers in three languages, when there is one",
 }

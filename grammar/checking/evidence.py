@@ -84,8 +84,11 @@ def stem(word: str) -> str:
 
 @functools.cache
 def evidence_of(language: Language) -> Evidence:
+    """What was counted in a language; nothing, where nobody has counted yet."""
     path = FOLDER / f"{language.code}.msgpack"
-    counted = msgspec.msgpack.decode(path.read_bytes(), type=Evidence)
+    counted = Evidence(1.0, {}, {}, {}, [])
+    if path.exists():
+        counted = msgspec.msgpack.decode(path.read_bytes(), type=Evidence)
     newer = METHODS.keys() - counted.done.keys()
     ruled = {method: frozenset(map(stem, language.words_for(method))) for method in newer}
     return msgspec.structs.replace(counted, ruled=ruled)

@@ -35,6 +35,8 @@ COMMANDS = {
     "serve": "the robot server on one port, a simulated hospital by default",
     "accounts": "who may come in to the server here: people, and tablets by a QR code",
     "robots": "the kinds of robots there are drivers for, and a check of one robot",
+    "languages": "what each language has, and a check of one",
+    "plugins": "what other packages add, and a check of a planner, a voice or a page",
     "log": "show past runs, and replay them in the simulator",
     "world": "begin a world from a robot's map, check one, put what was drawn into its file",
     "test": "check canned utterances against what they should do",
@@ -59,6 +61,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return ExitStatus.OK
         options = _parser(given).parse_args(given)
         command = importlib.import_module(f"nl2robot.cli.commands.{options.command}")
+        _tell_of_stand_in(options)
         status = int(command.run(options))
         sys.stdout.flush()
         return status
@@ -123,6 +126,16 @@ def _prepare() -> None:
         for name in ("SIGTERM", "SIGHUP"):
             if hasattr(signal, name):
                 signal.signal(getattr(signal, name), signal.default_int_handler)
+
+
+def _tell_of_stand_in(options: argparse.Namespace) -> None:
+    """Once, to whoever speaks a language that somebody added and that has not all words."""
+    from nl2robot.texts import stand_in
+
+    language = getattr(options, "lang", None)
+    told = stand_in(language) if isinstance(language, str) else None
+    if told is not None:
+        print(told, file=sys.stderr)
 
 
 def _let_go_of_output() -> None:

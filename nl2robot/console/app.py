@@ -12,6 +12,7 @@ from starlette.responses import Response
 from starlette.staticfiles import StaticFiles
 
 from nl2robot.console.door import Doors
+from nl2robot.console.others import others
 from nl2robot.console.plain import Caught, failed, missing
 from nl2robot.paths import data_folder
 from nl2robot.station.part import Backstage, Part
@@ -26,7 +27,7 @@ PARTS: Final = (
     *("floor.localising", "drive.services", "face.codes", "face.camera", "drive.page"),
     *("face.page", "runs.page", "routines.page", "door", "devices"),
 )
-"""The modules of the parts; each has `part(backstage) -> Part`."""
+"""The modules of our parts; each has `part(backstage) -> Part`."""
 
 
 async def _missing(request: Request, error: Exception) -> Response:
@@ -53,6 +54,9 @@ class Console:
         self.parts: list[Part] = [
             import_module(f"nl2robot.console.{name}").part(backstage) for name in PARTS
         ]
+        self.others = others(backstage, self.parts)
+        self.parts += self.others.parts.values()
+        backstage.links.extend(link for part in self.parts for link in part.links)
         self.doors = Doors(backstage.entrance) if backstage.entrance else None
         self.services: dict[str, Service] = {}
         self.events: dict[str, str] = {}

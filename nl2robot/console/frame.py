@@ -16,8 +16,16 @@ from typing import Any, Final
 
 import msgspec
 
-from nl2robot.console.visitor import LANGUAGES, LONGEST_NAME, Seat, Visitor, texts, visitor_of
-from nl2robot.station.part import Backstage
+from nl2robot.console.visitor import (
+    LANGUAGES,
+    LONGEST_NAME,
+    Seat,
+    Visitor,
+    texts,
+    texts_of,
+    visitor_of,
+)
+from nl2robot.station.part import Backstage, Link
 
 PAGES: Final = {
     "desk": ("/", "M4 5h16v11H9l-5 4z"),
@@ -70,17 +78,23 @@ def frame(backstage: Backstage, page: str) -> Iterator[Visit]:
     request = ui.context.client.request
     assert request is not None
     visitor = visitor_of(request)
-    visit = Visit(visitor, texts(page, visitor.language))
+    link = next((each for each in backstage.links if each.name == page), None)
+    visit = Visit(visitor, _texts(page, link, visitor.language))
     words = texts("frame", visitor.language)
     name = _name(backstage, words)
-    ui.page_title(f"{words[page]} · {name}")
+    title = visit.words["title"] if link else words[page]
+    ui.page_title(f"{title} · {name}")
     ui.dark_mode({"auto": None, "light": False, "dark": True}[visitor.look])
     ui.add_head_html(_head(visitor, words))
-    ui.add_body_html(_header(page, name, visitor, words, backstage.entrance is not None))
+    ui.add_body_html(_header(page, name, visitor, words, backstage))
     with ui.element("div").props('id="main" tabindex="-1"').classes(f"page page-{page}"):
         if page not in ("runs", "routines"):  # whose pages have headings of their own
-            ui.html(f'<h1 class="sr">{escape(words[page])}</h1>', sanitize=False)
+            ui.html(f'<h1 class="sr">{escape(title)}</h1>', sanitize=False)
         yield visit
+
+
+def _texts(page: str, link: Link | None, language: str) -> Mapping[str, str]:
+    return texts_of(link.texts, language) if link else texts(page, language)
 
 
 def _name(backstage: Backstage, words: Mapping[str, str]) -> str:
@@ -118,15 +132,19 @@ def _data(name: str, data: Mapping[str, Any]) -> str:
 
 
 def _header(
-    page: str, name: str, visitor: Visitor, words: Mapping[str, str], entrance: bool
+    page: str, name: str, visitor: Visitor, words: Mapping[str, str], backstage: Backstage
 ) -> str:
     def said(key: str) -> str:
         return escape(words[key], quote=True)
 
+    shown = [(key, address, line, words[key]) for key, (address, line) in PAGES.items()]
+    for link in backstage.links:
+        title = texts_of(link.texts, visitor.language)["title"]
+        shown.append((link.name, link.address, escape(link.icon, quote=True), title))
     links = "".join(
         f'<a href="{address}"{" aria-current=page" if key == page else ""}>{_icon(line)}'
-        f"<span>{said(key)}</span></a>"
-        for key, (address, line) in PAGES.items()
+        f"<span>{escape(title)}</span></a>"
+        for key, address, line, title in shown
     )
     languages = "".join(
         f'<option value="{code}"{" selected" if code == visitor.language else ""}>{own}</option>'
@@ -174,7 +192,7 @@ def _header(
     {_who(visitor, words)}
     <button class="button primary">{said("close")}</button>
   </form>
-  {_door(visitor, words) if entrance else ""}
+  {_door(visitor, words) if backstage.entrance is not None else ""}
 </dialog>
 """
 

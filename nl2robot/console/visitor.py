@@ -12,10 +12,16 @@ from urllib.parse import unquote
 import yaml
 from starlette.requests import HTTPConnection
 
+from grammar.language import languages
+from grammar.languages import registry
+from nl2robot.texts import CONSOLE, brought
+from robot_api.capabilities.languages import language_data
 from robot_api.serving.access import Guest
 
-LANGUAGES: Final = {"en": "English", "de": "Deutsch", "fr": "Français"}
-TEXTS: Final = Path(__file__).parent / "texts"
+LANGUAGES: Final = {
+    code: language_data(code).own_name or code for code in registry.codes() if code in languages()
+}
+"""What the pages can be seen in, each with what it calls itself."""
 LONGEST_NAME: Final = 60
 
 Look = Literal["auto", "light", "dark"]
@@ -75,9 +81,15 @@ def _language(request: HTTPConnection) -> str:
     return "en"
 
 
-@cache
 def texts(page: str, language: str) -> Mapping[str, str]:
-    """The texts of a page in a language."""
-    file = TEXTS / f"{page}.yaml"
+    """The texts of a page in a language; in English what a language that somebody added has none
+    for."""
+    return texts_of(CONSOLE / f"{page}.yaml", language)
+
+
+@cache
+def texts_of(file: Path, language: str) -> Mapping[str, str]:
+    """The same of a page whose texts are in this file."""
     said: dict[str, Any] = yaml.safe_load(file.read_text(encoding="utf-8"))
-    return {key: ways[language] for key, ways in said.items()}
+    theirs = brought(language, f"console/{file.stem}") if file.parent == CONSOLE else {}
+    return {key: ways.get(language) or theirs.get(key, ways["en"]) for key, ways in said.items()}

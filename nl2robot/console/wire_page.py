@@ -15,10 +15,16 @@ from inspect import getdoc
 from pathlib import Path
 from typing import Any, Final
 
+from nl2robot.console.app import Console
+from nl2robot.run.runlog import RunLog
+from nl2robot.station.accounts import Accounts
+from nl2robot.station.entrance import Entrance
+from nl2robot.station.station import simulated_station
 from robot_api import errors
 from robot_api.openrpc import openrpc
 from robot_api.server import Service
 from robot_api.serving.roles import OF_THE_PROTOCOL, RIGHTS
+from sim.world.loading import load_world
 
 PAGE = Path(__file__).parents[2] / "docs" / "wire.md"
 """Where the page lives in a checkout."""
@@ -52,13 +58,6 @@ Document = Mapping[str, Any]
 
 def served() -> tuple[Document, Mapping[str, Service]]:
     """What a server with a console says of itself, and its services. Once in a process."""
-    from nl2robot.console.app import Console
-    from nl2robot.run.runlog import RunLog
-    from nl2robot.station.accounts import Accounts
-    from nl2robot.station.entrance import Entrance
-    from nl2robot.station.station import simulated_station
-    from sim.world.loading import load_world
-
     with (
         tempfile.TemporaryDirectory() as folder,
         closing(Accounts(Path(folder) / "accounts.sqlite")) as accounts,

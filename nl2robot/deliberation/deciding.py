@@ -8,11 +8,11 @@ from typing import Final
 
 from grammar.checking import Objection
 from grammar.explain import explain, explain_steps
+from grammar.language import speech
 from grammar.naming import naming
 from grammar.plan import Plan
 from grammar.planning.planner import Draft, Question, Refusal
 from grammar.planning.turn import Turn
-from grammar.speech import speech
 from nl2robot.deliberation.confidence import confidence
 from nl2robot.deliberation.considering import Considered, consider
 from nl2robot.knowledge import Knowledge

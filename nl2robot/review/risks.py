@@ -23,9 +23,9 @@ import msgspec
 from grammar.language import load_language
 from grammar.naming import naming
 from nl2robot.knowledge import Knowledge
-from nl2robot.paths import PACKAGED
 from nl2robot.review import endless
 from nl2robot.review.policy import robot_calls
+from nl2robot.texts import texts_in
 from robot_api.limits import loudest
 from robot_api.methods import METHODS
 from sim.world.model import World, key
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from sim.record import Sample
     from sim.simulation import Simulation
 
-DATA: Final = PACKAGED / "risks.yaml"
 
 WALKING_PACE: Final = 1.2
 """m/s."""
@@ -389,7 +388,4 @@ def _is_night(time: datetime) -> bool:
 @functools.cache
 def _texts(language: str) -> Mapping[str, str]:
     """The texts in a language; in English where there are none in it."""
-    import yaml
-
-    texts: dict[str, dict[str, str]] = yaml.safe_load(DATA.read_text(encoding="utf-8"))
-    return texts.get(language, texts["en"])
+    return texts_in(language, "risks")

@@ -9,7 +9,6 @@ the same calls again, in the same order, is ended before it does anything new.
 from __future__ import annotations
 
 import dataclasses
-import functools
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -21,18 +20,17 @@ from msgspec import structs
 from grammar.language import load_language
 from grammar.naming import listed, naming
 from nl2robot.knowledge import Knowledge
-from nl2robot.paths import PACKAGED
 from nl2robot.review.review import reading
 from nl2robot.run.history import NOTES
 from nl2robot.run.pausing import MEASURED, Made, rest_of
 from nl2robot.run.rounds_left import rounds
 from nl2robot.run.runlog import LoggedCall, RunLog
 from nl2robot.run.state import PAUSED
+from nl2robot.texts import texts_in
 from nl2robot.words import decimal
 from robot_api.errors import RobotError, Stopped, error_named
 from sandbox.execution import Outcome
 
-DATA: Final = PACKAGED / "going_on.yaml"
 BROKEN_OFF: Final = ("Stopped", "LostConnection", "StopNotConfirmed")
 """The errors of a call that was not done."""
 DEVIATES: Final = (
@@ -311,11 +309,6 @@ def _moved(
     return [words["turned"]] if abs(turned) > TURNED else []
 
 
-@functools.cache
 def texts(language: str) -> Mapping[str, Any]:
     """What is said here in a language; in English where there is nothing in that."""
-    import yaml
-
-    known: dict[str, dict[str, Any]] = yaml.safe_load(DATA.read_text(encoding="utf-8"))
-    found: Mapping[str, Any] = known.get(language, known["en"])
-    return found
+    return texts_in(language, "going_on")

@@ -7,7 +7,6 @@ forgotten.
 
 from __future__ import annotations
 
-import functools
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -18,9 +17,8 @@ from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.naming import joined_up, naming, place_called, the
 from grammar.planning.turn import Turn
-from nl2robot.paths import PACKAGED
+from nl2robot.texts import texts_in
 
-DATA: Final = PACKAGED / "sightings.yaml"
 GOOD_FOR: Final = 300.0
 """Seconds for which it counts that somebody was seen: people go on."""
 HOUR: Final = 3600.0
@@ -95,13 +93,12 @@ class Sightings:
         minutes ago."; None for anything else."""
         thing = sought(plan)
         seen = self._last.get(thing.lower()) if thing is not None else None
-        known = turn.language.code in _words()
-        if thing is None or seen is None or not known or self._now() - seen.at > FORGOTTEN_AFTER:
+        if thing is None or seen is None or self._now() - seen.at > FORGOTTEN_AFTER:
             return None
         return self._sentence("last_seen", thing, seen, turn)
 
     def _sentence(self, name: str, thing: str, seen: Sighting, turn: Turn) -> str:
-        words = _words()[turn.language.code]
+        words = texts_in(turn.language.code, "sightings")
         ago = self._now() - seen.at
         number = round(ago / 60) if ago < 2 * HOUR else round(ago / HOUR)
         when = "just_now" if ago < JUST_NOW else "minutes" if ago < 2 * HOUR else "hours"
@@ -132,9 +129,7 @@ def sought(plan: p.Plan) -> str | None:
 def _only_asks(turn: Turn) -> bool:
     """Whether somebody asks where, and says nothing of looking for it."""
     pack = turn.language
-    words = _words().get(pack.code)
-    if words is None:
-        return False
+    words = texts_in(pack.code, "sightings")
     said, asking = pack.tokens_of(turn.text), {*pack.tokens_of(words["asking"]), ","}
     where = [at for at, word in enumerate(said) if word in pack.tokens_of(words["where"])]
     return bool(where) and asking.issuperset(said[: where[0]])
@@ -144,11 +139,3 @@ def _called(thing: str, lexicon: Lexicon, pack: Language) -> str:
     called = naming(lexicon, pack).called(thing)
     known = any(each.name.lower() == thing.lower() for each in lexicon.people)
     return called if known else the(called, pack)
-
-
-@functools.cache
-def _words() -> Mapping[str, Mapping[str, Any]]:
-    import yaml
-
-    words: dict[str, dict[str, Any]] = yaml.safe_load(DATA.read_text(encoding="utf-8"))
-    return words

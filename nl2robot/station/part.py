@@ -1,9 +1,20 @@
-"""What the console is put together from: parts, each with its services, events and pages."""
+"""What the console is put together from: parts, each with its services, events and pages.
+
+A package adds one by an entry point of the group `nl2robot.pages` that names its
+`part(backstage) -> Part`:
+
+    [project.entry-points."nl2robot.pages"]
+    visits = "ward_visits:part"
+
+All that it adds is called as the entry point is: its services and events `visits.…`, its addresses
+`/visits` and below. Everything of the console is a part like it (`nl2robot.console.app.PARTS`).
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from starlette.routing import BaseRoute
@@ -25,6 +36,21 @@ Listener = Callable[[str, Event], None]
 STOP: Final = "stop"
 """What a part is told once for each stop, as soon as it begins, beside the robot's own events
 `stopping`, `stopped` and `stop_not_confirmed`."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Link:
+    """A page of somebody else's that the frame of every page leads to."""
+
+    name: str
+    """As `nl2robot.console.frame.frame` is told."""
+    address: str
+    """ "/visits"."""
+    icon: str
+    """The line of its icon, in a square of 24: "M4 12h16"."""
+    texts: Path
+    """Its texts, written as those of `console/texts/`: by name, then by language. "title" is what
+    the link says."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +76,8 @@ class Backstage:
     """What the driver of a real robot is sent by, if it is: told of places as people name them."""
     camera: Camera | None = None
     """The robot's, if people may look through it."""
+    links: list[Link] = field(default_factory=list)
+    """To the pages that other packages add; complete before the first page is built."""
     _listeners: list[Listener] = field(default_factory=list)
     _stops: Stops = field(default_factory=Stops)
 
@@ -84,6 +112,8 @@ class Part:
     """The kinds of events that it publishes, each with what its data says."""
     routes: Sequence[BaseRoute] = ()
     """Plain pages and files of its own."""
+    links: Sequence[Link] = ()
+    """To its pages, if they are none of the console's own."""
     pages: Callable[[], None] = _nothing
     """Registers its NiceGUI pages."""
     left: Callable[[str], None] = _nobody

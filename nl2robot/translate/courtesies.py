@@ -13,9 +13,8 @@ from typing import Any, Final
 from grammar.language import load_language
 from grammar.lexicon import Lexicon
 from grammar.tokens import tokenise
-from nl2robot.paths import PACKAGED
+from nl2robot.texts import texts_in
 
-DATA: Final = PACKAGED / "courtesies.yaml"
 ALIKE: Final = 0.79
 """How alike a sentence must be to a courtesy for a slip: of five letters one may be wrong."""
 LONGEST: Final = 12
@@ -105,9 +104,7 @@ def _likely(words: Words, known: _Courtesies) -> list[str] | None:
 
 @functools.cache
 def _courtesies(language: str) -> _Courtesies:
-    import yaml
-
-    data: dict[str, Any] = yaml.safe_load(DATA.read_text(encoding="utf-8"))[language]
+    data = texts_in(language, "courtesies")
     ways = {
         _words(way, language): kind
         for kind, about in data["kinds"].items()

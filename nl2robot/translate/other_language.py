@@ -17,6 +17,7 @@ from grammar.language import languages, load_language
 from grammar.requests import agreed
 from grammar.tokens import without_quotations
 from nl2robot.words import words_in
+from robot_api.capabilities.languages import language_data
 
 _WORD = re.compile(r"[^\W\d_]+")
 _SURE = 2
@@ -48,13 +49,19 @@ def question(code: str, language: str) -> str:
 def offer(code: str, language: str) -> str:
     """The same in one of them."""
     words = words_in(language)
-    return str(words["offer_language"]).format(name=words["language_names"][code])
+    return str(words["offer_language"]).format(name=_called(code, language))
 
 
 def hint(code: str, language: str) -> str:
     """What whoever cannot be asked may do."""
     words = words_in(language)
-    return str(words["other_language"]).format(name=words["language_names"][code], code=code)
+    return str(words["other_language"]).format(name=_called(code, language), code=code)
+
+
+def _called(code: str, language: str) -> str:
+    """What a language is called in another: as it calls itself, where nothing is known."""
+    names: dict[str, str] = words_in(language)["language_names"]
+    return names.get(code) or language_data(code).own_name or code
 
 
 def accepted(answer: str, code: str, language: str) -> bool:

@@ -15,7 +15,6 @@ import os
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from importlib.metadata import entry_points
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -26,13 +25,13 @@ from nl2robot.deliberation.sufficing import will_do
 from nl2robot.errors import UserError
 from nl2robot.models.catalogue import LARGE, PLANNER, find
 from nl2robot.paths import PACKAGED
+from robot_api.plugins import PLANNERS as GROUP
+from robot_api.plugins import Plugin, PluginError, left_out, plugins
 
 if TYPE_CHECKING:
     from nl2robot.language_model.client import Process
 
 AUTO: Final = "auto"
-GROUP: Final = "nl2robot.planners"
-"""Of entry points of other packages."""
 CHOSEN: Final = "NL2ROBOT_LANGUAGE_MODEL"
 """The environment variable that names the model to use, or "none"."""
 
@@ -52,25 +51,48 @@ PLANNERS: Final[dict[str, Callable[[], Planner]]] = {"grammar": _rules, "model":
 
 def names() -> list[str]:
     """What `--planner` may be."""
-    return [AUTO, *PLANNERS, *(each for each in _others() if each not in PLANNERS)]
+    return [AUTO, *PLANNERS, *_others()]
 
 
 @functools.cache
 def planner(name: str) -> Planner:
     """The planner of this name, made once. Raises `UserError` if there is none, or none that can be
     used here."""
-    make = PLANNERS.get(name) or _others().get(name)
-    if make is None:
-        raise UserError(f"There is no planner “{name}”. There are: {', '.join(names())}.")
-    return make()
+    if name in PLANNERS:
+        return PLANNERS[name]()
+    if name in _others():
+        return _made(_others()[name])
+    raise UserError(f"There is no planner “{name}”. There are: {', '.join(names())}.")
 
 
-@functools.cache
-def _others() -> dict[str, Callable[[], Planner]]:
-    def loaded(point: object) -> Callable[[], Planner]:
-        return lambda: point.load()()  # type: ignore[attr-defined]
+def troubles() -> dict[str, str]:
+    """By name, a sentence on each planner of a package that cannot be used."""
+    found = left_out(GROUP, (AUTO, *PLANNERS))
+    for name in _others():
+        try:
+            planner(name)
+        except UserError as error:
+            found[name] = str(error)
+    return found
 
-    return {point.name: loaded(point) for point in entry_points(group=GROUP)}
+
+def _others() -> dict[str, Plugin]:
+    return plugins(GROUP, (AUTO, *PLANNERS))
+
+
+def _made(plugin: Plugin) -> Planner:
+    """A planner of another package. Raises `UserError`."""
+    try:
+        make = plugin.load()
+        try:
+            made: Planner = make()
+        except (Exception, SystemExit) as error:
+            raise plugin.broken(error) from error
+        if not callable(getattr(made, "plan", None)):
+            raise plugin.unusable(f"is no Planner: {type(made).__name__} is something else.")
+    except PluginError as error:
+        raise UserError(str(error)) from error
+    return made
 
 
 def available(name: str) -> bool:

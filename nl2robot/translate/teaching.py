@@ -13,7 +13,7 @@ from typing import Literal
 import msgspec
 
 from grammar.explain import explain
-from grammar.language import Language, UnknownLanguage, load_language
+from grammar.language import Language, UnknownLanguage, load_language, speech
 from grammar.lexicon import Lexicon
 from grammar.lexicon import Routine as Named
 from grammar.names import names_of
@@ -22,7 +22,7 @@ from grammar.plan import Plan
 from grammar.program_parser import NotAPlan, parse_program
 from grammar.requests import Request
 from grammar.samples import samples
-from grammar.speech import fill, speech
+from grammar.speech import fill
 from grammar.understand import understand
 from grammar.understanding import Understanding
 from nl2robot.errors import UserError

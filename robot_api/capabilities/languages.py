@@ -1,17 +1,27 @@
 """What people answer and what the robot says while it asks, in each language: the data.
 
-The words are in `languages.yaml`; this loads them, folded so that case, accents and punctuation do
-not count.
+The words are in `languages.yaml`, those of a language that a package adds (`nl2robot.languages`) in
+the file `robot.yaml` of its folder; this loads them, folded so that case, accents and punctuation
+do not count.
 """
 
 from __future__ import annotations
 
-import functools
 import unicodedata
+from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
-from importlib import resources
+from pathlib import Path
+from typing import Any, Final
 
 import msgspec
+
+from robot_api.plugins import LANGUAGES, PluginError, plugins, remembered
+
+OURS: Final = Path(__file__).with_name("languages.yaml")
+FILE: Final = "robot.yaml"
+LENDER: Final = "en"
+"""Its words stand in for those that a package's language lacks."""
 
 Words = tuple[str, ...]
 """A phrase, word by word."""
@@ -20,6 +30,8 @@ Words = tuple[str, ...]
 class _Raw(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A language as `languages.yaml` writes it: phrases parted by commas."""
 
+    name: str
+    own_name: str
     again: str
     was_that: str
     choose: str
@@ -45,6 +57,10 @@ class _Raw(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Language:
     """The words of one language."""
 
+    name: str = ""
+    """What it is called in English: "German"."""
+    own_name: str = ""
+    """What it calls itself: "Deutsch"."""
     again: str = "?"
     """Said when an answer was not understood."""
     was_that: str = "{}?"
@@ -94,20 +110,44 @@ def language_data(code: str) -> Language:
 
 
 def known_languages() -> tuple[str, ...]:
+    """The codes of the languages that a robot can be asked in: ours first, then those added."""
     return tuple(_languages())
 
 
-@functools.cache
-def _languages() -> dict[str, Language]:
+class Faulty(Exception):
+    """The words of a language cannot be read: a sentence that says why."""
+
+
+def read_added(file: Path) -> Language:
+    """The words of a language that somebody adds; what it lacks but its names, English lends.
+    Raises `Faulty`, `OSError`."""
+    import yaml
+
+    ours = yaml.safe_load(OURS.read_text("utf-8"))[LENDER]
+    lent = {key: value for key, value in ours.items() if key not in ("name", "own_name")}
+    try:
+        theirs = yaml.load(file.read_text("utf-8"), Loader=yaml.BaseLoader)  # "no" is a word
+        return _language(msgspec.convert({**lent, **theirs}, _Raw))
+    except (TypeError, ValueError, yaml.YAMLError) as error:
+        raise Faulty(f"{file.name}: {' '.join(str(error).split())}") from error
+
+
+@remembered
+def _languages() -> Mapping[str, Language]:
     import yaml  # needed only where the robot asks
 
-    source = resources.files(__package__).joinpath("languages.yaml").read_text("utf-8")
-    raw = msgspec.convert(yaml.safe_load(source), dict[str, _Raw])
-    return {code: _language(words) for code, words in raw.items()}
+    raw: dict[str, Any] = msgspec.convert(yaml.safe_load(OURS.read_text("utf-8")), dict[str, _Raw])
+    known = {code: _language(words) for code, words in raw.items()}
+    for code, plugin in plugins(LANGUAGES, known).items():
+        with suppress(PluginError, Faulty, OSError):  # told by `nl2robot languages`
+            known[code] = read_added(plugin.folder() / FILE)
+    return known
 
 
 def _language(raw: _Raw) -> Language:
     return Language(
+        name=raw.name,
+        own_name=raw.own_name,
         again=raw.again,
         was_that=raw.was_that,
         choose=raw.choose,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from robot_api.capabilities.base import Capability, Hub, Turns
 from robot_api.capabilities.emulation import Emulation, InEmulation
+from robot_api.capabilities.languages import known_languages, language_data
 from robot_api.capabilities.names import listed
 from robot_api.capabilities.simulation import InSimulation
 from robot_api.capabilities.sound import SILENT, Sound
@@ -15,8 +16,6 @@ from robot_api.errors import NotSupported
 
 if TYPE_CHECKING:
     from sim.simulation import Simulation
-
-LANGUAGES = {"en": "English", "de": "German", "fr": "French"}
 
 
 class Speech(Capability):
@@ -47,7 +46,7 @@ class Speech(Capability):
         """Speak and hear that one from now on, and tell it to those who subscribed."""
 
     def languages(self) -> tuple[str, ...]:
-        return tuple(LANGUAGES)
+        return known_languages()
 
     def say(self, stop: StopFlag, text: str, language: str | None = None) -> None:
         code = self._known(language) if language else self.language
@@ -63,7 +62,7 @@ class Speech(Capability):
     def _known(self, code: str) -> str:
         if code[:2] in self.languages():
             return code[:2]
-        names = [LANGUAGES.get(known, known) for known in self.languages()]
+        names = [language_data(known).name or known for known in self.languages()]
         raise NotSupported(f"I do not speak the language '{code}'. I speak {listed(names)}.")
 
 

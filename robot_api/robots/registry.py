@@ -12,7 +12,6 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
-from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
 from typing import Any, Final
 
@@ -21,13 +20,11 @@ import msgspec
 from robot_api.capabilities.names import nearest
 from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.driver import Driver
-from robot_api.errors import cause
+from robot_api.plugins import ROBOTS, Plugin, PluginError, plugins
 from robot_api.robots.address import Address, BadAddress
 from robot_api.robots.places import Places
 from robot_api.robots.robot_file import RobotFile
 
-GROUP: Final = "nl2robot.robots"
-"""The group of entry points by which packages add kinds of robots."""
 OURS: Final = (
     "robot_api.robots.pretended:SIM",
     "robot_api.robots.pretended:EMULATOR",
@@ -139,12 +136,12 @@ def known() -> Known:
     is a sentence in `troubles`, and stands in nobody's way."""
     kinds: dict[str, RobotKind] = {kind.scheme: kind for kind in _ours()}
     troubles: dict[str, str] = {}
-    for point in sorted(entry_points(group=GROUP), key=lambda point: point.name):
-        loaded = _loaded(point, kinds)
-        if isinstance(loaded, RobotKind):
-            kinds[loaded.scheme] = loaded
-        else:
-            troubles[point.name] = loaded
+    for name, plugin in plugins(ROBOTS).items():
+        try:
+            kind = _loaded(plugin, kinds)
+            kinds[kind.scheme] = kind
+        except PluginError as error:
+            troubles[name] = str(error)
     return Known(kinds, troubles)
 
 
@@ -174,22 +171,15 @@ def _ours() -> Iterator[RobotKind]:
                 raise
 
 
-def _loaded(point: EntryPoint, kinds: Mapping[str, RobotKind]) -> RobotKind | str:
-    """What the entry point names, or what is wrong with it."""
-    package = point.dist.name if point.dist is not None else point.value
-    whose = f"The driver {point.name!r} of the package {package}"
-    remedy = f"Tell whoever made it, or remove it: pip uninstall {package}."
-    try:
-        kind = point.load()
-    except (Exception, SystemExit) as error:  # noqa: BLE001 - others' code may do anything
-        why = f"{type(error).__name__}: {cause(error)}"
-        return f"{whose} cannot be loaded ({why}). {remedy}"
+def _loaded(plugin: Plugin, kinds: Mapping[str, RobotKind]) -> RobotKind:
+    """The kind that a package adds to these. Raises `PluginError`."""
+    kind = plugin.load()
     if not isinstance(kind, RobotKind):
-        return f"{whose} is no RobotKind: {point.value} is something else. {remedy}"
+        raise plugin.unusable(f"is no RobotKind: {plugin.value} is something else.")
     if not _SCHEME.fullmatch(kind.scheme):
-        return f"{whose} has the scheme {kind.scheme!r}, which no address can begin with. {remedy}"
+        raise plugin.unusable(f"has the scheme {kind.scheme!r}, which no address can begin with.")
     if kind.scheme in kinds:
-        return f"{whose} is left out: {kind.scheme}:// belongs to another driver. {remedy}"
+        raise plugin.unusable(f"is left out: {kind.scheme}:// belongs to another driver.")
     return kind
 
 

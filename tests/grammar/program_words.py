@@ -8,7 +8,8 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from typing import Final
 
-from grammar.speech import Words, speech
+from grammar.language import speech
+from grammar.speech import Words
 
 SPOKEN = {"say", "show"}
 """What they are given stands in the explanation word by word."""

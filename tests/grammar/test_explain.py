@@ -10,10 +10,11 @@ from hypothesis import HealthCheck, given, settings
 
 from grammar import plan as p
 from grammar.explain import explain, explain_program, explain_steps
+from grammar.language import UnknownLanguage, languages, speech
 from grammar.network import RuleError
 from grammar.program import write_program
 from grammar.program_parser import parse_program, read_program
-from grammar.speech import gaps, languages, speech
+from grammar.speech import gaps
 from grammar.traversal import walk
 from robot_api.methods import METHODS
 from tests.grammar.random_plans import plans
@@ -270,7 +271,7 @@ def test_nothing_to_do() -> None:
 
 
 def test_an_unknown_language_is_said_so() -> None:
-    with pytest.raises(LookupError, match="tlh"):
+    with pytest.raises(UnknownLanguage, match="tlh"):
         explain(p.Plan(()), "tlh")
 
 
@@ -297,7 +298,7 @@ def test_every_method_has_words_in_every_language(language: str) -> None:
 
 def test_no_method_has_words_in_two_files(monkeypatch: pytest.MonkeyPatch) -> None:
     again = SimpleNamespace(methods={"say": {"do": ["say {text}"]}})
-    monkeypatch.setattr("grammar.speech.load_language", lambda code: again)
+    monkeypatch.setattr("grammar.language.load_language", lambda code: again)
     with pytest.raises(RuleError, match="both speak of 'say'"):
         speech.__wrapped__("en")
 

@@ -9,14 +9,14 @@ from string import Formatter
 
 import pytest
 
-from grammar import language as language_module
 from grammar.discourse import EACH, SETTING
 from grammar.language import languages, load_language
+from grammar.languages import registry
 from grammar.meanings import speaking
 from grammar.meanings.registry import MEANINGS
 from grammar.network import RuleError
 
-FOLDER = Path(language_module.__file__).parent / "languages"
+FOLDER = registry.FOLDER
 
 
 def sources(language: str) -> dict[str, str]:
@@ -121,6 +121,6 @@ def test_what_is_named_twice_is_not_loaded(
     folder.mkdir()
     (folder / "driving.yaml").write_text(driving)
     (folder / "people.yaml").write_text(people)
-    monkeypatch.setattr(language_module, "_FOLDER", tmp_path)
+    monkeypatch.setitem(registry._TRIED, "xx", folder)
     with pytest.raises(RuleError, match=told):
         load_language("xx")

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from grammar.language import load_language
+from grammar.language import load_language, speech
 from grammar.naming import Naming
-from grammar.speech import speech
 from grammar.tokens import Spelling, tokenise, words_of
 from grammar.verbs import forms, ordered
 

@@ -7,12 +7,11 @@ from dataclasses import replace
 import msgspec
 import pytest
 
-from grammar.language import load_language
+from grammar.language import load_language, speech
 from grammar.lexicon import Lexicon, Name
 from grammar.names import names_of
 from grammar.naming import Naming, naming, place_called
 from grammar.slots import Slots
-from grammar.speech import speech
 from grammar.tokens import Spelling, tokenise, words_of
 from grammar.wordforms import plural, singular
 

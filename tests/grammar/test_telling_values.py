@@ -7,8 +7,8 @@ from hypothesis import HealthCheck, given, settings
 
 from grammar import plan as p
 from grammar.explain import explain, explain_program, explain_steps
+from grammar.language import languages
 from grammar.program import write_program
-from grammar.speech import languages
 from tests.grammar import random_plans, sensible_plans
 
 VOTES, NAMES, ANSWER = p.Recall("votes"), p.Recall("names"), p.Recall("answer")

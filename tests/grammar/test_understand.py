@@ -13,9 +13,11 @@ from hypothesis import strategies as st
 
 from grammar.discourse import START
 from grammar.language import languages, load_language
+from grammar.languages import registry
+from grammar.languages.checker import METHODS_FILE
 from grammar.plan import Ask, Call, Node, Recall
 from grammar.program import write_program
-from grammar.samples import samples
+from grammar.samples import filled, samples
 from grammar.tidy import nodes
 from grammar.understand import understand
 from grammar.understanding import Context, Understanding
@@ -28,7 +30,7 @@ UNDERSTOOD_AT_LEAST = 0.9
 """Share of the sentences that were written before they were tried."""
 
 
-def read(name: str) -> Any:
+def read(name: str | Path) -> Any:
     return yaml.load((HERE / name).read_text(encoding="utf-8"), Loader=yaml.BaseLoader)
 
 
@@ -69,8 +71,10 @@ def test_ten_people_are_understood(file: str) -> None:
 
 @pytest.mark.parametrize("language", languages())
 def test_every_robot_method_can_be_asked_for(language: str) -> None:
-    commands = read(f"methods_{language}.yaml")
-    for method, sentence in commands.items():
+    commands = read(registry.FOLDER / language / METHODS_FILE)
+    for method, command in commands.items():
+        sentence = filled(command, hospital(language), load_language(language))
+        assert sentence is not None, f"Nobody in the hospital could say: {command}"
         assert method in asked_for(sentence, language), sentence
     newer = METHODS.keys() - commands.keys()
     if newer:

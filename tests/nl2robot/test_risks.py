@@ -13,9 +13,10 @@ from rich.console import Console
 
 from nl2robot.cli.terminal import Terminal
 from nl2robot.knowledge import Knowledge
+from nl2robot.paths import PACKAGED
 from nl2robot.review.rehearsal import MANY_POINTS, rehearse, watched
 from nl2robot.review.review import Review, review
-from nl2robot.review.risks import DATA, Risk, Situation, Tried, risks
+from nl2robot.review.risks import Risk, Situation, Tried, risks
 from nl2robot.translate.translation import translate
 from robot_api.drivers import simulated
 from sim.simulation import Simulation
@@ -275,7 +276,7 @@ def test_risks_are_told_in_the_language_of_the_review(language, words) -> None:
 
 
 def test_all_languages_have_the_same_texts() -> None:
-    texts = yaml.safe_load(DATA.read_text(encoding="utf-8"))
+    texts = yaml.safe_load((PACKAGED / "risks.yaml").read_text(encoding="utf-8"))
     assert set(texts) == {"en", "de", "fr"}
     assert texts["en"].keys() == texts["de"].keys() == texts["fr"].keys()
 

@@ -8,8 +8,7 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grammar.language import languages
-from grammar.speech import speech
+from grammar.language import languages, speech
 from nl2robot.cli.main import main
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge

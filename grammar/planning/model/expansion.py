@@ -15,7 +15,7 @@ from typing import Final
 import msgspec
 
 from grammar.identifiers import Identifiers, all_names, names_in, speaks_of
-from grammar.language import Language
+from grammar.language import Language, speech
 from grammar.lexicon import Lexicon
 from grammar.naming import joined_up, naming
 from grammar.plan import (
@@ -35,7 +35,6 @@ from grammar.plan import (
 from grammar.planning.model.expressions import CALLS, DAYS
 from grammar.program_parser import NotAPlan, parse_program
 from grammar.roles import ANYBODY
-from grammar.speech import speech
 from grammar.tidy import BODIES, nodes
 
 START: Final = "start"

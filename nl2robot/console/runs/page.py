@@ -19,7 +19,8 @@ from typing import Any
 
 from starlette.requests import Request
 
-from grammar.speech import fill, fitting, speech
+from grammar.language import speech
+from grammar.speech import fill, fitting
 from nl2robot.console import slow_pages
 from nl2robot.console.frame import frame
 from nl2robot.console.runs import files as runs_files

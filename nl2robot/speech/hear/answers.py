@@ -17,15 +17,13 @@ from functools import cache, cached_property
 from math import exp, log
 from typing import Any, Final
 
-import yaml
-
 from nl2robot.errors import UserError
-from nl2robot.paths import PACKAGED
 from nl2robot.speech.audio import Audio
 from nl2robot.speech.digits import classifier as digits
 from nl2robot.speech.hear.recogniser import PUNCTUATION, Heard, Recogniser
 from nl2robot.speech.hear.rescorer import Judged, SecondEar
 from nl2robot.speech.hear.vocabulary import number_words, spell_numbers
+from nl2robot.texts import texts_in
 
 # Free words always find something to fit so short a sound, so an answer is only doubted when they
 # fit far better: with the commands' limit, one right digit in sixteen was.
@@ -418,8 +416,5 @@ def _words(text: str) -> Words:
     return tuple(filter(None, words))
 
 
-@cache
-def _sayings(language: str) -> dict[str, Any]:
-    path = PACKAGED / "answers.yaml"
-    sayings: dict[str, dict[str, Any]] = yaml.safe_load(path.read_text("utf-8"))
-    return sayings.get(language, sayings["en"])
+def _sayings(language: str) -> Mapping[str, Any]:
+    return texts_in(language, "answers")

@@ -16,7 +16,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
-from grammar.speech import speech
+from grammar.language import speech
 from nl2robot.paths import PACKAGED
 from nl2robot.speech.speak.numbers_aloud import Numbers
 

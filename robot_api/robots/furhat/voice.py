@@ -9,9 +9,10 @@ from typing import Any, Final
 
 from robot_api.capabilities.base import Hub, Turns
 from robot_api.capabilities.hearing import Hearing
+from robot_api.capabilities.languages import known_languages, language_data
 from robot_api.capabilities.screen import Screen
 from robot_api.capabilities.sound import SILENT, Sound
-from robot_api.capabilities.speech import LANGUAGES, Speech
+from robot_api.capabilities.speech import Speech
 from robot_api.driver import StopFlag
 from robot_api.errors import LostConnection, NotSupported
 from robot_api.robots.furhat.connection import Message
@@ -51,7 +52,8 @@ class Voice:
 
     def languages(self) -> tuple[str, ...]:
         """Those of ours that it has a voice for; all, if it does not say."""
-        return tuple(code for code in LANGUAGES if code in self._languages) or tuple(LANGUAGES)
+        known = known_languages()
+        return tuple(code for code in known if code in self._languages) or known
 
     def take(self, stop: StopFlag, language: str) -> None:
         """Have it speak with a voice for that language. Raises `NotSupported`."""
@@ -66,7 +68,7 @@ class Voice:
         self._spoken = wanted
 
     def locale(self, language: str) -> str:
-        return self._settings.locales.get(language, _LOCALES[language])
+        return self._settings.locales.get(language, _LOCALES.get(language, language))
 
     def _speaks(self, stop: StopFlag, language: str) -> bool:
         """Whether the voice that it has speaks the language: somebody chose it."""
@@ -133,8 +135,9 @@ class FurhatSpeech(Speech):
             if heard["type"] == start:
                 heard = said.expect(lasts, end)
         if heard.get("failed") is True:
+            called = language_data(language).name or language
             raise NotSupported(
-                f"The Furhat's voice cannot speak this in {LANGUAGES.get(language, language)}. "
+                f"The Furhat's voice cannot speak this in {called}. "
                 "Choose another voice for it in the robot file, or on the robot's own page."
             )
 

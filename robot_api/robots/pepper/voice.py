@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any, Final
 
 from robot_api.capabilities.base import Hub
+from robot_api.capabilities.languages import known_languages, language_data
 from robot_api.capabilities.sound import SILENT, Sound
-from robot_api.capabilities.speech import LANGUAGES, Speech
+from robot_api.capabilities.speech import Speech
 from robot_api.driver import StopFlag
 from robot_api.errors import NotSupported
 from robot_api.robots.pepper.body import STOP_LIMBS, STOP_SPEAKING
@@ -28,7 +29,9 @@ class PepperSpeech(Speech):
         self._hub = hub
         self._service = "ALAnimatedSpeech" if animated else "ALTextToSpeech"
         installed = wire.call("ALTextToSpeech", "getAvailableLanguages")
-        self._codes = tuple(code for code, name in LANGUAGES.items() if name in installed)
+        self._names = {code: language_data(code).name for code in known_languages()}
+        """What NAOqi calls them: by their English names."""
+        self._codes = tuple(code for code, name in self._names.items() if name in installed)
         if not self._codes:
             raise NotSupported(
                 "Pepper has no voice for English, German or French."
@@ -36,7 +39,7 @@ class PepperSpeech(Speech):
             )
         speaks = str(wire.call("ALTextToSpeech", "getLanguage"))
         self._language = next(
-            (code for code in self._codes if LANGUAGES[code] == speaks), self._codes[0]
+            (code for code in self._codes if self._names[code] == speaks), self._codes[0]
         )
 
     @property
@@ -47,7 +50,7 @@ class PepperSpeech(Speech):
         return self._codes
 
     def speak(self, stop: StopFlag, text: str, language: str) -> None:
-        name = LANGUAGES[language]
+        name = self._names[language]
         if self._wire.call("ALTextToSpeech", "getLanguage") != name:
             self._wire.call("ALTextToSpeech", "setLanguage", name, within=_SET_WITHIN)
         self._hub.publish("speech", text=text, language=language)

@@ -13,6 +13,8 @@ from __future__ import annotations
 
 import msgspec
 
+from robot_api.capabilities.languages import known_languages
+
 
 class Topics(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Names of topics. None: the usual one of `USUAL_TOPICS`, if there is one."""
@@ -95,7 +97,7 @@ class RosSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_on
     skills: dict[str, str] = {}
     """The robot file's skills, each with the std_srvs/Trigger service that does it."""
     speech_service: SpeechService | None = None
-    languages: tuple[str, ...] = ("en", "de", "fr")
+    languages: tuple[str, ...] = msgspec.field(default_factory=known_languages)
     """What the robot's own voice speaks."""
     dock_id: str = ""
     """Which dock, for DockRobot; empty: the first."""
