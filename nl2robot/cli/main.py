@@ -17,7 +17,7 @@ import traceback
 from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from nl2robot import __version__
 from nl2robot.errors import ExitStatus
@@ -93,9 +93,21 @@ def _failures() -> ModuleType:
 
 
 class _Parser(argparse.ArgumentParser):
-    """Says what is wrong with a command in the language that was asked for."""
+    """Says what is wrong with a command in the language that was asked for; options may stand
+    anywhere among the words."""
 
     given: Sequence[str] = ()
+    _mixing = False
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        has_commands = any(each.nargs == argparse.PARSER for each in self._actions)
+        if self._mixing or has_commands or "--" in (args or ()):
+            return super().parse_known_args(args, namespace)
+        self._mixing = True  # which calls this again
+        try:
+            return self.parse_known_intermixed_args(args, namespace)
+        finally:
+            self._mixing = False
 
     def error(self, message: str) -> NoReturn:
         failures = _failures()

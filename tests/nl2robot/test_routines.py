@@ -435,6 +435,15 @@ def test_the_command_line_learns_lists_and_forgets(capsys) -> None:
     assert main(["routines", "learn", "evening round"]) == 2
 
 
+def test_options_may_stand_anywhere_among_the_words(capsys) -> None:
+    assert main(["routines", "learn", "--lang", "en", "evening round", "-y", ROUND]) == 0
+    assert main(["routines", "forget", "-y", "evening round"]) == 0
+    capsys.readouterr()
+    assert main(["routines", "--json"]) == 0
+    assert capsys.readouterr().out == ""
+    assert main(["translate", "--", "go to the lobby"]) == 0
+
+
 def test_somebody_has_to_agree_on_the_command_line(capsys, monkeypatch) -> None:
     monkeypatch.setattr("builtins.input", lambda _: "n")
     assert main(["routines", "learn", "evening round", ROUND]) == 4
