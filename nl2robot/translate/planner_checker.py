@@ -32,6 +32,7 @@ from grammar.program import write_program
 from grammar.samples import samples
 from grammar.understanding import Context
 from nl2robot.knowledge import Knowledge
+from robot_api.errors import cause
 
 ANSWERS_WITHIN: Final = 60.0
 """Seconds: a language model on a slow machine takes half a minute."""
@@ -75,7 +76,7 @@ def _of_turn(planner: Planner, turn: Turn) -> Iterator[str]:
     try:
         answer = planner.plan(turn, Watch())
     except Exception as error:  # noqa: BLE001 - others' code may do anything
-        yield f"It raises at {said} ({type(error).__name__}: {error})."
+        yield f"It raises at {said} ({type(error).__name__}: {cause(error)})."
         return
     if (took := time.monotonic() - began) > ANSWERS_WITHIN:
         yield f"It takes {took:.0f} s for {said}; {ANSWERS_WITHIN:.0f} s are the most."
@@ -95,7 +96,7 @@ def _of_answer(answer: Answer, turn: Turn) -> Iterator[str]:
                     write_program(draft.plan)
                     check(turn, draft.plan, exact=draft.exact)
                 except Exception as error:  # noqa: BLE001 - a plan of others may hold anything
-                    yield f"a draft is no whole plan ({type(error).__name__}: {error})."
+                    yield f"a draft is no whole plan ({type(error).__name__}: {cause(error)})."
         case Question(message) | Refusal(message):
             if not message.strip():
                 yield "it says nothing to the person who spoke."

@@ -16,6 +16,7 @@ import numpy as np
 from grammar.language import languages, load_language
 from nl2robot.errors import UserError
 from nl2robot.speech.speak.voices import Sound, Voice, VoiceError, joined
+from robot_api.errors import cause
 
 PHRASES: Final = ("hello", "thanks", "about_me")
 """What it is to say, from the phrases of the language."""
@@ -41,7 +42,7 @@ def check_voice(voice: Voice, language: str) -> list[str]:
         found = [trouble for text in texts for trouble in _of_speech(voice, text)]
         found += _of_stop(voice, " ".join(texts))
     except Exception as error:  # noqa: BLE001 - others' code may do anything
-        return [f"It cannot say “{texts[0]}” ({type(error).__name__}: {error})."]
+        return [f"It cannot say “{texts[0]}” ({type(error).__name__}: {cause(error)})."]
     return [*dict.fromkeys((*found, *_of_odd_texts(voice)))]
 
 
@@ -92,4 +93,4 @@ def _of_odd_texts(voice: Voice) -> Iterator[str]:
         except (VoiceError, UserError) as error:
             yield f"It stumbles over {text[:20]!r}: {error}"
         except Exception as error:  # noqa: BLE001 - others' code may do anything
-            yield f"It stumbles over {text[:20]!r} ({type(error).__name__}: {error})."
+            yield f"It stumbles over {text[:20]!r} ({type(error).__name__}: {cause(error)})."
