@@ -21,6 +21,7 @@ from typing import Any, NoReturn
 
 from nl2robot import __version__
 from nl2robot.errors import ExitStatus
+from nl2robot.texts import stand_in
 from nl2robot.words import terminal_language, words_in
 
 COMMANDS = {
@@ -142,8 +143,6 @@ def _prepare() -> None:
 
 def _tell_of_stand_in(options: argparse.Namespace) -> None:
     """Once, to whoever speaks a language that somebody added and that has not all words."""
-    from nl2robot.texts import stand_in
-
     language = getattr(options, "lang", None)
     told = stand_in(language) if isinstance(language, str) else None
     if told is not None:

@@ -12,7 +12,6 @@ from nl2robot.run.runlog import RunLog
 def open_log(debug: bool = False) -> RunLog:
     """The run log in the user's data folder. What the server has to say about faults goes to a file
     beside it, with `debug` to standard error."""
-
     logging.raiseExceptions = debug  # a full disk is told of elsewhere
     if not debug:
         faults = RotatingFileHandler(

@@ -35,7 +35,6 @@ def add_ca(parser: argparse.ArgumentParser) -> None:
 def trust(options: argparse.Namespace) -> None:
     """Trust the authority that `--ca` names, and the one that a server on this machine has made.
     Raises `InvalidCall`."""
-
     here = authority_file()
     for file in (options.ca, here if here.exists() else None):
         if file is not None:
@@ -45,7 +44,6 @@ def trust(options: argparse.Namespace) -> None:
 def robot_of(options: argparse.Namespace) -> Chosen:
     """The robot that `add_address` lets people name. What its file says of who speaks and hears is
     asked of this machine as if it were an option. Raises `UserError`, `RobotFileError`."""
-
     robot = chosen(options.robot, options.robot_file)
     if robot.is_server:
         trust(options)

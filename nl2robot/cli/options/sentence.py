@@ -23,7 +23,6 @@ def add_words(parser: argparse.ArgumentParser, help: str, nargs: str | None = No
 
 def _sentences(prefix: str, parsed_args: argparse.Namespace, **_: object) -> list[str]:
     """For the completion by Tab in a shell: what can be said in the world named so far."""
-
     world, language = names_of(parsed_args), parsed_args.lang
     lexicon = Knowledge(world, routines=open_routines()).lexicon(language)
     said = (each for topic in samples(lexicon, language).values() for each in topic)

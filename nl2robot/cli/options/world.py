@@ -23,7 +23,6 @@ def add_world(parser: argparse.ArgumentParser) -> None:
 
 def _worlds(prefix: str, **_: object) -> list[str]:
     """For the completion by Tab in a shell: the built-in worlds, and files."""
-
     folder = prefix[: prefix.rfind("/") + 1]
     files = [
         f"{folder}{path.name}{'/' if path.is_dir() else ''}"
@@ -35,11 +34,9 @@ def _worlds(prefix: str, **_: object) -> list[str]:
 
 def names_of(options: argparse.Namespace) -> World:
     """The world as far as translating needs it: what goes by a name."""
-
     return with_named_places(load_world(options.world, names_only=True))
 
 
 def world_of(options: argparse.Namespace) -> World:
     """The world, with the places that were named on its map."""
-
     return with_named_places(load_world(options.world))
