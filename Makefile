@@ -70,7 +70,7 @@ types: $(STAMP)
 # import each time where Python may write no bytecode.
 tests: $(STAMP) browser systemd ros2
 	@$(BIN)/python -m compileall -q grammar nl2robot robot_api sandbox sim
-	$(BIN)/pytest -n $$($(BIN)/python -c 'import os; print(2 * (os.cpu_count() or 1))') --dist loadfile --no-loadscope-reorder
+	$(BIN)/pytest -n $$($(BIN)/python -c 'import os; print(2 * (os.cpu_count() or 1))') --dist loadfile
 
 # Which lines no test runs; a module of which tests run less than 70 % has to say why.
 coverage: $(STAMP) browser

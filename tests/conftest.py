@@ -31,18 +31,6 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
 os.environ["NL2ROBOT_LANGUAGE_MODEL"] = "none"
 
 
-LONG = ("test_tutorials.py", "test_new_method.py", "console", "robots", "errands", "robot_api")
-"""What takes longest begins first, so that nothing long is left to the end while workers wait."""
-
-
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    def rank(item: pytest.Item) -> int:
-        within = item.path.relative_to(Path(__file__).parent).parts[0]
-        return LONG.index(within) if within in LONG else len(LONG)
-
-    items.sort(key=rank)
-
-
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--soak", action="store_true", help="whole samples, not a part of each")
 
