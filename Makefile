@@ -186,7 +186,7 @@ release: $(TOOLS)/.installed
 	rm -rf dist build
 	$(TOOLS)/bin/python -m build --no-isolation --outdir dist .
 	$(TOOLS)/bin/twine check --strict dist/*
-	$(TOOLS)/bin/python docs/deploy/try_wheel.py dist/*.whl
+	$(TOOLS)/bin/python -m docs.deploy.try_wheel dist/*.whl
 
 # The same for a container, by whichever of these works here. BASE is another image that has a Python.
 IMAGE ?= nl2robot

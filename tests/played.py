@@ -11,17 +11,14 @@ import os
 import re
 import subprocess
 import sys
-import tomllib
 from collections.abc import Iterator
 from pathlib import Path
-
-from tests.robots.packages import install
 
 ROOT = Path(__file__).parents[1]
 _BLOCK = re.compile(r"^```(?:(console)|\w+ title=\"([\w./-]+)\")\n(.*?)^```$", re.M | re.S)
 _COMMAND = re.compile(r"^\$ ((?:.*\\\n)*.*)\n?((?:(?!\$ ).*\n?)*)", re.M)
 _OURS = f'#!/bin/sh\nexec "{sys.executable}" -m nl2robot.cli.main "$@"\n'
-_PIP = f'#!/bin/sh\nexec "{sys.executable}" -m tests.played "$@"\n'
+_PIP = f'#!/bin/sh\nexec "{sys.executable}" -m tests.pretended_pip "$@"\n'
 
 
 def blocks(page: str) -> Iterator[tuple[str | None, str]]:
@@ -36,14 +33,15 @@ def commands(block: str) -> Iterator[tuple[str, list[str]]]:
         yield command, [line for line in lines.split("\n") if line.strip()]
 
 
-def play(page: Path, folder: Path) -> int:
-    """Do what the page says, in a folder that is empty. How many commands there were."""
+def play(page: Path, folder: Path, installed: Path | None = None) -> int:
+    """Do what the page says, in a folder that is empty. How many commands there were. With the
+    commands of this checkout, or those `installed` in that folder."""
     work = folder / "work"
     work.mkdir()
     environment = {
         **os.environ,
-        "PATH": os.pathsep.join((str(_tools(folder)), os.environ["PATH"])),
-        "PYTHONPATH": os.pathsep.join((str(ROOT), str(work))),
+        "PATH": os.pathsep.join((str(installed or _tools(folder)), os.environ["PATH"])),
+        "PYTHONPATH": "" if installed else os.pathsep.join((str(ROOT), str(work))),
         "NL2ROBOT_HOME": str(folder / "home"),
         "NL2ROBOT_LANGUAGE_MODEL": "none",
         "COLUMNS": "200",
@@ -90,16 +88,3 @@ def _done(command: str, work: Path, environment: dict[str, str]) -> tuple[int, s
     assert "Traceback" not in done.stdout, done.stdout
     assert done.returncode != 127, f"{command}\nis not there:\n{done.stdout}"
     return done.returncode, done.stdout
-
-
-def install_here() -> None:
-    """As `pip install -e .` for the package of this folder, whose modules are on the path."""
-    project = tomllib.loads(Path("pyproject.toml").read_text("utf-8"))["project"]
-    points = project["entry-points"]["nl2robot.robots"]
-    install(Path(), project["name"], "\n".join(f"{key} = {at}" for key, at in points.items()))
-    print(f"Successfully installed {project['name']}-{project['version']}")
-
-
-if __name__ == "__main__":
-    assert sys.argv[1:] == ["install", "-e", "."], "this pip does nothing else"
-    install_here()

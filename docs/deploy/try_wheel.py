@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Does a wheel do the main job by itself? `python docs/deploy/try_wheel.py dist/*.whl`
+"""Does a wheel do the main job by itself? `python -m docs.deploy.try_wheel dist/*.whl`
 
 It is installed into an empty environment, with what locks/run.txt names, and used in an empty
 folder with an empty home: a sentence is translated, run in the simulated hospital, and its picture
-is there.
+is there. Then all tutorials are followed, word by word.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+from tests.played import play
 
 ROOT = Path(__file__).parents[2]
 SENTENCE = "go to the pharmacy and say good morning"
@@ -48,6 +50,10 @@ def main() -> int:
         said = nl2robot("run", "-y", SENTENCE, "--picture", "run.png")
         assert "Good morning" in said and (work / "run.png").stat().st_size > 10_000, said
         print(f"{wheel.name} does it alone: {nl2robot('--version').strip()}.")
+        for page in sorted(ROOT.glob("docs/tutorials/*.md")):
+            (place / page.stem).mkdir()
+            count = play(page, place / page.stem, installed=python.parent)
+            print(f"{page.stem}: followed, {count} commands.")
     return 0
 
 
