@@ -45,7 +45,6 @@ from grammar.meanings.finding import not_found
 from grammar.meanings.holders import the_one_who_says_so
 from grammar.meanings.in_time import too_late
 from grammar.meanings.news import BACK, News
-from grammar.meanings.opposites import with_else
 from grammar.meanings.registry import meaning
 from grammar.meanings.searches import (
     Search,
@@ -84,7 +83,6 @@ LOOKING: Final = frozenset({"look_in", "look_on", "find", "go_find"})
 
 @meaning("if")
 def if_(d: Discourse, node: Node) -> Steps:
-    node = with_else(d, node)
     handed_back = the_one_who_says_so(d, node)
     if handed_back is not None:
         return handed_back

@@ -10,7 +10,6 @@ from grammar.discourse import ANYONE, Branched, Discourse, Meeting, Steps, Thing
 from grammar.meanings.branches import if_found_so
 from grammar.meanings.found_places import first_of_round
 from grammar.meanings.guards import in_vain
-from grammar.meanings.opposites import with_else
 from grammar.meanings.registry import meaning
 from grammar.meanings.searches import search_of
 from grammar.meanings.volunteers import found_by
@@ -33,7 +32,6 @@ def when_found(d: Discourse, node: Node) -> Steps:
         return waited_for(d, node)
     if search is not None and d.scene.thing_last and d.scene.thing is not None:
         d.scene.thing = replace(d.scene.thing, here=True, place=None)
-    node = with_else(d, node)
     if search is not None and "otherwise" in node.parts:
         return if_found_so(d, node, search)
     start = d.scene.copy()

@@ -734,3 +734,24 @@ def test_where_something_goes_is_nothing_to_take(language: str) -> None:
         TAKING[language], load_language(language).speech["no_nouns"]
     ):
         assert "grab" not in (said(language, f"{verb} {word}").program or ""), (verb, word)
+
+
+@pytest.mark.parametrize(
+    ("language", "asked", "yes", "no"),
+    [
+        ("en", "ask Bob if he wants tea.", "When he says yes,", "if he says no, say goodbye"),
+        ("de", "frag Bob, ob er Tee will.", "Wenn er ja sagt,", "wenn er nein sagt, sag tschüss"),
+    ],
+)
+@pytest.mark.parametrize("steps", [1, 2])
+def test_what_is_done_for_another_answer_is_not_done_for_this_one(
+    language: str, asked: str, yes: str, no: str, steps: int
+) -> None:
+    done = {
+        "en": ("go to the kitchen", "go to the lobby"),
+        "de": ("fahr in die Küche", "fahr in die Lobby"),
+    }[language][:steps]
+    made = program(language, f"{asked} {yes} {', '.join(done)}, {no}")
+    about_yes, _, about_no = made.rpartition('"no"' if language == "en" else '"nein"')
+    assert about_yes.count("goto") == steps
+    assert "goto" not in about_no and "say(" in about_no, made
