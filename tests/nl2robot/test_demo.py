@@ -1,15 +1,23 @@
-"""`make run` speaks nothing aloud, and says how one would hear it."""
+"""`make run`, as a stranger sees it first."""
 
-import importlib.util
+from __future__ import annotations
 
-from nl2robot.cli.commands.demo import how_to_hear
+from pathlib import Path
+
+import pytest
+
+from nl2robot.cli import main as cli
+from nl2robot.errors import ExitStatus
 
 
-def test_without_a_voice_it_is_said_why_and_how_to_get_one(monkeypatch) -> None:
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    said = how_to_hear()
-    assert "Nothing was spoken aloud" in said and "GPL" in said and "make voices" in said
-
-
-def test_with_one_it_is_said_how_to_hear_it() -> None:
-    assert "--speak" in how_to_hear()
+def test_a_typed_and_a_spoken_command_are_run_and_drawn(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(["demo", "--folder", str(tmp_path / "runs")]) == ExitStatus.OK
+    said = capsys.readouterr().out
+    assert "Typed:" in said
+    assert "Spoken:" in said
+    assert "The language model is left out, as NL2ROBOT_LANGUAGE_MODEL says." in said
+    for name in ("typed", "spoken"):
+        for ending in ("svg", "png", "webp"):
+            assert (tmp_path / "runs" / f"{name}.{ending}").stat().st_size > 10_000
