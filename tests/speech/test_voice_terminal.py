@@ -11,8 +11,10 @@ from typing import Any
 import pytest
 from rich.console import Console
 
+from nl2robot.cli import main as cli
+from nl2robot.cli.commands.demo import RECORDING
 from nl2robot.cli.voice_terminal import VoiceTerminal
-from nl2robot.errors import UserError
+from nl2robot.errors import ExitStatus, UserError
 from nl2robot.speech.audio import Samples
 from nl2robot.voice.voice import VoiceInput
 from tests.speech.test_voice import HOT, SPEECH, STOP, an_ear
@@ -160,3 +162,14 @@ def test_a_language_that_cannot_be_heard_can_still_be_typed(keyboard: Keyboard) 
     keyboard.type("va au hall")
     assert terminal.next_line() == "va au hall"
     terminal.close()
+
+
+def test_a_conversation_with_a_recording_ends_with_it(
+    keyboard: Keyboard, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Nobody says the hot word in it, so nothing is done."""
+    keyboard.leave()
+    assert cli.main(["chat", "--voice", str(RECORDING)]) == ExitStatus.OK
+    said = capsys.readouterr().out
+    assert "hey robot" in said
+    assert "robot.goto" not in said
