@@ -18,6 +18,9 @@ JOINERS: Final = "\N{ZERO WIDTH JOINER}\N{ZERO WIDTH NON-JOINER}\N{SOFT HYPHEN}"
 _HIDDEN: Final = frozenset({"Cf", "Cc"})
 """Categories of Unicode: signs that format, or control, what stands around them."""
 _CODE: Final = "disguised"
+_NOT_PYTHON: Final = (tokenize.TokenError, SyntaxError, UnicodeDecodeError)
+"""What the tokeniser says of a text that is no program; the last since Python 3.14, of a carriage
+return before a letter of more than one byte."""
 
 Found = Iterator[tuple[int, int, str, str]]
 """Line and column, from 1; a code; a sentence."""
@@ -38,7 +41,7 @@ def strange_letters(program: str) -> Found:
     """Names in the letters of other alphabets: some look just like ours, and are none."""
     try:
         tokens = list(tokenize.generate_tokens(io.StringIO(program).readline))
-    except (tokenize.TokenError, SyntaxError):
+    except _NOT_PYTHON:
         return  # in which case it is no program
     for token in tokens:
         if token.type != tokenize.NAME or token.string.isascii():
@@ -86,7 +89,7 @@ def without_comments(program: str) -> str:
     and nobody is to be told less for that."""
     try:
         tokens = list(tokenize.generate_tokens(io.StringIO(program).readline))
-    except (tokenize.TokenError, SyntaxError):
+    except _NOT_PYTHON:
         return program
     lines = program.split("\n")
     for token in tokens:

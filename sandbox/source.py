@@ -69,7 +69,7 @@ def _tokens(text: str) -> list[tokenize.TokenInfo]:
         for token in tokenize.generate_tokens(io.StringIO(text).readline):
             if token.type not in (tokenize.COMMENT, tokenize.NL):
                 found.append(token)
-    except (tokenize.TokenError, IndentationError):
+    except (tokenize.TokenError, SyntaxError, UnicodeDecodeError):
         pass  # the expression of an f-string, with what stands behind its colon
     return found
 

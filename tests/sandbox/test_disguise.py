@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from robot_api.stub import stub
@@ -73,6 +73,7 @@ def test_what_looks_like_a_comment_in_a_text_is_none() -> None:
     assert codes(program) == set()
 
 
+@example("\r\x80")
 @given(st.text())
 def test_whatever_is_written_is_looked_at(program: str) -> None:
     list(hidden_signs(program))
