@@ -43,6 +43,34 @@ ABOUT_RUNS: Final = frozenset(
 
 
 @dataclass(frozen=True)
+class When:
+    """At what times something is to be done, as the words say it: read without knowing what time
+    it is, so that "tomorrow" is one day ahead, whenever that is."""
+
+    times: tuple[str, ...] = ()
+    """Times of day, "HH:MM" of 24 hours, in the order of the day; empty if none was said."""
+    weekdays: tuple[int, ...] = ()
+    """The days on which, 0 = Monday; empty for any day."""
+    days_ahead: int | None = None
+    """How many days from now: today 0, tomorrow 1."""
+    date: str | None = None
+    """A day, "2026-12-24", or "12-24" where no year was said."""
+    minutes: int | None = None
+    """Every so many minutes if it `repeats`, else in so many minutes."""
+    repeats: bool = False
+    """Whether it is to be done again and again."""
+    count: int | None = None
+    """How many times in all; None if that was not said."""
+    since: str | None = None
+    """Each day from this time of day on, "HH:MM" ("from nine to five every hour")."""
+    until: str | None = None
+    """Each day up to this time of day, "HH:MM"."""
+    unclear: tuple[str, ...] = ()
+    """The times of day that it may be, to be asked back, such as "08:00" and "20:00"; empty if it
+    is clear."""
+
+
+@dataclass(frozen=True)
 class Request:
     """Something asked of the application."""
 
@@ -60,6 +88,8 @@ class Request:
     part: str = ""
     """The words that say at what times; of "help", what the help shall be about; of "who said" and
     "how many said", the answer."""
+    when: When | None = None
+    """Of "schedule", what those words say; None if they are not understood."""
 
 
 def agreed(text: str, language: str = "en") -> bool | None:
