@@ -75,6 +75,10 @@ class Calls(ABC):
         """Wait for a while."""
         self._call("wait", seconds=seconds)
 
+    def wait_until(self, time: str, weekday: str | None = None, date: str | None = None) -> None:
+        """Wait until the clock next shows a time: today, or tomorrow if that is over today."""
+        self._call("wait_until", time=time, weekday=weekday, date=date)
+
     def dock(self) -> None:
         """Drive back to the charging station."""
         self._call("dock")
@@ -207,7 +211,7 @@ class Calls(ABC):
         self._call("guide", person=person, place=place)
 
     def clock(self) -> Clock:
-        """Tell the time, the weekday and the date."""
+        """Tell the time, the weekday, the date and the time zone."""
         result: Clock = self._call("clock")
         return result
 

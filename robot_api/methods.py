@@ -16,6 +16,16 @@ import enum
 from dataclasses import dataclass
 from typing import Any, Final
 
+WEEKDAYS: Final = (
+    "Monday",
+    "Tuesday",
+    "Wednesday",
+    "Thursday",
+    "Friday",
+    "Saturday",
+    "Sunday",
+)
+"""As the clock names them; the place of each is Python's `weekday()`."""
 MAX_TEXT: Final = 2000
 """Longest text, in characters, that any parameter takes."""
 
@@ -118,6 +128,9 @@ LANGUAGE = _text(r"^[a-z]{2}(-[A-Z]{2})?$", 5)
 METRES = _number(-1000, 1000)
 DEGREES = _number(-36000, 36000)
 SECONDS = _number(0, 86400)
+TIME_OF_DAY = _text(r"^([01][0-9]|2[0-3]):[0-5][0-9]$", 5)
+WEEKDAY = Kind("str", {"type": "string", "enum": list(WEEKDAYS)})
+DATE = _text(r"^2[0-9]{3}-[0-9]{2}-[0-9]{2}$", 10)
 SPEED = _number(-2, 2)
 TURN_RATE = _number(-180, 180)
 PERCENT = _integer(0, 100)
@@ -147,6 +160,7 @@ CLOCK = Kind(
             "time": {"type": "string"},
             "weekday": {"type": "string"},
             "date": {"type": "string"},
+            "zone": {"type": "string"},
         },
         "required": ["time", "weekday", "date"],
     },
@@ -169,7 +183,7 @@ Y = P("y", METRES, "metres along the map's y axis")
 HEADING = P("theta", _optional(DEGREES), "degrees to face at the end; any if left out", None)
 
 CORE: Final = "core"
-"""The capability every robot has: stop, wait, log, clock, places, location, battery, capabilities
+"""The capability every robot has: stop, wait, wait_until, log, clock, places, location, battery, capabilities
 of its own."""
 
 _GOING = ("UnknownPlace", "Blocked", "NotPossible")
@@ -309,6 +323,15 @@ METHODS: Final[dict[str, Method]] = {
             "Wait for a while.",
             P("seconds", SECONDS, "how long"),
             needs=CORE,
+        ),
+        _method(
+            "wait_until",
+            "Wait until the clock next shows a time: today, or tomorrow if that is over today.",
+            P("time", TIME_OF_DAY, 'local time, "06:00" or "14:30"'),
+            P("weekday", _optional(WEEKDAY), 'on the next such day, "Monday"; any day', None),
+            P("date", _optional(DATE), 'on that day, "2026-12-24"; the next one if left out', None),
+            needs=CORE,
+            errors=("NotPossible",),
         ),
         _method(
             "dock",
@@ -555,7 +578,7 @@ METHODS: Final[dict[str, Method]] = {
         # --- itself
         _method(
             "clock",
-            "Tell the time, the weekday and the date.",
+            "Tell the time, the weekday, the date and the time zone.",
             returns=CLOCK,
             needs=CORE,
             looks_or_tells=True,

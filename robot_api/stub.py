@@ -39,6 +39,7 @@ class Clock:
     time: str
     weekday: str
     date: str
+    zone: str
 
 class Robot:
 '''

@@ -19,11 +19,13 @@ class Location(msgspec.Struct, frozen=True):
 
 
 class Clock(msgspec.Struct, frozen=True):
-    """The time "14:05", the weekday "Friday" and the date "2026-11-20" where the robot is."""
+    """The time "14:05", the weekday "Friday", the date "2026-11-20" and the time zone
+    "Europe/Zurich" where the robot is."""
 
     time: str
     weekday: str
     date: str
+    zone: str = ""
 
     def __str__(self) -> str:
         return self.time

@@ -112,6 +112,7 @@ class Clock:
     time: str
     weekday: str
     date: str
+    zone: str = ""
 
     def __str__(self):
         return self.time
@@ -120,7 +121,7 @@ def _robot_location(given, make=Location):
     return make(given.x, given.y, given.theta, given.place)
 
 def _robot_clock(given, make=Clock):
-    return make(given.time, given.weekday, given.date)
+    return make(given.time, given.weekday, given.date, given.zone)
 """
 
 # What `rounds.counted` puts into a program.
@@ -154,7 +155,7 @@ def _inward(value: Any) -> Any:
     if isinstance(value, Location):
         return monty.ClassInstance(value, eager_attrs=("x", "y", "theta", "place"))
     if isinstance(value, Clock):
-        return monty.ClassInstance(value, eager_attrs=("time", "weekday", "date"))
+        return monty.ClassInstance(value, eager_attrs=("time", "weekday", "date", "zone"))
     return msgspec.to_builtins(value)
 
 

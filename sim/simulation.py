@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterable, Sequence
-from datetime import datetime, timedelta
+from datetime import UTC, datetime, timedelta
 from types import TracebackType
 from typing import Any, TypeVar
 
@@ -21,7 +21,7 @@ import msgspec
 
 from sim.behaviours import company, driving, handling, searching, talking
 from sim.behaviours.talking import Reply
-from sim.hospital import Hospital, Listener, chart_of
+from sim.hospital import Hospital, Listener, chart_of, starting
 from sim.people import likely, perception
 from sim.people.perception import Seen
 from sim.physics.bodies import STEP
@@ -135,8 +135,16 @@ class Simulation:
         return (self._hospital.steps - self._hospital.leapt) * STEP
 
     def clock(self) -> datetime:
-        """The simulated date and time."""
-        return self._hospital.start + timedelta(seconds=self._hospital.time)
+        """The simulated date and time, in the zone that it started in."""
+        start, passed = self._hospital.start, timedelta(seconds=self._hospital.time)
+        return (start.astimezone(UTC) + passed).astimezone(start.tzinfo)
+
+    def set_clock(self, moment: datetime) -> None:
+        """It is that date and time now; what has no zone is by the clocks of the world."""
+        with self._runner.turn:
+            passed = timedelta(seconds=self._hospital.time)
+            now = starting(self.world, moment)
+            self._hospital.start = (now.astimezone(UTC) - passed).astimezone(now.tzinfo)
 
     @property
     def robot(self) -> RobotState:

@@ -50,7 +50,7 @@ class Budget:
 
 
 BUDGET: Final = Budget()
-_WAITS: Final = ("wait", "clock")
+_WAITS: Final = ("wait", "wait_until", "clock")
 MANY_POINTS = 200
 """Of the path, for who draws it on a map."""
 

@@ -1,22 +1,23 @@
-"""What every robot has: `stop`, `wait`, `places`, `log`, `clock`, `battery`."""
+"""What every robot has: `stop`, `wait`, `wait_until`, `places`, `log`, `clock`, `battery`."""
 
 from __future__ import annotations
 
+import math
 import threading
 from abc import abstractmethod
 from collections import deque
 from collections.abc import Callable, Mapping
 from datetime import datetime
+from typing import ClassVar
 
 from robot_api.capabilities.base import Capability, Hub
 from robot_api.capabilities.emulation import InEmulation
 from robot_api.capabilities.languages import fold
 from robot_api.capabilities.simulation import InSimulation
 from robot_api.driver import StopFlag
-from robot_api.methods import CORE
+from robot_api.methods import CORE, WEEKDAYS
+from robot_api.moments import next_moment, seconds_until, zone_name
 from robot_api.values import Clock
-
-_WEEKDAYS = ("Monday", "Tuesday", "Wednesday", "Thursday", "Friday", "Saturday", "Sunday")
 
 
 class LogBook:
@@ -51,6 +52,8 @@ class Core(Capability):
 
     name = CORE
     lacking = "is not switched on"
+    looks_again: ClassVar[float] = 1.0
+    """Seconds between two looks at a clock that may be set while a time is waited for."""
 
     def __init__(self, book: LogBook) -> None:
         super().__init__()
@@ -65,7 +68,7 @@ class Core(Capability):
 
     @abstractmethod
     def now(self) -> datetime:
-        """The date and time where the robot is."""
+        """The date and time where the robot is, with the time zone there."""
 
     @abstractmethod
     def charge(self) -> float:
@@ -85,12 +88,21 @@ class Core(Capability):
             name for name, of_kind in kinds.items() if wanted in _forms(" ".join(fold(of_kind)))
         ]
 
+    def wait_until(
+        self, stop: StopFlag, time: str, weekday: str | None, date: str | None
+    ) -> None:
+        moment = next_moment(self.now(), time, weekday, date)
+        stop.check()
+        while (left := seconds_until(moment, self.now())) > 0:
+            self.wait(stop, min(left, self.looks_again))
+
     def log(self, stop: StopFlag, lines: int) -> list[str]:
         return self._book.last(lines)
 
     def clock(self, stop: StopFlag) -> Clock:
         now = self.now()
-        return Clock(f"{now:%H:%M}", _WEEKDAYS[now.weekday()], f"{now:%Y-%m-%d}")
+        weekday = WEEKDAYS[now.weekday()]
+        return Clock(f"{now:%H:%M}", weekday, f"{now:%Y-%m-%d}", zone_name(now))
 
     def battery(self, stop: StopFlag) -> int:
         return round(self.charge())
@@ -103,6 +115,8 @@ def _forms(kind: str) -> tuple[str, ...]:
 
 
 class EmulatedCore(InEmulation, Core):
+    looks_again = math.inf  # nobody sets this clock
+
     def wait(self, stop: StopFlag, seconds: float) -> None:
         self.emulation.pass_time(seconds, stop)
 
@@ -120,6 +134,8 @@ class EmulatedCore(InEmulation, Core):
 
 
 class SimulatedCore(InSimulation, Core):
+    looks_again = math.inf
+
     def wait(self, stop: StopFlag, seconds: float) -> None:
         self.run(self.simulation.wait(seconds), stop)
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 import threading
 from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
-from datetime import datetime, timedelta
+from datetime import datetime
 from typing import Any
 
 from robot_api.capabilities.base import Capability, Hub
 from robot_api.driver import StopFlag
+from robot_api.local_time import local_now
+from robot_api.moments import in_a_zone, later
 from robot_api.values import Location
 
 DEFAULT_PLACES: Mapping[str, str] = {
@@ -55,7 +57,7 @@ class Emulation:
         self.battery = 100.0
         self.joints: dict[str, float] = {}
         self.emotion = "neutral"
-        self._start = start or datetime.now()
+        self._start = in_a_zone(start) if start is not None else local_now()
         self._speed = speed
         self._seconds = 0.0
         self._lock = threading.Lock()
@@ -65,7 +67,7 @@ class Emulation:
 
     def now(self) -> datetime:
         """The emulated date and time."""
-        return self._start + timedelta(seconds=self._seconds)
+        return later(self._start, self._seconds)
 
     @property
     def seconds(self) -> float:

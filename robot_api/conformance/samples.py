@@ -47,6 +47,7 @@ def samples(subject: Subject) -> Iterator[Sample]:
         "turn": [{"degrees": 30}],
         "drive": [{"linear": linear / 2, "angular": angular / 2, "seconds": 0.5}],
         "wait": [{"seconds": 0.1}],
+        "wait_until": [{"time": "12:00", "date": "2000-01-01"}],  # a time to come would last
         "localize": _where_it_is(subject),
         "places": [{}, {"kind": "office"}],
         "emotion": [{"name": name} for name in has.emotions[:2] or ("happy",)],
@@ -153,6 +154,7 @@ def long_calls(subject: Subject) -> Iterator[Sample]:
     person = "person"
     long: dict[str, dict[str, Any]] = {
         "wait": {"seconds": 86400},
+        "wait_until": {"time": "12:00", "date": "2999-12-31"},
         "say": {"text": "blah " * 390},
         "listen": {"timeout": 86400},
         "ask": {"question": "blah " * 390},

@@ -12,6 +12,8 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Mapping
+from datetime import UTC, datetime, tzinfo
+from zoneinfo import ZoneInfo
 
 import msgspec
 
@@ -167,6 +169,29 @@ class Robot(msgspec.Struct, frozen=True, kw_only=True):
     """Percent."""
 
 
+class Clock(msgspec.Struct, frozen=True, kw_only=True):
+    """What clocks there show."""
+
+    start: datetime | None = None
+    """When a simulation starts, without a zone; only its time of day counts if it is `daily`."""
+    daily: bool = False
+    zone: str | None = None
+    """The time zone, "Europe/Zurich"; None: that of whoever simulates it."""
+
+    @property
+    def zone_info(self) -> tzinfo:
+        return ZoneInfo(self.zone) if self.zone is not None else UTC
+
+    def starts(self, otherwise: datetime) -> datetime:
+        """When a simulation starts: at `otherwise` if nothing is said, and on that day if only a
+        time of day is."""
+        if self.start is None:
+            return otherwise
+        if self.daily:
+            return datetime.combine(otherwise, self.start.time(), otherwise.tzinfo)
+        return self.start
+
+
 class World(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     """A hospital floor: immutable."""
 
@@ -175,6 +200,7 @@ class World(msgspec.Struct, frozen=True, kw_only=True, dict=True):
     """ "m" or "cm": the unit of the file, which the paper's message style counts in. All
     lengths here are metres all the same."""
     robot: Robot = Robot()
+    clock: Clock = Clock()
     places: tuple[Place, ...] = ()
     people: tuple[Person, ...] = ()
     objects: tuple[Thing, ...] = ()

@@ -12,6 +12,7 @@ import itertools
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar
+from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 from sim.world import geometry as g
 from sim.world import model as w
@@ -21,6 +22,7 @@ from sim.world.geometry import Point, Segment
 from sim.world.map_reader import MapReader, is_ros_map
 from sim.world.masks import MaskError, masked_areas
 from sim.world.model import Place, World, WorldError
+from sim.world.starts import starting
 from sim.world.yaml_nodes import Hopeless, MappingNode, Node, ScalarNode, short
 from sim.world.zones import trouble_with
 
@@ -50,11 +52,12 @@ class _Reader(MapReader):
 
     FIELDS: ClassVar = {
         "a world": (
-            "name units scale map walls wall_thickness robot places people objects furniture doors "
+            "name units scale clock map walls wall_thickness robot places people objects furniture doors "
             "contacts questions zones keep_out"
         ),
         **MapReader.FIELDS,
         "the robot": "name start radius battery",
+        "the clock": "start zone",
         "a place": "name kind pose area in aliases",
         "a person": "name kind at pose is answers gender walks aliases",
         "an object": "name kind at on pose is code size weight aliases",
@@ -265,6 +268,27 @@ class _Reader(MapReader):
             values["battery"] = self.number(fields["battery"], '"battery" of the robot', 0, 100)
         return w.Robot(**{name: value for name, value in values.items() if value is not None})
 
+    def clock(self, node: Node) -> w.Clock:
+        fields = self.mapping(node, "the clock")
+        start = daily = zone = None
+        if "start" in fields:
+            said = self.text(fields["start"], '"start" of the clock') or ""
+            try:
+                start, daily = starting(said)
+            except ValueError as error:
+                self.problem(fields["start"].line, f"{error}")
+        if "zone" in fields:
+            zone = self.text(fields["zone"], '"zone" of the clock')
+            try:
+                ZoneInfo(zone or "")
+            except (ZoneInfoNotFoundError, ValueError, OSError):
+                self.problem(
+                    fields["zone"].line,
+                    f'"{short(zone or "")}" is no time zone. Write one such as "Europe/Zurich".',
+                )
+                zone = None
+        return w.Clock(start=start, daily=bool(daily), zone=zone)
+
     def ros_map(self, root: Node, path: Path) -> World:
         """A world that is nothing but a map."""
         return World(name=path.stem, map=self.map(root, path), file=str(path))
@@ -303,9 +327,12 @@ class _Reader(MapReader):
         grid = self.map(fields["map"], path) if "map" in fields else None
         robot = self.robot(fields["robot"]) if "robot" in fields else w.Robot()
 
+        clock = self.clock(fields["clock"]) if "clock" in fields else w.Clock()
+
         bare = World(
             name=name or path.stem,
             units=units if units in UNITS else "m",
+            clock=clock,
             places=tuple(place for _, place in places),
             drawn_walls=cut_doors(walls, [door.ends for _, door in doors]),
             wall_thickness=thickness or 0.1,

@@ -35,6 +35,7 @@ SAYING = {
     "sim": WHILE_IT_WORKS,
     "robot_api/capabilities": AT_ANY_ROBOT,
     "robot_api/composed.py": AT_ANY_ROBOT,
+    "robot_api/moments.py": AT_ANY_ROBOT,
     "robot_api/robots/link.py": AT_ANY_ROBOT,
     "robot_api/robots/places.py": AT_ANY_ROBOT,
     "robot_api/robots": WHILE_IT_WORKS,

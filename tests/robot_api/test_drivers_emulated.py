@@ -39,7 +39,7 @@ def test_it_has_every_method(robot: EmulatedDriver) -> None:
 
 def test_a_round_at_night(robot: EmulatedDriver) -> None:
     desk = do(robot, "location")
-    assert do(robot, "clock") == Clock("22:30", "Friday", "2026-11-20")
+    assert do(robot, "clock") == Clock("22:30", "Friday", "2026-11-20", "UTC")
     do(robot, "wait", seconds=3600)
     assert do(robot, "clock").time == "23:30"
     do(robot, "goto", place="Ward A")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from datetime import datetime
+from zoneinfo import ZoneInfo
 
 import pytest
 from hypothesis import given, settings
@@ -157,6 +158,18 @@ def test_the_clock_shows_a_fixed_morning_or_the_one_asked_for(small_ward) -> Non
     assert simulation.clock().strftime("%H:%M:%S") == "08:01:30"
     christmas = Simulation(small_ward, start=datetime(2026, 12, 24, 18, 0))
     assert christmas.clock().year == 2026 and christmas.clock().hour == 18
+
+
+def test_its_clocks_are_set_in_the_night_of_daylight_saving_and_may_be_set_by_hand(
+    small_ward,
+) -> None:
+    zurich = ZoneInfo("Europe/Zurich")
+    night = Simulation(small_ward, start=datetime(2026, 3, 29, 1, 59, 30, tzinfo=zurich))
+    night.run(night.wait(60), threading.Event())
+    assert f"{night.clock():%H:%M %Z}" == "03:00 CEST"
+    night.set_clock(datetime(2026, 12, 24, 18, 0, tzinfo=zurich))
+    night.run(night.wait(60), threading.Event())
+    assert f"{night.clock():%d.%m. %H:%M %Z}" == "24.12. 18:01 CET"
 
 
 # --- with a clock --------------------------------------------------------------------------------

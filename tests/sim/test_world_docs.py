@@ -32,6 +32,7 @@ def test_the_examples_load_and_can_be_drawn(tmp_path: Path) -> None:
 HEADS = {
     "a world": "the world",
     "the robot": "robot",
+    "the clock": "clock",
     "a place": "places",
     "a person": "people",
     "an object": "objects",

@@ -13,6 +13,7 @@ from robot_api.capabilities.sound import Sound
 from robot_api.driver import StopFlag
 from robot_api.drivers import ComposedDriver
 from robot_api.errors import NotSupported
+from robot_api.local_time import local_now
 from robot_api.robots.furhat.face import FurhatFace, FurhatGesture, Gestures
 from robot_api.robots.furhat.people import FurhatVision
 from robot_api.robots.furhat.robot import STOP_WITHIN, Furhat
@@ -41,7 +42,7 @@ class FurhatCore(Core):
         return self._places
 
     def now(self) -> datetime:
-        return datetime.now()
+        return local_now()
 
     def charge(self) -> float:
         return 100.0
@@ -63,7 +64,7 @@ class FurhatDriver(ComposedDriver):
             settings = FurhatSettings()
         self._furhat = furhat
         self._vision = FurhatVision(furhat)
-        book = LogBook(datetime.now, hub)
+        book = LogBook(local_now, hub)
         super().__init__(
             name=file.name or "The Furhat",
             kind="furhat",

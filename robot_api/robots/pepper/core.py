@@ -8,6 +8,7 @@ from typing import Any
 
 from robot_api.capabilities.core import Core, LogBook
 from robot_api.driver import StopFlag
+from robot_api.local_time import local_now
 from robot_api.robots.pepper.body import STOP_WITHIN, Body
 from robot_api.robots.pepper.session import Wire
 from robot_api.robots.places import Places
@@ -31,7 +32,7 @@ class PepperCore(Core):
         return {place.name: place.kind for place in self._places.named.values()}
 
     def now(self) -> datetime:
-        return datetime.now()
+        return local_now()
 
     def charge(self) -> float:
         return float(self._wire.call("ALBattery", "getBatteryCharge"))

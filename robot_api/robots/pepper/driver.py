@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from datetime import datetime
 from typing import Any
 
 from robot_api.capabilities.base import Capability, Hub
@@ -17,6 +16,7 @@ from robot_api.capabilities.speech import LoudspeakerSpeech, Speech
 from robot_api.composed import ComposedDriver
 from robot_api.driver import StopFlag
 from robot_api.errors import NotSupported
+from robot_api.local_time import local_now
 from robot_api.methods import METHODS
 from robot_api.robots.link import Link
 from robot_api.robots.pepper.body import Body
@@ -39,7 +39,7 @@ class PepperDriver(ComposedDriver):
     def __init__(self, setup: Setup, wire: Wire, settings: PepperSettings) -> None:
         """Reaching for the robot moves nothing of it; what is wrong is known before it moves."""
         hub = Hub()
-        book = LogBook(datetime.now, hub)
+        book = LogBook(local_now, hub)
         name = setup.file.name or "Pepper"
         self._wire = wire
         self._body = Body(wire, settings.autonomous_life)

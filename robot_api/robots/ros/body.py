@@ -15,6 +15,7 @@ from robot_api.capabilities.base import POLL, Hub
 from robot_api.capabilities.core import Core, LogBook
 from robot_api.driver import StopFlag
 from robot_api.errors import NotPossible, NotSupported
+from robot_api.local_time import local_now
 from robot_api.robots.places import NamedPlace
 from robot_api.robots.ros import dialect as ros
 from robot_api.robots.ros.actions import SUCCEEDED, Action
@@ -81,7 +82,7 @@ class RosCore(Core):
         return {name: place.kind for name, place in self._places.items()}
 
     def now(self) -> datetime:
-        return datetime.now()
+        return local_now()
 
     def battery(self, stop: StopFlag) -> int:
         """Waits for the first word of it, which comes rarely."""

@@ -10,7 +10,6 @@ import math
 import threading
 import time
 from contextlib import suppress
-from datetime import datetime
 from functools import partial
 from typing import Any
 
@@ -23,6 +22,7 @@ from robot_api.capabilities.screen import Screen, TabletScreen
 from robot_api.capabilities.speech import LoudspeakerSpeech, Speech
 from robot_api.composed import ComposedDriver
 from robot_api.errors import AccessDenied, LostConnection, NotSupported, StopNotConfirmed
+from robot_api.local_time import local_now
 from robot_api.robots.link import Link
 from robot_api.robots.registry import Brake, Setup
 from robot_api.robots.ros.actions import Action, Ros1Action, Ros2Action
@@ -134,7 +134,7 @@ class _Assembly:
         self._name = name
         self._graph = Graph(connection.work.now, dialect, settings)
         self._hub = Hub()
-        self._book = LogBook(datetime.now, self._hub)
+        self._book = LogBook(local_now, self._hub)
         self._link = Link(self._hub, name)
         self._wheels = Wheels()
         self._battery = Battery(self._hub)

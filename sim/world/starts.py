@@ -1,0 +1,21 @@
+"""When a simulation starts, as people write it: "08:00", or with the day "2026-12-24 18:00"."""
+
+from __future__ import annotations
+
+from datetime import datetime
+
+from sim.world.yaml_nodes import short
+
+
+def starting(said: str) -> tuple[datetime, bool]:
+    """That moment, without a zone, and whether only its time of day was said. Raises `ValueError`
+    with a sentence."""
+    for form, daily in (("%H:%M", True), ("%Y-%m-%d %H:%M", False), ("%Y-%m-%dT%H:%M", False)):
+        try:
+            return datetime.strptime(said, form), daily
+        except ValueError:
+            continue
+    raise ValueError(
+        f'"{short(said)}" is no time to start at. Write "08:00", or with the day'
+        ' "2026-12-24 18:00", in quotes.'
+    )
