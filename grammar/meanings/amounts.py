@@ -32,9 +32,18 @@ def percentage(d: Discourse, node: Node) -> float:
 @meaning("clock_time")
 def clock_time(d: Discourse, node: Node) -> str:
     """A time of day as "HH:MM"."""
+    time, guessed = time_said(d, node)
+    if guessed:
+        d.assumptions.append("pm")
+    return time
+
+
+def time_said(d: Discourse, node: Node, half: str | None = None) -> tuple[str, bool]:
+    """The same, and whether the half of the day is a guess; `half` is the one that is said
+    elsewhere: "every evening at eight"."""
     fixed = node.production.fixed
     if "time" in fixed:
-        return str(fixed["time"])
+        return str(fixed["time"]), False
     given = d.get(node, "clock")
     if given:
         hours, minutes = (int(part) for part in given.split(":"))
@@ -51,17 +60,18 @@ def clock_time(d: Discourse, node: Node) -> str:
         minutes = -minutes
     if -60 < minutes < 0:  # "twenty to three", "trois heures moins vingt"
         hours, minutes = hours - 1, 60 + minutes
-    half = d.get(node, "half_of_day")
+    half = d.get(node, "half_of_day", half)
+    guessed = False
     if half == "pm" and hours < 12:
         hours += 12
     if half == "am" and hours == 12:
         hours = 0
     if half is None and not given and 1 <= hours <= LAST_HOUR_MEANT_PM:
         hours += 12  # "at three": nobody has visitors at night
-        d.assumptions.append("pm")
+        guessed = True
     if not (0 <= hours < 24 and 0 <= minutes < 60):
         raise NotUnderstood(d.language.phrase("no_such_time", time=d.words(node.start, node.end)))
-    return f"{hours:02}:{minutes:02}"
+    return f"{hours:02}:{minutes:02}", guessed
 
 
 def number_value(value: Any) -> Number:

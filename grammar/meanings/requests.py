@@ -3,6 +3,7 @@ among others (`grammar.understand` enters what the name of one means)."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import msgspec
@@ -101,7 +102,8 @@ def forget_routine(d: Discourse, node: Node) -> Request:
 
 @meaning("schedule_routine")
 def schedule_routine(d: Discourse, node: Node) -> Request:
-    return request(d, node, "schedule")
+    asked = request(d, node, "schedule")
+    return replace(asked, when=d.build(node.parts["part"]))
 
 
 @meaning("rename_routine")
