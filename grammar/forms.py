@@ -85,6 +85,7 @@ FORMS: Final = (
     Form(p.Figure, "highest_of(of)", {"how": "highest"}),
     Form(p.Figure, "lowest_of(of)", {"how": "lowest"}),
     Form(p.Elapsed, "minutes_since(since)"),
+    Form(p.HasCome, "has_come(time, since)"),
     Form(p.Choice, "random.choice(among)"),
     # After all that begin like it.
     Form(p.ListOf, "list(of)"),

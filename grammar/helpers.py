@@ -123,6 +123,15 @@ _HELPERS: Final = {
             "    return (now - then) % (24 * 60)",
         )
     ),
+    "has_come": Helper(
+        (
+            "def has_come(time, since):",
+            "    now = robot.clock()",
+            "    if now.date == since.date:",
+            "        return since.time < time <= now.time",
+            "    return since.time < time or now.time >= time",
+        )
+    ),
     "weekday_called": Helper(
         (
             "def weekday_called(names):",

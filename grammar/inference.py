@@ -92,6 +92,8 @@ class Types:
             case p.Number():
                 number = value.value
                 return "int" if isinstance(number, int) or number.is_integer() else "float"
+            case p.HasCome():
+                return "bool"
             case p.Truth() | p.Holds() | p.Compare() | p.Not() | p.Both() | p.Either():
                 return "bool"
             case p.Recall():

@@ -58,7 +58,11 @@ def _slow(name: str) -> bool:
     method = METHODS.get(name)
     if method is None:
         return False
-    return method.moves or name in ("say", "wait", "wait_until", "wait_for") or "TimedOut" in method.errors
+    return (
+        method.moves
+        or name in ("say", "wait", "wait_until", "wait_for")
+        or "TimedOut" in method.errors
+    )
 
 
 def _steps_take_time(steps: Steps, own: bool) -> bool:

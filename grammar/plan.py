@@ -220,6 +220,14 @@ class Elapsed(Node, frozen=True, tag="elapsed"):
     since: Value
 
 
+class HasCome(Node, frozen=True, tag="has come"):
+    """Whether a time of day has come, once, since the clock showed what was remembered of it: on
+    the same day, or after midnight."""
+
+    time: Value
+    since: Value
+
+
 class Weekday(Node, frozen=True, tag="weekday"):
     """What day it is, by seven names from Monday on: what a language calls them. The clock itself
     names the days in English."""
@@ -292,6 +300,7 @@ Value = (
     | Figure
     | Choice
     | Elapsed
+    | HasCome
     | Weekday
     | Holds
     | Compare

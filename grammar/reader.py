@@ -15,6 +15,7 @@ from dataclasses import replace
 from typing import Final
 
 import grammar.meanings.all_meanings  # noqa: F401 (what the rules name is entered there)
+from grammar.by_the_clock import by_the_clock
 from grammar.chart import Chart, Node, TooMuch
 from grammar.company import in_company
 from grammar.coverage import in_manner, left_out, unheeded, unspoken
@@ -147,7 +148,7 @@ class SentenceReader:
         if doubt is not None:
             return self._doubted(doubt)
         plan = without_unused(plan)  # what came to nothing is lost, too
-        plan = charging_last(returning(with_numbers(in_company(plan))))
+        plan = by_the_clock(charging_last(returning(with_numbers(in_company(plan)))))
         resolved = discourse.command.resolved
         lost = left_out(tree, self.tokens, plan, self.language, self.lexicon, resolved)
         lost += unspoken(tree, self.tokens, plan, self.language, resolved)

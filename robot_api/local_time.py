@@ -1,10 +1,9 @@
-"""The date and time of this machine, with the zone that its owner has set: the system's own, or what
-the environment variable TZ says."""
+"""The date and time of this machine, with the zone that its owner has set: the system's own, or
+what the environment variable TZ says."""
 
 from __future__ import annotations
 
 from datetime import datetime
-
 from zoneinfo import ZoneInfoNotFoundError
 
 import tzlocal

@@ -183,8 +183,8 @@ Y = P("y", METRES, "metres along the map's y axis")
 HEADING = P("theta", _optional(DEGREES), "degrees to face at the end; any if left out", None)
 
 CORE: Final = "core"
-"""The capability every robot has: stop, wait, wait_until, log, clock, places, location, battery, capabilities
-of its own."""
+"""The capability every robot has: stop, wait, wait_until, log, clock, places, location, battery,
+capabilities of its own."""
 
 _GOING = ("UnknownPlace", "Blocked", "NotPossible")
 

@@ -1,5 +1,5 @@
-"""The next moment that a clock shows some time: over midnight, on a weekday, on a date, and over the
-hours that daylight saving leaves out or has twice.
+"""The next moment that a clock shows some time: over midnight, on a weekday, on a date, and over
+the hours that daylight saving leaves out or has twice.
 
 Nothing here looks at a clock. Moments are `datetime`s with a time zone; two of them are compared
 and subtracted in UTC, since Python does so by what the clocks show where both have the same zone.
@@ -11,7 +11,6 @@ from datetime import UTC, date, datetime, time, timedelta
 from typing import Final
 
 from robot_api.errors import InvalidCall, NotPossible
-from robot_api.methods import WEEKDAYS
 from robot_api.methods import WEEKDAYS
 
 _A_MINUTE: Final = timedelta(minutes=1)

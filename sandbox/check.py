@@ -344,7 +344,11 @@ def _slow(name: str) -> bool:
     method = METHODS.get(name)
     if method is None:
         return True
-    return method.moves or name in ("say", "wait", "wait_until", "wait_for") or "TimedOut" in method.errors
+    return (
+        method.moves
+        or name in ("say", "wait", "wait_until", "wait_for")
+        or "TimedOut" in method.errors
+    )
 
 
 def _robot_method(function: ast.expr) -> str | None:

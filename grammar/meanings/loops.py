@@ -7,6 +7,7 @@ from dataclasses import replace
 from math import ceil
 from typing import Final
 
+from grammar.by_the_clock import SHOWN, outside_of
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing, as_value
 from grammar.errors import NotUnderstood
@@ -226,10 +227,11 @@ def watched(d: Discourse, node: Node) -> Steps:
 @meaning("between_times")
 def between_times(d: Discourse, node: Node) -> Steps:
     """ "between two and four, greet the visitors"."""
-    clock = Ask("clock", field="time")
-    first, last = (Compare(clock, ">=", Text(d.get(node, each))) for each in ("first", "last"))
+    first, last = (str(d.get(node, each)) for each in ("first", "last"))
+    begins, ends = (Compare(SHOWN, ">=", Text(each)) for each in (first, last))
     body = each_who_comes(d, lambda: one_round(d.build(node.parts["steps"])))
-    return [*wait_until(first), *done_until(d, body, [], last)]
+    waiting = If(outside_of(first, last), tuple(wait_until(begins)))
+    return [waiting, *done_until(d, body, [], ends)]
 
 
 @meaning("how_often")

@@ -274,7 +274,7 @@ def until_then(d: Discourse, done: Steps) -> Steps:
             result.pop()
             last = result[-1] if result else None
         if isinstance(step, Forever) and isinstance(last, While) and _only_waits(last.steps):
-            step = While(last.condition, tuple(looking_up(list(step.steps))))
+            step = RepeatUntil(negated(last.condition), tuple(looking_up(list(step.steps))))
             result.pop()
         elif isinstance(step, LOOPS) and isinstance(last, Call) and _waits(last):
             if _waited_for(step.steps[0]) == last.arguments["thing"]:

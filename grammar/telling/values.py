@@ -212,6 +212,8 @@ class ValueTeller:
             case p.Field():
                 values = {"field": self.field(value), "of": self.value(value.of)}
                 return fill(say["field"], values)
+            case p.HasCome():
+                return self.value(p.Holds(value))
             case p.Holds() | p.Compare() | p.Not() | p.Both() | p.Either():
                 return fill(say["whether"], {"condition": self.condition(value)})
             case _:
@@ -359,6 +361,9 @@ class ValueTeller:
         if not isinstance(condition, p.Holds):
             return self.condition(condition, holds)
         match value:
+            case p.HasCome(time=time):
+                told = time.value if isinstance(time, p.Text) else self.value(time)
+                return fill(say["has come" if holds else "has not come"], {"time": told})
             case p.Truth():
                 return say["always" if value.value is holds else "never"]
             case p.Ask() | p.Recall() if (so := self.came_to(value, holds)) is not None:

@@ -88,9 +88,7 @@ class Core(Capability):
             name for name, of_kind in kinds.items() if wanted in _forms(" ".join(fold(of_kind)))
         ]
 
-    def wait_until(
-        self, stop: StopFlag, time: str, weekday: str | None, date: str | None
-    ) -> None:
+    def wait_until(self, stop: StopFlag, time: str, weekday: str | None, date: str | None) -> None:
         moment = next_moment(self.now(), time, weekday, date)
         stop.check()
         while (left := seconds_until(moment, self.now())) > 0:

@@ -52,8 +52,8 @@ class _Reader(MapReader):
 
     FIELDS: ClassVar = {
         "a world": (
-            "name units scale clock map walls wall_thickness robot places people objects furniture doors "
-            "contacts questions zones keep_out"
+            "name units scale clock map walls wall_thickness robot places people objects furniture "
+            "doors contacts questions zones keep_out"
         ),
         **MapReader.FIELDS,
         "the robot": "name start radius battery",

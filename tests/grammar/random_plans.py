@@ -77,6 +77,7 @@ def values(depth: int = 2) -> st.SearchStrategy[p.Value]:
         st.lists(inner, min_size=1, max_size=4).map(lambda parts: p.Sentence(tuple(parts))),
         st.builds(p.Share, inner, inner),
         inner.map(p.Elapsed),
+        st.builds(p.HasCome, inner, inner),
         st.lists(st.text(min_size=1), min_size=7, max_size=7).map(
             lambda names: p.Weekday(tuple(names))
         ),

@@ -211,7 +211,7 @@ def test_what_is_to_be_said_keeps_its_own_words(sentence: str, meaning: str) -> 
         ),
         (
             "wait until it is noon",
-            'while clock().time < "12:00" { wait(10) }',
+            'wait_until("12:00")',
         ),
         (
             "turn left until you see a person",

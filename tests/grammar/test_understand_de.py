@@ -138,7 +138,7 @@ def test_things_are_looked_for_whatever_their_endings(sentence: str, thing: str)
         ("warte eine halbe Stunde", "wait(1800)"),
         ("warte zwei Minuten und dreißig Sekunden", "wait(150)"),
         ("dreh dich um neunzig Grad nach rechts", "turn(-90)"),
-        ("warte bis halb acht", 'while clock().time < "07:30" { wait(10) }'),
+        ("warte bis halb acht", 'wait_until("07:30")'),
         ("wink dreimal", 'repeat 3 { gesture("wave") }'),
     ],
 )
@@ -291,7 +291,7 @@ def test_no_marks_are_left_in_explanations() -> None:
         ("fahr in zehn Minuten zur Apotheke", 'wait(600); goto("pharmacy")'),
         (
             "um acht Uhr sag guten Morgen",
-            'while clock().time < "08:00" { wait(10) }; say("Guten Morgen.")',
+            'wait_until("08:00"); say("Guten Morgen.")',
         ),
         (
             "frag alle im Wartezimmer, ob sie Hilfe brauchen, "

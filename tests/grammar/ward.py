@@ -19,6 +19,7 @@ from grammar.plan import (
     Figure,
     ForEach,
     Forever,
+    HasCome,
     Holds,
     If,
     Increase,
@@ -183,6 +184,8 @@ def _value(value: Any) -> str:
             return f"{how}_of({_value(of)})"
         case Elapsed(since):
             return f"minutes_since({_value(since)})"
+        case HasCome(time, since):
+            return f"has_come({_value(time)}, {_value(since)})"
         case Weekday(names):
             return f"weekday_called({', '.join(names)})"
         case Choice(among):

@@ -103,7 +103,13 @@ def test_a_morning_round() -> None:
 @pytest.mark.parametrize("name", METHODS)
 def test_every_method_crosses_the_wire_as_it_was_called(name: str) -> None:
     texts = {"str": "pharmacy", "list[str]": ["yes", "no"], "int": 3, "float": 1.5}
-    examples = {"time": "06:30", "code": "en", "options": ["yes", "no"], "skill": "sit", "thing": "stapler"}
+    examples = {
+        "time": "06:30",
+        "code": "en",
+        "options": ["yes", "no"],
+        "skill": "sit",
+        "thing": "stapler",
+    }
     given = {
         parameter.name: examples.get(
             parameter.name,

@@ -1,4 +1,4 @@
-"""When a time comes next: over midnight and the year's end, and in the nights when clocks are set."""
+"""When a time comes next: over midnight and the year's end, in the nights when clocks are set."""
 
 from __future__ import annotations
 

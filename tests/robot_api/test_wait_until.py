@@ -1,4 +1,4 @@
-"""A robot waits for a time of day: at night for the morning, over a weekend, until somebody stops it."""
+"""A robot waits for a time of day: at night for the morning, over a weekend, until a stop."""
 
 from __future__ import annotations
 
@@ -106,9 +106,7 @@ class ByTheMachine(Core):
 @pytest.mark.parametrize(
     "jump, waits", [(timedelta(minutes=29), 60), (timedelta(hours=9), 1), (timedelta(0), 1800)]
 )
-def test_a_clock_that_is_set_meanwhile_is_seen_within_a_second(
-    jump: timedelta, waits: int
-) -> None:
+def test_a_clock_that_is_set_meanwhile_is_seen_within_a_second(jump: timedelta, waits: int) -> None:
     robot = ByTheMachine(jump)
     robot.wait_until(StopFlag(), "23:00", None, None)
     assert max(robot.waited) <= 1.0

@@ -10,6 +10,7 @@ from typing import Final
 
 import msgspec
 
+from grammar.by_the_clock import by_the_clock
 from grammar.naming import naming, place_called
 from grammar.normal import normal
 from grammar.planning.heeding import heeded
@@ -124,6 +125,7 @@ def _draft(turn: Turn, written: Written, share: float) -> Draft | None:
     people = vocabulary(turn).people
     try:
         plan = normal(expanded(written.text, people, turn.lexicon, turn.language))
+        plan = normal(by_the_clock(plan, whiles=True))
         plan = heeded(turn, plan)
     except NotAPlan:
         return None
