@@ -6,6 +6,7 @@ import hashlib
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from datetime import datetime
 from functools import partial
 from typing import TYPE_CHECKING, Final, ParamSpec
 
@@ -86,15 +87,19 @@ def review(
     language: str = "en",
     seed: int | None = None,
     recall: Recall | None = None,
+    at: datetime | None = None,
 ) -> Review:
     """Check a program without moving anything. `simulation` is a copy of the simulated world, in
     which the program is tried; `seed` is what its `random` will begin with; `recall` answers what
-    was done of it before."""
+    was done of it before; `at` is when it would begin, if that is not now: what it does on
+    Christmas Eve at six, with the robot as it stands today."""
     findings = [*check(program, stub()), *violations(program, knowledge)]
     findings.sort(key=lambda finding: (finding.line, finding.column))
     acceptable = not any(finding.severity == "error" for finding in findings)
     tried = None
     if acceptable and simulation is not None:
+        if at is not None:
+            simulation.set_clock(at)
         tried = _tried(program, simulation, seed, knowledge, recall)
     return Review(
         program=program,

@@ -18,6 +18,7 @@ import threading
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
+from datetime import datetime
 from pathlib import Path
 from typing import Any, Final
 
@@ -106,14 +107,23 @@ class Runner:
 
     # --- before it runs
 
-    def check(self, program: str, language: str = "en", continues: int | None = None) -> Review:
+    def check(
+        self,
+        program: str,
+        language: str = "en",
+        continues: int | None = None,
+        at: datetime | None = None,
+    ) -> Review:
         """Review a program, and read it in a language; nothing moves. `continues`: only what is
-        left of it after that run is tried. Raises `NotPossible` if nothing is."""
+        left of it after that run is tried. Raises `NotPossible` if nothing is. `at`: it is tried as
+        if it began then; without a zone, by the clocks of the simulated world. An approval to run
+        it now does not rest on such a review."""
         recall = self._recall(continues, program)
         simulation = self._stage() if self._stage is not None else None
         world = as_it_is(simulation) if simulation is not None else None
-        made = self.review(program, self.knowledge, simulation, language, self._seed, recall)
-        self._reviews.keep(made, continues, world)
+        made = self.review(program, self.knowledge, simulation, language, self._seed, recall, at)
+        if at is None:
+            self._reviews.keep(made, continues, world)
         return made
 
     def unfinished(self, run: int | None = None) -> Unfinished | None:

@@ -19,6 +19,7 @@ from nl2robot.run.runlog import Run
 from nl2robot.run.runner import Runner
 from nl2robot.run.runs import Approval, Status
 from nl2robot.run.state import GOING, Reviewing
+from nl2robot.station.local_clock import moment_in
 from nl2robot.translate.planners import names
 from nl2robot.translate.talks import Talks
 from nl2robot.translate.thinking import EVENT, Thought, published
@@ -26,7 +27,7 @@ from nl2robot.translate.translation import Translation, translate
 from nl2robot.voice.services import Microphones, voice_services
 from nl2robot.wire import an_object, schema_of, service, service_of_call
 from robot_api.driver import StopFlag
-from robot_api.errors import Stopped
+from robot_api.errors import InvalidCall, Stopped
 from robot_api.methods import MAX_TEXT
 from robot_api.server import Context, Service
 
@@ -81,6 +82,15 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             raise Stopped("The sentence was given up.") from None
         remembered.adopt(mine)
         return translation
+
+    def checked(p: Mapping[str, Any]) -> Any:
+        try:
+            at = moment_in(runner.knowledge.world, p["at"]) if "at" in p else None
+        except ValueError:
+            raise InvalidCall(
+                f'"{p["at"]}" is no date and time. Write one such as "2026-12-24T06:00".'
+            ) from None
+        return runner.check(p["program"], p.get("language", "en"), p.get("continues"), at)
 
     def reviewed(p: Mapping[str, Any], context: Context) -> None:
         runner.present.happened(Reviewing(reviewer(context.connection), p["lies"]))
@@ -142,10 +152,16 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
             result=dict[str, list[str]],
         ),
         "program.check": service(
-            lambda p: runner.check(p["program"], p.get("language", "en"), p.get("continues")),
+            checked,
             "Review a program: types, what this robot lacks, a dry run; moves nothing. With"
-            " `continues`, of what is left of it after that run.",
-            {"program": _PROGRAM, "language": _LANGUAGE, "continues": _MAYBE_RUN},
+            " `continues`, of what is left of it after that run; with `at` (2026-12-24T06:00), as"
+            " if it began then.",
+            {
+                "program": _PROGRAM,
+                "language": _LANGUAGE,
+                "continues": _MAYBE_RUN,
+                "at": {"type": "string", "maxLength": 40},
+            },
             "program",
             result=Review,
         ),

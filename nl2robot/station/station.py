@@ -12,6 +12,7 @@ import os
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,6 +26,7 @@ from nl2robot.run.runner import Runner
 from nl2robot.run.state import GOING, Charging, Reviewing, State, on_wire
 from nl2robot.station.by_hand import BUSY, ByHand
 from nl2robot.station.harmless import ONLY_LOOKS
+from nl2robot.station.local_clock import now_in
 from nl2robot.station.part import STOP, Backstage
 from nl2robot.station.services import EVENTS, reviewer, services
 from nl2robot.translate.routines import open_routines
@@ -153,6 +155,7 @@ def simulated_station(
     sound: SoundFor | None = None,
     console: Callable[[Backstage], Console] | None = None,
     read: Read | None = None,
+    start: datetime | None = None,
 ) -> Iterator[SimulatedStation]:
     """Open a station with a simulated robot.
 
@@ -160,9 +163,10 @@ def simulated_station(
     waits for the robot. `pictures`: a folder in which a picture of every run is kept. `sound`: how
     it is heard (see `nl2robot.speech.speak.aloud`); without it, it is only written what is said.
     `console`: makes the web console, `nl2robot.console.app.Console`; once in a process. `read`: the
-    robot file that it keeps to.
+    robot file that it keeps to. `start`: what its clock shows at the beginning; None: as the
+    world's file says, else a Monday morning at eight.
     """
-    simulation = Simulation(world, seed=seed, speed=speed)
+    simulation = Simulation(world, seed=seed, speed=speed, start=start)
     heard = sound(lambda: simulation.time) if sound else SILENT
     driver = simulated(simulation, heard)
     if read is not None:
@@ -259,7 +263,7 @@ def robot_station(
     speaks and hears with, if it does so on this machine."""
 
     def stage(world: World) -> Simulation:
-        simulation = Simulation(world)
+        simulation = Simulation(world, start=now_in(world))
         simulation.limit_pace(**limits.pace(driver.capabilities()))
         drawn = tuple(zones())
         if drawn:

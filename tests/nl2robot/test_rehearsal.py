@@ -3,6 +3,7 @@
 import threading
 import time
 from collections.abc import Callable
+from datetime import datetime
 from textwrap import indent
 
 import pytest
@@ -15,6 +16,7 @@ from grammar.sampler import sensible
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.review import rehearsal
 from nl2robot.review.rehearsal import Budget, rehearse, watched
+from nl2robot.review.review import review
 from sim.simulation import Simulation
 from sim.world.loading import load_world
 
@@ -223,3 +225,29 @@ def test_a_skill_that_no_robot_has_fails(ward) -> None:
     told = rehearse('robot.do("juggle")\n', ward, skills={"sit": "sit down"})
     assert (told.status, told.line) == ("failed", 1)
     assert "juggle" in told.message
+
+
+# --- at another time
+
+
+def test_it_is_tried_when_it_will_happen(ward) -> None:
+    later = ward.copy()
+    later.set_clock(datetime(2026, 12, 24, 17, 59, 30))
+    told = rehearse(
+        'robot.wait_until("06:00")\nclock = robot.clock()\n'
+        'robot.say(f"It is {clock.weekday}, {clock.date}, {clock.time}.")\n',
+        later,
+    )
+    assert told.says == ("It is Friday, 2026-12-25, 06:00.",)
+    assert told.seconds == pytest.approx(12 * 3600 + 30, abs=10)
+
+
+def test_a_review_may_be_of_christmas_eve(ward) -> None:
+    knowledge, program = Knowledge(WORLD), "robot.set_volume(80)\nrobot.say(str(robot.clock()))\n"
+    eve = datetime(2026, 12, 24, 23, 0)
+    reviewed = review(program, knowledge, ward.copy(), at=eve)
+    assert reviewed.dry_run.says == ("23:00",)
+    assert "volume" in [risk.kind for risk in reviewed.risks]  # people sleep then
+    now = review(program, knowledge, ward.copy())
+    assert now.dry_run.says == ("08:00",)
+    assert "volume" not in [risk.kind for risk in now.risks]

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from sim.simulation import Simulation
 from sim.world.builtin import builtin_worlds
 from sim.world.checks import cut_doors, kind_of
 from sim.world.loading import load_world
@@ -87,6 +88,24 @@ def test_names_stay_what_they_look_like(load):  # type: ignore[no-untyped-def]
     world = load(SMALL)
     assert world.people[0].answers == ("yes", "no", "12:30")
     assert world.objects[0].code == "0042"
+
+
+def test_its_clocks_show_what_the_file_says(load):  # type: ignore[no-untyped-def]
+    daily = load(SMALL + 'clock: {start: "18:30", zone: Europe/Zurich}\n')
+    opening = Simulation(daily).clock()
+    assert f"{opening:%Y-%m-%d %H:%M %Z}" == "2026-03-02 18:30 CET"
+    summer = load(SMALL + 'clock: {start: "2026-07-01 06:00", zone: Europe/Zurich}\n')
+    assert f"{Simulation(summer).clock():%Y-%m-%d %H:%M %Z}" == "2026-07-01 06:00 CEST"
+    assert f"{Simulation(load(SMALL)).clock():%H:%M %Z}" == "08:00 UTC"
+
+
+def test_clocks_that_there_are_not_are_refused(problems):  # type: ignore[no-untyped-def]
+    lines = SMALL.count("\n")
+    assert problems(SMALL + "clock:\n  start: half past six\n  zone: Zürich\n") == [
+        f'{lines + 2}: "half past six" is no time to start at. Write "08:00", or with the day'
+        ' "2026-12-24 18:00", in quotes.',
+        f'{lines + 3}: "Zürich" is no time zone. Write one such as "Europe/Zurich".',
+    ]
 
 
 def test_references_become_exact_names(load):  # type: ignore[no-untyped-def]

@@ -21,6 +21,7 @@ from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import UserError
 from nl2robot.paths import pictures_folder
 from nl2robot.station.garbage import swept
+from nl2robot.station.local_clock import beginning_of
 from nl2robot.station.robots import Chosen, reached, zones_of
 from nl2robot.station.station import (
     Station,
@@ -138,6 +139,7 @@ def _station(
                     pictures=pictures_folder(),
                     sound=sound,
                     read=robot.read,
+                    start=beginning_of(world, options.clock) if options.clock else None,
                 )
             )
             # Who is spoken to in German answers so.

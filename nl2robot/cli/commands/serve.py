@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 
 from nl2robot.cli.options.robot import add_address, robot_of
 from nl2robot.cli.options.sound import add_sound, sound_of
-from nl2robot.cli.options.values import add_seed, speed, whole
+from nl2robot.cli.options.values import add_clock, add_seed, speed, whole
 from nl2robot.cli.options.world import add_world, world_of
 from nl2robot.cli.run_log import open_log
 from nl2robot.console.app import Console
@@ -25,6 +25,7 @@ from nl2robot.run.retention import DAY, kept_for
 from nl2robot.station.accounts import Accounts
 from nl2robot.station.entrance import PAGES_AT, Entrance
 from nl2robot.station.garbage import swept
+from nl2robot.station.local_clock import beginning_of
 from nl2robot.station.machine import allow_open_files, outdated_python
 from nl2robot.station.robots import places_of, reached, zones_of
 from nl2robot.station.station import robot_station, simulated_station
@@ -103,6 +104,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_address(parser)
     add_world(parser)
     add_seed(parser)
+    add_clock(parser, "the real time")
     add_sound(parser, browsers=True)
 
 
@@ -129,6 +131,7 @@ def run(options: argparse.Namespace) -> int:
                 sound=sound,
                 console=Console,
                 read=robot.read,
+                start=beginning_of(world, options.clock),
             )
             server = stack.enter_context(simulated).server
         else:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from nl2robot.cli.options.values import add_seed, speed
+from nl2robot.cli.options.values import add_clock, add_seed, speed
 from nl2robot.cli.options.world import add_world
 from nl2robot.errors import UserError
 from nl2robot.paths import authority_file
@@ -76,3 +76,4 @@ def add_robot(parser: argparse.ArgumentParser) -> None:
     )
     add_world(parser)
     add_seed(parser)
+    add_clock(parser, "a Monday at 08:00")

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from nl2robot.errors import UserError
+from sim.world.starts import starting
 
 
 def words(given: str) -> str:
@@ -42,6 +43,25 @@ def speed(given: str) -> float:
     if not (math.isfinite(value) and value > 0):
         raise argparse.ArgumentTypeError(f"{given!r} is not a number above 0, such as 1 or 0.5")
     return value
+
+
+def clock(given: str) -> str:
+    """An argument that says when a simulation begins."""
+    try:
+        starting(given)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+    return given
+
+
+def add_clock(parser: argparse.ArgumentParser, otherwise: str) -> None:
+    parser.add_argument(
+        "--clock",
+        type=clock,
+        metavar="TIME",
+        help="what the simulated clock shows at the beginning: 08:00, or '2026-12-24 18:00'"
+        f" (default: as the world's file says, else {otherwise})",
+    )
 
 
 def read_program(file: str) -> str:
