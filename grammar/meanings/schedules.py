@@ -5,16 +5,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from datetime import date
 from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse
+from grammar.errors import NotUnderstood
 from grammar.meanings.amounts import time_said
 from grammar.meanings.registry import meaning
 from grammar.requests import When
 from robot_api.methods import WEEKDAYS
 
 A_MINUTE: Final = 60
+A_LEAP_YEAR: Final = 2028
 _EITHER_HALF: Final = range(6, 9)
 """What o'clock people say of mornings and of evenings alike, where nothing else tells which."""
 
@@ -33,7 +36,8 @@ def set_times(d: Discourse, node: Node) -> When | None:
     when = When(
         weekdays=_weekdays(d, node, str(fixed.get("weekdays", ""))),
         minutes=int(fixed["minutes"]) if "minutes" in fixed else None,
-        repeats=True,
+        date=_date(d, node),
+        repeats=_part(node, "date") is None,
         since=since,
         until=until,
     )
@@ -68,6 +72,20 @@ def _either(d: Discourse, node: Node, time: str, guessed: bool) -> bool:
 def _window(d: Discourse, node: Node, name: str) -> str | None:
     part = _part(node, name)
     return time_said(d, part)[0] if part is not None else None
+
+
+def _date(d: Discourse, node: Node) -> str | None:
+    """That day of the month, with the year if it is said. Raises `NotUnderstood`."""
+    said = _part(node, "date")
+    if said is None:
+        return None
+    day, year = float(d.get(said, "day")), d.get(said, "year")
+    try:
+        that = date(int(year) if year else A_LEAP_YEAR, int(d.get(said, "month")), int(day))
+    except ValueError:
+        words = d.words(said.start, said.end)
+        raise NotUnderstood(d.language.phrase("no_such_time", time=words)) from None
+    return f"{that}" if year else f"{that:%m-%d}"
 
 
 def _weekdays(d: Discourse, node: Node, fixed: str) -> tuple[int, ...]:
