@@ -48,7 +48,8 @@ def set_times(d: Discourse, node: Node) -> When | None:
         when = replace(when, minutes=int(every))
     if (count := _part(node, "count")) is not None:
         when = replace(when, count=int(d.build(count)))
-    times, unclear = set(), ()
+    times: set[str] = set()
+    unclear: tuple[str, ...] = ()
     for each in _named(node, "clock"):
         time, guessed = time_said(d, each, half)
         times.add(time)
