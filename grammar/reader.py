@@ -15,7 +15,6 @@ from dataclasses import replace
 from typing import Final
 
 import grammar.meanings.all_meanings  # noqa: F401 (what the rules name is entered there)
-from grammar.by_the_clock import by_the_clock
 from grammar.chart import Chart, Node, TooMuch
 from grammar.company import in_company
 from grammar.coverage import in_manner, left_out, unheeded, unspoken
@@ -30,6 +29,7 @@ from grammar.names import Names
 from grammar.naming import joined_up, naming, place_called
 from grammar.number_options import with_numbers
 from grammar.plan import Plan, Text, Value
+from grammar.planning.by_the_clock import by_the_clock
 from grammar.plausible import implausible
 from grammar.prepared import prepared
 from grammar.refusals import forbidden, is_half, no_thing, not_said, out_of_range, strange, why_not

@@ -27,14 +27,12 @@ from sim.snapshot import Snapshot
 from sim.world.geometry import GridMap, Segment, map_corners
 from sim.world.maps import free_floor
 from sim.world.model import Person, Place, World, Zone
+from sim.world.starts import beginning
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
 
 Listener = Callable[[str, dict[str, Any]], None]
-
-OPENING = datetime(2026, 3, 2, 8, 0)  # a Monday
-"""When a simulation starts if nobody says, by the clocks of the world's zone."""
 
 RAYS, REACH = 36, 8.0
 """Of the lidar: how many, and how many metres."""
@@ -48,13 +46,6 @@ _TO_BORDER = BORDER_WIDTH / 2 + 1e-3
 _SCAN_EVERY = 6  # steps: ten times a second
 _SAMPLE_EVERY = 12
 _MOST_SAMPLES = 60_000  # more than three hours of driving; then the oldest go
-
-
-def starting(world: World, start: datetime | None) -> datetime:
-    """When a simulation of it starts: then, else as the world's file says, else at the `OPENING`;
-    what has no zone is by the clocks of the world, or in UTC."""
-    moment = start or world.clock.starts(OPENING)
-    return moment if moment.tzinfo is not None else moment.replace(tzinfo=world.clock.zone_info)
 
 
 class Hospital:
@@ -74,7 +65,7 @@ class Hospital:
                 "Clean its image, or scale it down."
             )
         self.world = world
-        self.start = starting(world, start)
+        self.start = beginning(world, start)
         self.random = random.Random(seed)
         self.steps = 0
         self.leapt = 0

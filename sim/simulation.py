@@ -21,7 +21,7 @@ import msgspec
 
 from sim.behaviours import company, driving, handling, searching, talking
 from sim.behaviours.talking import Reply
-from sim.hospital import Hospital, Listener, chart_of, starting
+from sim.hospital import Hospital, Listener, chart_of
 from sim.people import likely, perception
 from sim.people.perception import Seen
 from sim.physics.bodies import STEP
@@ -32,6 +32,7 @@ from sim.runner import Behaviour, Runner, Stop
 from sim.snapshot import Snapshot, snapshot
 from sim.view import View, view
 from sim.world.model import Place, World, Zone
+from sim.world.starts import beginning
 
 __all__ = ["Behaviour", "Reply", "RobotState", "Seen", "Simulation", "Stop", "View"]
 
@@ -143,7 +144,7 @@ class Simulation:
         """It is that date and time now; what has no zone is by the clocks of the world."""
         with self._runner.turn:
             passed = timedelta(seconds=self._hospital.time)
-            now = starting(self.world, moment)
+            now = beginning(self.world, moment)
             self._hospital.start = (now.astimezone(UTC) - passed).astimezone(now.tzinfo)
 
     @property

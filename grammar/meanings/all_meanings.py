@@ -59,7 +59,6 @@ import grammar.meanings.remarks
 import grammar.meanings.repeating
 import grammar.meanings.requests
 import grammar.meanings.rounds
-import grammar.meanings.schedules
 import grammar.meanings.sharing
 import grammar.meanings.sights
 import grammar.meanings.signatures

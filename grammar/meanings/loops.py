@@ -7,7 +7,6 @@ from dataclasses import replace
 from math import ceil
 from typing import Final
 
-from grammar.by_the_clock import SHOWN, outside_of
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing, as_value
 from grammar.errors import NotUnderstood
@@ -58,6 +57,7 @@ from grammar.plan import (
     Value,
     While,
 )
+from grammar.planning.by_the_clock import SHOWN, outside_of
 from grammar.tidy import in_each_round, mentions, nodes
 
 HOLDS: Final = frozenset({"goto", "dock", "show", "emotion", "wait"})

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from datetime import datetime
 
+from sim.world.model import World
 from sim.world.yaml_nodes import short
+
+OPENING = datetime(2026, 3, 2, 8, 0)  # a Monday
+"""When a simulation starts if nobody says, by the clocks of the world's zone."""
 
 
 def starting(said: str) -> tuple[datetime, bool]:
@@ -19,3 +23,10 @@ def starting(said: str) -> tuple[datetime, bool]:
         f'"{short(said)}" is no time to start at. Write "08:00", or with the day'
         ' "2026-12-24 18:00", in quotes.'
     )
+
+
+def beginning(world: World, start: datetime | None) -> datetime:
+    """When a simulation of it starts: then, else as the world's file says, else at the `OPENING`;
+    what has no zone is by the clocks of the world, or in UTC."""
+    moment = start or world.clock.starts(OPENING)
+    return moment if moment.tzinfo is not None else moment.replace(tzinfo=world.clock.zone_info)

@@ -6,8 +6,8 @@ from datetime import datetime
 
 import pytest
 
-from grammar.by_the_clock import by_the_clock
 from grammar.plan import Plan
+from grammar.planning.by_the_clock import by_the_clock
 from grammar.program import write_program
 from grammar.program_parser import parse_program
 from grammar.understand import understand

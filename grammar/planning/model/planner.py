@@ -10,9 +10,9 @@ from typing import Final
 
 import msgspec
 
-from grammar.by_the_clock import by_the_clock
 from grammar.naming import naming, place_called
 from grammar.normal import normal
+from grammar.planning.by_the_clock import by_the_clock
 from grammar.planning.heeding import heeded
 from grammar.planning.model.expansion import expanded
 from grammar.planning.model.expressions import CALLS
