@@ -31,6 +31,9 @@ const TOOLS = {look: Look, send: Send, localise: Localise, zone: Zone, place: Na
 const NEAR = 0.6; // metres from a place's pose that mean the place
 const NEAR_PIXELS = 14;
 const CLOSE_UP = 48; // pixels a metre, for a place that is shown
+/** Milliseconds from picture to picture of what moves by itself, in which that moves a pixel or two;
+ * more pictures only warm the tablet. */
+const MOVES_EVERY = 45;
 
 const STYLE = '/static/floor/floor.css';
 
@@ -61,6 +64,7 @@ export class FloorMap {
   #plan = null;
   #planStale = true;
   #drawing = 0;
+  #moving = 0;
   #undo = [];
   #tool = new Look(this);
   #mode = 'look';
@@ -173,6 +177,7 @@ export class FloorMap {
   close() {
     for (const undo of this.#undo) undo();
     cancelAnimationFrame(this.#drawing);
+    clearTimeout(this.#moving);
     this.floor = null;
     this.root.replaceChildren();
   }
@@ -433,7 +438,15 @@ export class FloorMap {
       this.#planStale = true;
     }
     this.#tellInWords();
-    this.draw();
+    this.#drawMoving();
+  }
+
+  /** Draw what moves by itself. */
+  #drawMoving() {
+    this.#moving ||= setTimeout(() => {
+      this.#moving = 0;
+      this.draw();
+    }, MOVES_EVERY);
   }
 
   #scene(now = performance.now()) {
@@ -466,7 +479,8 @@ export class FloorMap {
     });
     this.#tool.paint(new Pen(context, this.camera), this.palette);
     const unsettled = this.layers.names && !this.#plan.settled(this.camera);
-    if (unsettled || (!this.#replay && this.motion.moving(now))) this.draw();
+    if (unsettled) this.draw();
+    else if (!this.#replay && this.motion.moving(now)) this.#drawMoving();
   }
 
   #setLayer(name, on) {
