@@ -306,7 +306,10 @@ const PICTURE = `
 </svg>`;
 
 function set(part, attributes) {
-  for (const [name, value] of Object.entries(attributes)) part.setAttribute(name, value);
+  // Most of a face is as it was a moment ago, and only what changes has to be drawn.
+  for (const [name, value] of Object.entries(attributes)) {
+    if (part.getAttribute(name) !== `${value}`) part.setAttribute(name, value);
+  }
 }
 
 /** How much farther away a lid is that is as good as open. */
