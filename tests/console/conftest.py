@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 from PIL import Image
-from playwright.sync_api import Browser, Page, expect, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, expect, sync_playwright
 
 from robot_api.client import Robot
 
@@ -121,6 +121,13 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
         yield served
 
 
+@pytest.fixture(scope="module")
+def hurried(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """One in which half a minute's way takes the robot three seconds."""
+    with serving(tmp_path_factory.mktemp("hurried"), "--speed", "10") as served:
+        yield served
+
+
 @pytest.fixture(scope="session")
 def chromium() -> Iterator[Browser]:
     """The browser of this worker."""
@@ -152,14 +159,66 @@ def at_most(seconds: float) -> Iterator[None]:
         signal.signal(signal.SIGALRM, before)
 
 
+class Browsers:
+    """Browsers that remember of the story before nothing but the files that they fetched, which
+    would cost the server and them as much as all the rest of a page."""
+
+    def __init__(self, chromium: Browser) -> None:
+        self._chromium = chromium
+        self._free: dict[str, list[BrowserContext]] = {}
+        """By what is set in them."""
+        self._taken: list[tuple[str, BrowserContext]] = []
+
+    def page(self, **settings: Any) -> Page:
+        """A page in a browser that no other page of this story is in."""
+        kind = repr(sorted(settings.items()))
+        free = self._free.setdefault(kind, [])
+        context = free.pop() if free else self._chromium.new_context(**settings)
+        context.set_default_timeout(SOON)
+        self._taken.append((kind, context))
+        page = context.new_page()
+        everywhere = {"origin": "*", "storageTypes": "local_storage"}
+        context.new_cdp_session(page).send("Storage.clearDataForOrigin", everywhere)
+        return page
+
+    def forget(self) -> None:
+        """The story is over."""
+        while self._taken:
+            kind, context = self._taken.pop()
+            if self._emptied(context):
+                self._free[kind].append(context)
+
+    def close(self) -> None:
+        for context in (context for free in self._free.values() for context in free):
+            with suppress(TimeoutError), at_most(20):
+                context.close()
+
+    def _emptied(self, context: BrowserContext) -> bool:
+        # On a busy machine Chromium now and then never says that it has closed one; it closes what
+        # is left with itself.
+        with suppress(TimeoutError), at_most(20):
+            for page in context.pages:
+                page.close()
+            context.clear_cookies()
+            return True
+        return False
+
+
+@pytest.fixture(scope="module")
+def browsers(chromium: Browser) -> Iterator[Browsers]:
+    """Those of the stories of a file, which have one server."""
+    browsers = Browsers(chromium)
+    yield browsers
+    browsers.close()
+
+
 Look = Callable[..., Page]
 Picture = Callable[[Page, str], None]
 
 
 @pytest.fixture
-def look(chromium: Browser, served: Served) -> Iterator[Look]:
+def look(browsers: Browsers, served: Served) -> Iterator[Look]:
     """Open a page of the console in a browser of its own: look("/map", width=390, dark=True)."""
-    opened = []
 
     def open_page(
         path: str = "/",
@@ -172,27 +231,20 @@ def look(chromium: Browser, served: Served) -> Iterator[Look]:
         asks_always: bool = True,
         **more: Any,
     ) -> Page:
-        context = chromium.new_context(
+        page = browsers.page(
             viewport={"width": width, "height": height},
             color_scheme="dark" if dark else "light",
             locale=language,
             permissions=["camera", "microphone"],
             **more,
         )
-        context.set_default_timeout(SOON)
-        opened.append(context)
-        page = context.new_page()
         if asks_always:  # so that stories may end with a decision, whatever is said in them
             page.add_init_script("localStorage.setItem('harmless', 'no')")
         page.goto((url or served.url) + path)
         return page
 
     yield open_page
-    for context in opened:
-        # On a busy machine Chromium now and then never says that it has closed one; it closes what
-        # is left with itself.
-        with suppress(TimeoutError), at_most(20):
-            context.close()
+    browsers.forget()
 
 
 @pytest.fixture

@@ -56,7 +56,10 @@ def test_an_operator_looks_through_it_and_is_told_when_the_picture_is_old(
     robot.camera = b64encode(jpeg("green")).decode()
     toggle.click()
     expect(picture).to_be_visible()
-    assert picture.evaluate("image => [image.naturalWidth, image.naturalHeight]") == [64, 48]
+    page.wait_for_function(
+        "(({naturalWidth: wide, naturalHeight: high}) => wide === 64 && high === 48)"
+        "(document.querySelector('.camera-picture'))"
+    )
     old = page.get_by_text("This picture is old.")
     expect(old).to_have_count(0)
 

@@ -236,8 +236,8 @@ def test_what_only_looks_or_tells_needs_no_question(look: Look, served: Served) 
     expect(page.get_by_role("button", name="Approve and run")).to_be_enabled()
 
 
-def test_a_poll_is_answered_in_the_conversation_by_person(look: Look, served: Served) -> None:
-    page = look(language="de")
+def test_a_poll_is_answered_in_the_conversation_by_person(look: Look, hurried: Served) -> None:
+    page = look(url=hurried.url, language="de")
     page.get_by_label("Sagen Sie dem Roboter, was er tun soll").fill(
         "frag alle in der Lobby, ob sie Tee möchten, und sag mir das Ergebnis"
     )
@@ -346,9 +346,10 @@ def test_the_desk_answers_for_a_visitor_who_is_silent(look: Look, served: Served
 
 
 def test_what_is_answered_by_the_visitor_needs_nobody_at_the_desk(
-    look: Look, served: Served
+    look: Look, hurried: Served
 ) -> None:
-    page = look(f"/?program={quote(TEA)}", language="fr", width=390, height=844)
+    address = hurried.url
+    page = look(f"/?program={quote(TEA)}", url=address, language="fr", width=390, height=844)
     approve(page, "Approuver et lancer")
     expect(page.locator(".said.by-robot").last).to_contain_text("Tom : ", timeout=60_000)
     expect(page.get_by_role("form", name="Répondre à leur place")).to_have_count(0)

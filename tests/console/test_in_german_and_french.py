@@ -17,12 +17,12 @@ from tests.console.test_face import end_of, start
     [("de", "habe ich hier gesagt: Apotheke"), ("fr", "ici : pharmacie")],
 )
 def test_what_the_empty_line_proposes_is_understood_and_done(
-    look: Look, served: Served, picture: Picture, language: str, answer: str
+    look: Look, hurried: Served, picture: Picture, language: str, answer: str
 ) -> None:
-    with served.robot() as robot:
+    with hurried.robot() as robot:
         robot.localize("charger")
     words = texts("desk", language)
-    page = look(language=language)
+    page = look(url=hurried.url, language=language)
     page.get_by_label(words["type_here"]).fill(words["placeholder"])
     page.keyboard.press("Enter")
     expect(page.get_by_role("heading", name=words["would_do"])).to_be_visible()
