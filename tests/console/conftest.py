@@ -36,7 +36,8 @@ FLAGS = (
     "--disable-component-update",
     "--disable-sync",
     "--use-fake-ui-for-media-stream",
-    "--use-fake-device-for-media-stream",
+    # pictures that nobody looks at, each of which is encoded and decoded
+    "--use-fake-device-for-media-stream=fps=5",
     "--autoplay-policy=no-user-gesture-required",
 )
 
