@@ -21,7 +21,9 @@ FOLDER: Final = "texts"
 """In the folder of a language that is added."""
 CONSOLE: Final = Path(__file__).parent / "console" / "texts"
 """The texts of the pages, by page and name."""
-BY_LANGUAGE: Final = ("answers", "courtesies", "going_on", "risks", "sightings", "terminal")
+BY_LANGUAGE: Final = (
+    *("answers", "courtesies", "going_on", "risks", "schedules", "sightings", "terminal"),
+)
 """The files of `data/` that may be brought so."""
 
 

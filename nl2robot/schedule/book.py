@@ -1,0 +1,419 @@
+"""The book of appointments, in SQLite: what is due when, what came of it, what has to be told.
+
+Whatever is decided is committed before it is done, so that a crash or a kill at any moment neither
+loses a time nor has anything run twice: a time is in the book once for each appointment, and only
+whoever turns it from "due" to "claimed" may begin it. What a process had claimed that is gone is
+told by `left_over`. Several processes may use the file.
+"""
+
+from __future__ import annotations
+
+import os
+import sqlite3
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Final
+
+import msgspec
+
+from nl2robot.errors import UserError
+from nl2robot.run.process import lives, own_process
+from nl2robot.schedule.appointments import Appointment, Notice, NoticeKind, Occurrence, State, Why
+from nl2robot.schedule.rhythm import Rhythm
+from robot_api.errors import cause
+
+FILE: Final = "schedule.sqlite"
+"""Its name in the data folder."""
+_VERSION: Final = 1
+_SCHEMA: Final = """
+CREATE TABLE IF NOT EXISTS appointments (
+    id INTEGER PRIMARY KEY AUTOINCREMENT,
+    program TEXT NOT NULL,
+    sha256 TEXT NOT NULL,            -- of exactly this program, which is what was approved
+    sentence TEXT NOT NULL,
+    plan TEXT,                       -- JSON
+    language TEXT NOT NULL,
+    rhythm TEXT,                     -- JSON, see nl2robot/schedule/rhythm.py
+    trigger TEXT,                    -- JSON, of one that something else than the clock begins
+    robot TEXT NOT NULL,
+    approved_by TEXT NOT NULL,
+    approved_at REAL NOT NULL,       -- seconds since the epoch, as all times here
+    approved_until REAL NOT NULL,
+    reviewed TEXT NOT NULL,          -- JSON, see nl2robot/schedule/findings.py
+    insists INTEGER NOT NULL DEFAULT 0,
+    priority INTEGER NOT NULL,
+    makes_up INTEGER NOT NULL,       -- minutes
+    paused INTEGER NOT NULL DEFAULT 0,
+    asked TEXT,                      -- why it waits for a new approval
+    added REAL NOT NULL,
+    removed REAL,
+    looked REAL NOT NULL             -- until then all times are in `occurrences`
+);
+CREATE TABLE IF NOT EXISTS occurrences (
+    id INTEGER PRIMARY KEY AUTOINCREMENT,
+    appointment INTEGER NOT NULL REFERENCES appointments(id),
+    due REAL NOT NULL,
+    state TEXT NOT NULL,
+    run INTEGER,
+    note TEXT,
+    process INTEGER,                 -- that claimed it, see nl2robot/run/process.py
+    began REAL,
+    ended REAL,
+    waited_for TEXT,
+    UNIQUE (appointment, due)
+);
+CREATE INDEX IF NOT EXISTS open_occurrences ON occurrences (state)
+    WHERE state IN ('due', 'claimed', 'running');
+CREATE TABLE IF NOT EXISTS notices (
+    id INTEGER PRIMARY KEY AUTOINCREMENT,
+    time REAL NOT NULL,
+    kind TEXT NOT NULL,
+    appointment INTEGER NOT NULL,
+    occurrence INTEGER,
+    parts TEXT NOT NULL              -- JSON
+);
+"""
+_LARGEST: Final = 2**63 - 1
+_BUSY_SECONDS: Final = 5.0
+
+
+class BookError(UserError):
+    """The book cannot be read or written."""
+
+
+class NoAppointment(UserError):
+    def __init__(self, number: int) -> None:
+        super().__init__(
+            f"There is no appointment {number}. `nl2robot schedule` lists those there are."
+        )
+
+
+class Book:
+    """The book in one file; made with its folder, if missing. Any thread may use it. Raises
+    `BookError` wherever the file cannot be used."""
+
+    def __init__(self, path: Path | str, clock: Callable[[], float] = time.time) -> None:
+        self.path = Path(path)
+        self._clock = clock
+        self._lock = threading.RLock()
+        with self._trouble():
+            if str(path) != ":memory:":
+                self.path.parent.mkdir(parents=True, exist_ok=True)
+                # Before SQLite makes it, so that it is never anybody else's to read.
+                os.close(os.open(self.path, os.O_RDWR | os.O_CREAT, 0o600))
+                self.path.chmod(0o600)
+            self._db = sqlite3.connect(
+                path, check_same_thread=False, isolation_level=None, timeout=_BUSY_SECONDS
+            )
+            self._db.execute("PRAGMA journal_mode=WAL")
+            self._db.execute("PRAGMA secure_delete=ON")  # what is deleted can be read nowhere
+            [version] = self._db.execute("PRAGMA user_version").fetchone()
+            if version < _VERSION:
+                self._db.executescript(
+                    f"BEGIN IMMEDIATE; {_SCHEMA} PRAGMA user_version = {_VERSION}; COMMIT;"
+                )
+
+    def close(self) -> None:
+        with self._lock:
+            self._db.close()
+
+    @contextmanager
+    def at_once(self) -> Iterator[None]:
+        """What is written meanwhile is in the book whole or not at all; nobody else writes."""
+        with self._lock, self._trouble():
+            if self._db.in_transaction:
+                yield
+                return
+            self._db.execute("BEGIN IMMEDIATE")
+            try:
+                yield
+                self._db.execute("COMMIT")
+            except BaseException:
+                if self._db.in_transaction:
+                    self._db.execute("ROLLBACK")
+                raise
+
+    # --- appointments
+
+    def add(
+        self,
+        *,
+        program: str,
+        sha256: str,
+        sentence: str,
+        language: str,
+        robot: str,
+        approved_by: str,
+        approved_until: float,
+        reviewed: str,
+        priority: int,
+        makes_up: int,
+        rhythm: Rhythm | None = None,
+        trigger: Any = None,
+        plan: str | None = None,
+        insists: bool = False,
+    ) -> Appointment:
+        """Note an approved program with its times; they count from now on."""
+        now = self._clock()
+        values = {
+            "program": program,
+            "sha256": sha256,
+            "sentence": sentence,
+            "plan": plan,
+            "language": language,
+            "rhythm": _json(rhythm),
+            "trigger": _json(trigger),
+            "robot": robot,
+            "approved_by": approved_by,
+            "approved_at": now,
+            "approved_until": approved_until,
+            "reviewed": reviewed,
+            "insists": int(insists),
+            "priority": priority,
+            "makes_up": makes_up,
+            "added": now,
+            "looked": now,
+        }
+        cursor = self._write(
+            f"INSERT INTO appointments ({', '.join(values)})"
+            f" VALUES ({', '.join('?' * len(values))})",
+            *values.values(),
+        )
+        return self.appointment(int(cursor.lastrowid or 0))
+
+    def appointments(self, robot: str | None = None, removed: bool = False) -> list[Appointment]:
+        """Those of a robot, or all, by their numbers; `removed`: those too that are no more."""
+        found = map(
+            _appointment,
+            self._read(
+                "SELECT * FROM appointments WHERE (? IS NULL OR robot = ?)"
+                " AND (? OR removed IS NULL) ORDER BY id",
+                *(robot, robot, int(removed)),
+            ),
+        )
+        return list(found)
+
+    def appointment(self, number: int) -> Appointment:
+        """Raises `NoAppointment`, also for one that was removed."""
+        rows = self._read(
+            "SELECT * FROM appointments WHERE id = ? AND removed IS NULL", min(number, _LARGEST)
+        )
+        if not rows:
+            raise NoAppointment(number)
+        return _appointment(rows[0])
+
+    def approve(self, number: int, by: str, until: float, reviewed: str, insists: bool) -> None:
+        """Note that somebody approved it anew."""
+        self._write(
+            "UPDATE appointments SET approved_by = ?, approved_at = ?, approved_until = ?,"
+            " reviewed = ?, insists = ?, asked = NULL WHERE id = ?",
+            *(by, self._clock(), until, reviewed, int(insists), number),
+        )
+
+    def ask(self, number: int, why: Why) -> None:
+        """It waits for a new approval from now on."""
+        self._write("UPDATE appointments SET asked = ? WHERE id = ?", why, number)
+
+    def pause(self, number: int, paused: bool = True) -> None:
+        self._write("UPDATE appointments SET paused = ? WHERE id = ?", int(paused), number)
+
+    def remove(self, number: int) -> None:
+        """It is not done any more; what was due and has not begun is skipped."""
+        with self.at_once():
+            now = self._clock()
+            self._write("UPDATE appointments SET removed = ? WHERE id = ?", now, number)
+            self._write(
+                "UPDATE occurrences SET state = 'skipped', note = 'removed', ended = ?"
+                " WHERE appointment = ? AND state = 'due'",
+                *(now, number),
+            )
+
+    def look_until(self, number: int, moment: float) -> None:
+        self._write("UPDATE appointments SET looked = ? WHERE id = ?", moment, number)
+
+    # --- the times at which they are due
+
+    def come(
+        self, appointment: int, due: float, state: State = "due", note: str | None = None
+    ) -> Occurrence | None:
+        """Note that an appointment is due at that moment, or what became of that at once; None if
+        it was in the book already."""
+        ended = None if state == "due" else self._clock()
+        cursor = self._write(
+            "INSERT OR IGNORE INTO occurrences (appointment, due, state, note, ended)"
+            " VALUES (?, ?, ?, ?, ?)",
+            *(appointment, due, state, note, ended),
+        )
+        return self.occurrence(int(cursor.lastrowid or 0)) if cursor.rowcount else None
+
+    def occurrence(self, number: int) -> Occurrence:
+        return Occurrence(**self._read("SELECT * FROM occurrences WHERE id = ?", number)[0])
+
+    def of_moment(self, appointment: int, due: float) -> Occurrence | None:
+        """What is known of that time of an appointment."""
+        rows = self._read(
+            "SELECT * FROM occurrences WHERE appointment = ? AND due = ?", appointment, due
+        )
+        return Occurrence(**rows[0]) if rows else None
+
+    def skipped_from(self, appointment: int, moment: float) -> list[Occurrence]:
+        """The times from a moment on that somebody has called off beforehand."""
+        rows = self._read(
+            "SELECT * FROM occurrences WHERE appointment = ? AND due >= ? AND state = 'skipped'"
+            " ORDER BY due",
+            *(appointment, moment),
+        )
+        return [Occurrence(**row) for row in rows]
+
+    def waiting(self, robot: str) -> list[tuple[Occurrence, Appointment]]:
+        """What is due of a robot and not begun: by priority, then by time."""
+        known = {each.id: each for each in self.appointments(robot)}
+        rows = self._read("SELECT * FROM occurrences WHERE state = 'due'")
+        found = [
+            (Occurrence(**row), known[row["appointment"]])
+            for row in rows
+            if row["appointment"] in known
+        ]
+        return sorted(found, key=lambda pair: (-pair[1].priority, pair[0].due, pair[0].id))
+
+    def wait_for(self, occurrence: int, why: str) -> None:
+        """Note what it waits for."""
+        self._write("UPDATE occurrences SET waited_for = ? WHERE id = ?", why, occurrence)
+
+    def claim(self, occurrence: int) -> bool:
+        """Take what is due, so that nobody else does; False if it is not due any more."""
+        cursor = self._write(
+            "UPDATE occurrences SET state = 'claimed', process = ?, began = ?"
+            " WHERE id = ? AND state = 'due'",
+            *(own_process(), self._clock(), occurrence),
+        )
+        return cursor.rowcount == 1
+
+    def release(self, occurrence: int) -> None:
+        """Put back what was claimed: its program was not begun."""
+        self._write(
+            "UPDATE occurrences SET state = 'due', process = NULL, began = NULL"
+            " WHERE id = ? AND state = 'claimed'",
+            occurrence,
+        )
+
+    def runs(self, occurrence: int, run: int) -> None:
+        """Note that its program runs, and as which run of the log."""
+        self._write(
+            "UPDATE occurrences SET state = 'running', run = ? WHERE id = ? AND state = 'claimed'",
+            *(run, occurrence),
+        )
+
+    def end(self, occurrence: int, state: State, note: str | None = None) -> bool:
+        """Note what came of it; False if that is known already."""
+        cursor = self._write(
+            "UPDATE occurrences SET state = ?, note = ?, ended = ?"
+            " WHERE id = ? AND state IN ('due', 'claimed', 'running')",
+            *(state, note, self._clock(), occurrence),
+        )
+        return cursor.rowcount == 1
+
+    def left_over(self, robot: str) -> list[tuple[Occurrence, Appointment]]:
+        """What was begun of a robot by a process that is gone, and has no end."""
+        known = {each.id: each for each in self.appointments(robot, removed=True)}
+        rows = self._read("SELECT * FROM occurrences WHERE state IN ('claimed', 'running')")
+        return [
+            (Occurrence(**row), known[row["appointment"]])
+            for row in rows
+            if row["appointment"] in known and (row["process"] is None or not lives(row["process"]))
+        ]
+
+    def history(self, appointment: int | None = None, last: int = 100) -> list[Occurrence]:
+        """The latest times that came, the newest first; those to come that were called off are
+        among them."""
+        rows = self._read(
+            "SELECT * FROM occurrences WHERE ? IS NULL OR appointment = ?"
+            " ORDER BY due DESC, id DESC LIMIT ?",
+            *(appointment, appointment, last),
+        )
+        return [Occurrence(**row) for row in rows]
+
+    # --- what is to be told
+
+    def tell(
+        self,
+        kind: NoticeKind,
+        appointment: int,
+        occurrence: int | None = None,
+        parts: Mapping[str, Any] | None = None,
+    ) -> Notice:
+        """Keep something that somebody has to know."""
+        cursor = self._write(
+            "INSERT INTO notices (time, kind, appointment, occurrence, parts)"
+            " VALUES (?, ?, ?, ?, ?)",
+            *(self._clock(), kind, appointment, occurrence, _json(dict(parts or {}))),
+        )
+        return self.notices(int(cursor.lastrowid or 0) - 1, 1)[0]
+
+    def notices(self, after: int = 0, last: int = 100) -> list[Notice]:
+        """The newest notices with a higher number than that, the oldest of them first."""
+        rows = self._read(
+            "SELECT * FROM notices WHERE id > ? ORDER BY id DESC LIMIT ?", after, last
+        )
+        return [
+            Notice(**{**row, "parts": msgspec.json.decode(row["parts"])}) for row in reversed(rows)
+        ]
+
+    # --- forgetting
+
+    def forget(self, before: float) -> None:
+        """Delete what was done, and told, before that moment, and what was removed before it."""
+        with self.at_once():
+            self._write(
+                "DELETE FROM occurrences WHERE due < ?"
+                " AND state NOT IN ('due', 'claimed', 'running')",
+                before,
+            )
+            self._write("DELETE FROM notices WHERE time < ?", before)
+            self._write(
+                "DELETE FROM appointments WHERE removed < ?"
+                " AND id NOT IN (SELECT appointment FROM occurrences)",
+                before,
+            )
+
+    # --- the file
+
+    def _write(self, sql: str, *values: Any) -> sqlite3.Cursor:
+        with self._lock, self._trouble():
+            return self._db.execute(sql, values)
+
+    def _read(self, sql: str, *values: Any) -> list[dict[str, Any]]:
+        with self._lock, self._trouble():
+            cursor = self._db.execute(sql, values)
+            names = [column[0] for column in cursor.description]
+            return [dict(zip(names, row, strict=True)) for row in cursor]
+
+    @contextmanager
+    def _trouble(self) -> Iterator[None]:
+        try:
+            yield
+        except (sqlite3.Error, OSError) as error:
+            raise BookError(
+                f"The book of appointments {self.path} cannot be used ({cause(error)})."
+                " Free some disk space or check the folder's rights, then try again."
+            ) from error
+
+
+def _json(value: Any) -> str | None:
+    return None if value is None else msgspec.json.encode(value).decode()
+
+
+def _appointment(row: Mapping[str, Any]) -> Appointment:
+    rhythm, trigger = row["rhythm"], row["trigger"]
+    return Appointment(
+        **{
+            **row,
+            "rhythm": msgspec.json.decode(rhythm, type=Rhythm) if rhythm else None,
+            "trigger": msgspec.json.decode(trigger) if trigger else None,
+            "insists": bool(row["insists"]),
+            "paused": bool(row["paused"]),
+        }
+    )

@@ -1,0 +1,289 @@
+"""The clerk: looks at the book and the clock, and decides what begins, what waits, what was missed.
+
+    begin = clerk.look(now, standing)
+
+Without threads and without a robot: what the time is and how the robot stands goes in, at most one
+occurrence to begin comes out, claimed already. All else that was decided is in the book, with a
+notice of what somebody has to know.
+
+| a time that came       | becomes                                                               |
+|------------------------|-----------------------------------------------------------------------|
+| and nothing stands in  | begun; of several the one with the highest priority, then the oldest  |
+| the way                |                                                                       |
+| the robot is not free, | waits; missed when that took `waits` (or `makes_up` of the            |
+| or in quiet hours      | appointment, if longer)                                               |
+| while nobody looked    | waits, if it is not older than `makes_up`; else missed                |
+| again while it waits   | only the latest is done, those before are missed                      |
+| of a paused one        | skipped                                                               |
+| without an approval    | asked: somebody has to approve it anew                                |
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections import defaultdict
+from collections.abc import Iterator
+from typing import Final, Literal
+
+import msgspec
+
+from nl2robot.schedule.appointments import Appointment, Notice, NoticeKind, Occurrence, Why
+from nl2robot.schedule.book import Book
+from nl2robot.schedule.findings import News
+from nl2robot.schedule.quiet import QuietHours
+from nl2robot.schedule.rhythm import next_time, times
+
+Waits = Literal["busy", "driven", "charging", "stopped", "lost", "quiet", "turn"]
+"""What something waits for: a program runs; somebody drives by hand; it has to charge; it was
+stopped just now, or stops; it cannot be reached; quiet hours; another one begins first."""
+
+ON_TIME: Final = 60.0
+"""Seconds after its time until which it is no matter that nobody looked."""
+MISSED_AT_ONCE: Final = 50
+"""Times of an appointment that were missed in one go and are in the book one by one; of more only
+the latest are, and how many there were."""
+
+
+class Settings(msgspec.Struct, frozen=True, kw_only=True):
+    """What a house decides. Times are in seconds."""
+
+    waits: float = 30 * 60.0
+    """How long something waits for the robot at most."""
+    quiet: QuietHours | None = None
+
+
+class Begin(msgspec.Struct, frozen=True):
+    """What is to be reviewed and begun now; it is claimed."""
+
+    occurrence: Occurrence
+    appointment: Appointment
+
+
+class Clerk:
+    """Of one robot. One thread at a time may use it."""
+
+    def __init__(self, book: Book, robot: str, settings: Settings | None = None) -> None:
+        self._book = book
+        self._robot = robot
+        self._settings = settings or Settings()
+        self._next: dict[int, tuple[float, float | None]] = {}
+        """By appointment: until when it was looked at, and when it is due after that."""
+        self._told = self._newest_notice()
+
+    def look(self, now: float, waits_for: Waits | None = None) -> Begin | None:
+        """Write down what came since the last look, and what came of it; returns what to begin.
+        `waits_for`: why the robot begins nothing now, None if it is free."""
+        appointments = self._book.appointments(self._robot)
+        for each in appointments:
+            self._look_at_approval(each, now)
+            if each.rhythm is not None:
+                self._look_at_times(each, now)
+        gone = self._next.keys() - {each.id for each in appointments}
+        for number in gone:
+            del self._next[number]
+        return self._choose(now, waits_for)
+
+    def next_look(self, now: float) -> float | None:
+        """When the next time comes, in seconds since the epoch, as far as is known from the last
+        look; None if none does. What waits is looked at sooner."""
+        known = [moment for _, moment in self._next.values() if moment is not None]
+        return min(known, default=None)
+
+    def after_restart(self) -> list[tuple[Occurrence, Appointment]]:
+        """What was begun by a process that is gone, and has no end. Whoever looks up what came of
+        its run tells `ended`; it is never begun again."""
+        return self._book.left_over(self._robot)
+
+    # --- what became of what was begun
+
+    def not_begun(self, begin: Begin) -> None:
+        """The robot was not free after all: it waits again."""
+        self._book.release(begin.occurrence.id)
+
+    def refused(self, begin: Begin, because: str) -> None:
+        """It cannot be done at all, as a sentence says."""
+        with self._book.at_once():
+            if self._book.end(begin.occurrence.id, "failed", because):
+                self._tell("refused", begin.appointment, begin.occurrence, because=because)
+
+    def changed(self, begin: Begin, news: tuple[News, ...]) -> None:
+        """Its review came out another way than the one that was approved: somebody has to approve
+        it anew."""
+        with self._book.at_once():
+            if self._book.end(begin.occurrence.id, "asked", "changed"):
+                self._book.ask(begin.appointment.id, "changed")
+                parts = msgspec.to_builtins(news)
+                self._tell("changed", begin.appointment, begin.occurrence, news=parts)
+
+    def runs(self, occurrence: Occurrence, run: int) -> None:
+        self._book.runs(occurrence.id, run)
+
+    def ended(
+        self,
+        occurrence: Occurrence,
+        appointment: Appointment,
+        status: str | None,
+        message: str | None,
+    ) -> None:
+        """Its run is over: `status` and `message` as the run log has them; None for a run, or a
+        beginning, that was broken off with its process."""
+        with self._book.at_once():
+            if status == "done":
+                self._book.end(occurrence.id, "done")
+            elif status is None:
+                if self._book.end(occurrence.id, "failed", "broken_off"):
+                    self._tell("broken_off", appointment, occurrence, run=occurrence.run)
+            elif self._book.end(occurrence.id, "failed", message or status):
+                self._tell("failed", appointment, occurrence, status=status, because=message)
+
+    # --- what was told
+
+    def notices(self) -> list[Notice]:
+        """Those that were written since the last call, by any process, in order."""
+        found = self._book.notices(self._told)
+        if found:
+            self._told = found[-1].id
+        return found
+
+    # --- inside
+
+    def _newest_notice(self) -> int:
+        newest = self._book.notices(last=1)
+        return newest[-1].id if newest else 0
+
+    def _look_at_approval(self, appointment: Appointment, now: float) -> None:
+        if appointment.asked is None and appointment.approved_until <= now:
+            with self._book.at_once():
+                self._book.ask(appointment.id, "ended")
+                self._tell("ended", appointment, by=appointment.approved_by)
+
+    def _look_at_times(self, appointment: Appointment, now: float) -> None:
+        assert appointment.rhythm is not None
+        # The clock may have been set back; what is in the book by then is not noted again.
+        since = min(appointment.looked, now)
+        known = self._next.get(appointment.id)
+        if known is None or known[0] != since:
+            known = (since, next_time(appointment.rhythm, since))
+            self._next[appointment.id] = known
+        if known[1] is None or known[1] > now:
+            return
+        came = list(itertools.takewhile(lambda due: due <= now, times(appointment.rhythm, since)))
+        with self._book.at_once():
+            # Another process may have removed it, or looked already.
+            fresh = self._fresh(appointment)
+            if fresh is not None and fresh.looked == appointment.looked:
+                self._note(fresh, came, now)
+                self._book.look_until(appointment.id, now)
+                self._next[appointment.id] = (now, next_time(appointment.rhythm, now))
+
+    def _fresh(self, appointment: Appointment) -> Appointment | None:
+        each = (each for each in self._book.appointments(self._robot) if each.id == appointment.id)
+        return next(each, None)
+
+    def _note(self, appointment: Appointment, came: list[float], now: float) -> None:
+        """Write down times that came."""
+        if appointment.paused:
+            for due in came[-MISSED_AT_ONCE:]:
+                self._book.come(appointment.id, due, "skipped", "paused")
+            return
+        late = max(ON_TIME, appointment.makes_up * 60.0)
+        missed = [due for due in came if now - due > late]
+        self._note_missed(appointment, missed)
+        for due in came[len(missed) :]:
+            why = self._unapproved(appointment, due)
+            if why is not None:
+                self._book.come(appointment.id, due, "asked", why)
+            else:
+                self._book.come(appointment.id, due)
+
+    def _note_missed(self, appointment: Appointment, missed: list[float]) -> None:
+        noted = []
+        for due in missed[-MISSED_AT_ONCE:]:
+            why = self._unapproved(appointment, due)
+            state: Literal["asked", "missed"] = "missed" if why is None else "asked"
+            occurrence = self._book.come(appointment.id, due, state, why or "nobody_looked")
+            if occurrence is not None and state == "missed":
+                noted.append(occurrence)
+        if len(noted) == 1:
+            self._tell("missed", appointment, noted[0], why="nobody_looked")
+        elif noted:
+            count = len(noted) + max(0, len(missed) - MISSED_AT_ONCE)
+            first = missed[0]
+            self._tell("missed_many", appointment, noted[-1], count=count, first=first)
+
+    def _unapproved(self, appointment: Appointment, due: float) -> Why | None:
+        """Why it had no approval at that time."""
+        if appointment.asked == "ended" and due < appointment.approved_until:
+            return None
+        return appointment.asked
+
+    def _choose(self, now: float, waits_for: Waits | None) -> Begin | None:
+        waiting = list(self._not_too_late(now, waits_for))
+        if waits_for is None and self._settings.quiet and self._settings.quiet.cover(now):
+            waits_for = "quiet"
+        begin = None
+        for occurrence, appointment in waiting:
+            if begin is None and waits_for is None:
+                if self._book.claim(occurrence.id):
+                    begin = Begin(self._book.occurrence(occurrence.id), appointment)
+                continue
+            self._wait(occurrence, appointment, waits_for or "turn")
+        return begin
+
+    def _not_too_late(
+        self, now: float, waits_for: Waits | None
+    ) -> Iterator[tuple[Occurrence, Appointment]]:
+        """What waits, and may still: by priority, then by time."""
+        latest: dict[int, float] = defaultdict(float)
+        waiting = self._book.waiting(self._robot)
+        for occurrence, appointment in waiting:
+            latest[appointment.id] = max(latest[appointment.id], occurrence.due)
+        for occurrence, appointment in waiting:
+            most = max(self._settings.waits, appointment.makes_up * 60.0)
+            if appointment.paused:
+                self._book.end(occurrence.id, "skipped", "paused")
+            elif appointment.asked is not None:
+                self._book.end(occurrence.id, "asked", appointment.asked)
+            elif occurrence.due < latest[appointment.id]:
+                self._miss("overtaken", occurrence, appointment, "overtaken")
+            elif now - occurrence.due > most:
+                why = occurrence.waited_for or waits_for or "nobody_looked"
+                self._miss("missed", occurrence, appointment, why)
+            else:
+                yield occurrence, appointment
+
+    def _miss(
+        self,
+        kind: Literal["missed", "overtaken"],
+        occurrence: Occurrence,
+        appointment: Appointment,
+        why: str,
+    ) -> None:
+        with self._book.at_once():
+            if self._book.end(occurrence.id, "missed", why):
+                self._tell(kind, appointment, occurrence, why=why)
+
+    def _wait(self, occurrence: Occurrence, appointment: Appointment, why: Waits) -> None:
+        """Note what it waits for, and tell it the first time."""
+        if occurrence.waited_for == why:
+            return
+        with self._book.at_once():
+            self._book.wait_for(occurrence.id, why)
+            if occurrence.waited_for is None and why != "turn":
+                self._tell("waits", appointment, occurrence, why=why)
+
+    def _tell(
+        self,
+        kind: NoticeKind,
+        appointment: Appointment,
+        occurrence: Occurrence | None = None,
+        **parts: object,
+    ) -> None:
+        known: dict[str, object] = {"sentence": appointment.sentence}
+        if appointment.rhythm is not None:
+            known["zone"] = appointment.rhythm.zone
+        if occurrence is not None:
+            known["due"] = occurrence.due
+        self._book.tell(
+            kind, appointment.id, occurrence.id if occurrence else None, {**known, **parts}
+        )

@@ -1,0 +1,64 @@
+"""The sentences of appointments: what has to be told, and what came of each time."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from nl2robot.schedule.appointments import Appointment, Notice, Occurrence
+from nl2robot.schedule.words import a_moment, in_words
+from nl2robot.sentences import in_language
+from nl2robot.texts import texts_in
+
+_UTC: Final = "UTC"
+
+
+def told(notice: Notice, language: str = "en", zone: str = _UTC) -> str:
+    """A notice as a sentence. `zone`: whose clocks tell the time of what has no rhythm."""
+    texts = texts_in(language, "schedules")
+    parts: dict[str, Any] = dict(notice.parts)
+    zone = parts.get("zone", zone)
+    if "due" in parts:
+        parts["due"] = a_moment(parts["due"], zone, language)
+    if "first" in parts:
+        parts["first"] = a_moment(parts["first"], zone, language, weekday=False)
+    if "why" in parts:
+        named = texts["waits_for" if notice.kind == "waits" else "whys"]
+        parts["why"] = named.get(parts["why"], parts["why"])
+    if "news" in parts:
+        found = (
+            str(texts["news"][each["kind"]]).format(text=_sentence(each["text"], language))
+            for each in parts["news"]
+        )
+        parts["news"] = " ".join(each.strip() for each in found)
+    if "because" in parts:
+        because = parts["because"] or texts["notes"].get(parts.get("status"), "")
+        parts["because"] = _ended(_sentence(because, language))
+    return str(texts["notices"][notice.kind]).format(**parts)
+
+
+def outcome(occurrence: Occurrence, language: str = "en") -> str:
+    """What came of a time: "missed: nl2robot was not running"."""
+    texts = texts_in(language, "schedules")
+    state, note = str(texts["states"][occurrence.state]), occurrence.note
+    if occurrence.state == "due":
+        note = texts["waits_for"].get(occurrence.waited_for)
+    elif occurrence.state == "missed":
+        note = texts["whys"].get(note, note)
+    elif note is not None:
+        note = texts["notes"].get(note) or _sentence(note, language)
+    return f"{state}: {note}" if note else state
+
+
+def when(appointment: Appointment, language: str = "en") -> str:
+    """At what times it is done, in words."""
+    if appointment.rhythm is None:
+        return str(texts_in(language, "schedules")["trigger"])
+    return in_words(appointment.rhythm, language)
+
+
+def _sentence(text: str, language: str) -> str:
+    return in_language(text, language) or text
+
+
+def _ended(text: str) -> str:
+    return text if text.endswith((".", "!", "?")) else f"{text}."

@@ -1,0 +1,178 @@
+"""What a rhythm and a moment are called: "every weekday at 08:00"."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
+from datetime import datetime
+from typing import Any, Final
+
+from nl2robot.schedule.rhythm import WEEKDAYS, Rhythm, local, parts_of
+from nl2robot.texts import texts_in
+
+_A_ROW: Final = 4
+"""So many times of a day, equally far apart, are told by how far."""
+_WORKING: Final = {0, 1, 2, 3, 4}
+_WEEKEND: Final = {5, 6}
+_SETTLED: Final = {"FREQ", "INTERVAL", "COUNT", "UNTIL", "WKST"}
+_KNOWN: Final[Mapping[str, set[str]]] = {
+    "DAILY": {"BYDAY", "BYHOUR", "BYMINUTE", "BYSETPOS"},
+    "WEEKLY": {"BYDAY", "BYHOUR", "BYMINUTE"},
+    "MONTHLY": {"BYDAY", "BYMONTHDAY", "BYHOUR", "BYMINUTE"},
+    "YEARLY": {"BYMONTH", "BYMONTHDAY", "BYHOUR", "BYMINUTE"},
+    "HOURLY": set(),
+    "MINUTELY": set(),
+}
+"""What there are words for; the rest is told as the rule that it is."""
+
+
+def in_words(rhythm: Rhythm, language: str = "en") -> str:
+    """A checked rhythm as a nurse says it, without a full stop."""
+    texts = texts_in(language, "schedules")
+    begins = rhythm.begins
+    if rhythm.rule is None:
+        return str(texts["once"]).format(
+            date=on_date(begins, language), time=_at([f"{begins:%H:%M}"], texts)
+        )
+    parts = parts_of(rhythm.rule)
+    told = _told(rhythm, parts, texts)
+    if "COUNT" in parts:
+        number = int(parts["COUNT"])
+        told = _counted(texts["count"], number).format(rhythm=told, number=number)
+    if "UNTIL" in parts:
+        until = datetime.strptime(parts["UNTIL"][:8], "%Y%m%d")
+        told = str(texts["until"]).format(rhythm=told, date=a_date(until, language))
+    return told
+
+
+def on_date(day: datetime, language: str) -> str:
+    """ "on Monday, 30 November 2026"."""
+    texts = texts_in(language, "schedules")
+    return str(texts["on_date"]).format(
+        weekday=texts["weekdays"][day.weekday()], date=a_date(day, language)
+    )
+
+
+def a_date(day: datetime, language: str) -> str:
+    """ "30 November 2026"."""
+    texts = texts_in(language, "schedules")
+    month = texts["months"][day.month - 1]
+    return str(texts["date"]).format(day=day.day, month=month, year=day.year)
+
+
+def a_moment(moment: float, zone: str, language: str, weekday: bool = True) -> str:
+    """ "on Monday, 30 November 2026 at 08:00", by the clocks there."""
+    there = local(moment, zone)
+    date = on_date(there, language) if weekday else a_date(there, language)
+    return f"{date} {_at([f'{there:%H:%M}'], texts_in(language, 'schedules'))}"
+
+
+def _told(rhythm: Rhythm, parts: Mapping[str, str], texts: Mapping[str, Any]) -> str:
+    """A rule without its end."""
+    begins, frequency = rhythm.begins, parts["FREQ"]
+    date = _date(begins, texts)
+    interval = int(parts.get("INTERVAL", "1"))
+    known = parts.keys() - _SETTLED <= _KNOWN[frequency]
+    if frequency in ("MINUTELY", "HOURLY") and known:
+        every = _every(frequency, interval, texts)
+        return str(texts["from_time"]).format(rhythm=every, date=date, time=f"{begins:%H:%M}")
+    time = _at(list(_times(rhythm, parts)), texts)
+    days = [_day(each) for each in parts["BYDAY"].split(",")] if "BYDAY" in parts else []
+    weekdays = sorted({day for _, day in days})
+    told = ""
+    if known and frequency in ("DAILY", "WEEKLY"):
+        if frequency == "WEEKLY" and not days:
+            weekdays = [begins.weekday()]
+        called = _listed([texts["weekdays"][day] for day in weekdays], texts) if weekdays else ""
+        values = {"time": time, "days": called, "number": interval, "date": date}
+        told = str(texts[_of_days(frequency, weekdays, interval)]).format(**values)
+    elif known and interval == 1 and not (days and "BYMONTHDAY" in parts):
+        several = parts.get("BYMONTH", str(begins.month))
+        if frequency == "MONTHLY":
+            called = _listed(list(_days_of_month(begins, parts, days, texts)), texts)
+            told = str(texts["every_month"]).format(days=called, time=time)
+        elif "," not in several and "-" not in parts.get("BYMONTHDAY", ""):
+            numbers = parts.get("BYMONTHDAY", str(begins.day)).split(",")
+            month = texts["months"][int(several) - 1]
+            called = _listed(
+                [str(texts["day_of_year"]).format(day=int(n), month=month) for n in numbers], texts
+            )
+            told = str(texts["every_year"]).format(days=called, time=time)
+    return told or str(texts["of_its_own"]).format(rule=rhythm.rule, date=date, time=time)
+
+
+def _of_days(frequency: str, weekdays: Sequence[int], interval: int) -> str:
+    """Which text tells of these days of each week, or of every so many."""
+    if interval > 1:
+        return "every_weeks" if frequency == "WEEKLY" else "every_days"
+    if not weekdays or len(weekdays) == 7:
+        return "every_day"
+    whole = {frozenset(_WORKING): "every_weekday", frozenset(_WEEKEND): "every_weekend"}
+    return whole.get(frozenset(weekdays), "on_days")
+
+
+def _days_of_month(
+    begins: datetime,
+    parts: Mapping[str, str],
+    days: Sequence[tuple[int | None, int]],
+    texts: Mapping[str, Any],
+) -> Iterator[str]:
+    for ordinal, day in days:
+        weekday = texts["weekdays"][day]
+        named = texts["ordinals"].get(ordinal, ordinal)
+        yield str(texts["the_ordinal"]).format(ordinal=named, weekday=weekday)
+    if not days:
+        for number in parts.get("BYMONTHDAY", str(begins.day)).split(","):
+            if int(number) == -1:
+                yield str(texts["the_last_day"])
+            else:
+                yield str(texts["the_day"]).format(number=int(number))
+
+
+def _times(rhythm: Rhythm, parts: Mapping[str, str]) -> Iterator[str]:
+    """The times of day of a rule of days, in order."""
+    hours = parts.get("BYHOUR", str(rhythm.begins.hour)).split(",")
+    minutes = parts.get("BYMINUTE", str(rhythm.begins.minute)).split(",")
+    pairs = sorted({(int(hour), int(minute)) for hour in hours for minute in minutes})
+    chosen = parts.get("BYSETPOS")
+    if chosen is not None:
+        places = [int(each) for each in chosen.split(",")]
+        indices = sorted({place - 1 if place > 0 else len(pairs) + place for place in places})
+        pairs = [pairs[index] for index in indices if 0 <= index < len(pairs)]
+    for hour, minute in pairs:
+        yield f"{hour:02}:{minute:02}"
+
+
+def _at(moments: Sequence[str], texts: Mapping[str, Any]) -> str:
+    minutes = [int(each[:2]) * 60 + int(each[3:]) for each in moments]
+    steps = {after - before for before, after in itertools.pairwise(minutes)}
+    if len(moments) >= _A_ROW and len(steps) == 1:
+        every = _every("MINUTELY", steps.pop(), texts)
+        return str(texts["passing"]).format(every=every, first=moments[0], last=moments[-1])
+    return str(texts["at"]).format(times=_listed(moments, texts))
+
+
+def _every(frequency: str, interval: int, texts: Mapping[str, Any]) -> str:
+    """So many minutes or hours."""
+    if frequency == "MINUTELY" and interval % 60 == 0:
+        frequency, interval = "HOURLY", interval // 60
+    named = texts["hours" if frequency == "HOURLY" else "minutes"]
+    return _counted(named, interval).format(number=interval)
+
+
+def _day(written: str) -> tuple[int | None, int]:
+    return int(written[:-2]) if written[:-2] else None, WEEKDAYS.index(written[-2:])
+
+
+def _date(day: datetime, texts: Mapping[str, Any]) -> str:
+    month = texts["months"][day.month - 1]
+    return str(texts["date"]).format(day=day.day, month=month, year=day.year)
+
+
+def _listed(names: Sequence[str], texts: Mapping[str, Any]) -> str:
+    *before, last = names
+    return f"{', '.join(before)} {texts['and']} {last}" if before else last
+
+
+def _counted(forms: Mapping[str, str], number: int) -> str:
+    return forms["one"] if number == 1 else forms["other"]
