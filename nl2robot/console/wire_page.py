@@ -41,6 +41,7 @@ GROUPS: Final[Mapping[str, str]] = {
     "desk": "The desk",
     "runs": "Past runs",
     "routines": "Routines",
+    "schedule": "Appointments",
     "scene": "The floor",
     "places": "Places",
     "zones": "Keep-out zones",

@@ -3,7 +3,7 @@
 Whatever is decided is committed before it is done, so that a crash or a kill at any moment neither
 loses a time nor has anything run twice: a time is in the book once for each appointment, and only
 whoever turns it from "due" to "claimed" may begin it. What a process had claimed that is gone is
-told by `left_over`. Several processes may use the file.
+among `begun`. Several processes may use the file.
 """
 
 from __future__ import annotations
@@ -20,13 +20,11 @@ from typing import Any, Final
 import msgspec
 
 from nl2robot.errors import UserError
-from nl2robot.run.process import lives, own_process
+from nl2robot.run.process import own_process
 from nl2robot.schedule.appointments import Appointment, Notice, NoticeKind, Occurrence, State, Why
 from nl2robot.schedule.rhythm import Rhythm
 from robot_api.errors import cause
 
-FILE: Final = "schedule.sqlite"
-"""Its name in the data folder."""
 _VERSION: Final = 1
 _SCHEMA: Final = """
 CREATE TABLE IF NOT EXISTS appointments (
@@ -316,15 +314,24 @@ class Book:
         )
         return cursor.rowcount == 1
 
-    def left_over(self, robot: str) -> list[tuple[Occurrence, Appointment]]:
-        """What was begun of a robot by a process that is gone, and has no end."""
+    def begun(self, robot: str) -> list[tuple[Occurrence, Appointment]]:
+        """What of a robot was begun and has no end."""
         known = {each.id: each for each in self.appointments(robot, removed=True)}
         rows = self._read("SELECT * FROM occurrences WHERE state IN ('claimed', 'running')")
         return [
             (Occurrence(**row), known[row["appointment"]])
             for row in rows
-            if row["appointment"] in known and (row["process"] is None or not lives(row["process"]))
+            if row["appointment"] in known
         ]
+
+    def call_back(self, appointment: int, due: float) -> bool:
+        """Have a time to come done after all that was called off; False if it was not."""
+        cursor = self._write(
+            "DELETE FROM occurrences WHERE appointment = ? AND due = ? AND state = 'skipped'"
+            " AND due > ?",
+            *(appointment, due, self._clock()),
+        )
+        return cursor.rowcount == 1
 
     def history(self, appointment: int | None = None, last: int = 100) -> list[Occurrence]:
         """The latest times that came, the newest first; those to come that were called off are
@@ -380,6 +387,12 @@ class Book:
             )
 
     # --- the file
+
+    def version(self) -> tuple[int, int]:
+        """Another one whenever something was written, here or by another process."""
+        with self._lock, self._trouble():
+            [others] = self._db.execute("PRAGMA data_version").fetchone()
+            return others, self._db.total_changes
 
     def _write(self, sql: str, *values: Any) -> sqlite3.Cursor:
         with self._lock, self._trouble():

@@ -27,7 +27,7 @@ from typing import Final, Literal
 
 import msgspec
 
-from nl2robot.schedule.appointments import Appointment, Notice, NoticeKind, Occurrence, Why
+from nl2robot.schedule.appointments import DAY, Appointment, Notice, NoticeKind, Occurrence, Why
 from nl2robot.schedule.book import Book
 from nl2robot.schedule.findings import News
 from nl2robot.schedule.quiet import QuietHours
@@ -50,6 +50,8 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True):
     waits: float = 30 * 60.0
     """How long something waits for the robot at most."""
     quiet: QuietHours | None = None
+    kept: float = 90 * DAY
+    """How long what was done and told is kept."""
 
 
 class Begin(msgspec.Struct, frozen=True):
@@ -88,11 +90,6 @@ class Clerk:
         look; None if none does. What waits is looked at sooner."""
         known = [moment for _, moment in self._next.values() if moment is not None]
         return min(known, default=None)
-
-    def after_restart(self) -> list[tuple[Occurrence, Appointment]]:
-        """What was begun by a process that is gone, and has no end. Whoever looks up what came of
-        its run tells `ended`; it is never begun again."""
-        return self._book.left_over(self._robot)
 
     # --- what became of what was begun
 

@@ -11,7 +11,7 @@ import math
 import os
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,6 +24,9 @@ from nl2robot.run import present
 from nl2robot.run.runlog import LogError, RunLog
 from nl2robot.run.runner import Runner
 from nl2robot.run.state import GOING, Charging, Reviewing, State, on_wire
+from nl2robot.schedule import service as schedule_service
+from nl2robot.schedule.service import Timekeeper, Timing, schedule_of
+from nl2robot.schedule.wire import schedule_services
 from nl2robot.station.by_hand import BUSY, ByHand
 from nl2robot.station.harmless import ONLY_LOOKS
 from nl2robot.station.local_clock import now_in
@@ -156,6 +159,7 @@ def simulated_station(
     console: Callable[[Backstage], Console] | None = None,
     read: Read | None = None,
     start: datetime | None = None,
+    timing: Timing | None = None,
 ) -> Iterator[SimulatedStation]:
     """Open a station with a simulated robot.
 
@@ -164,7 +168,8 @@ def simulated_station(
     it is heard (see `nl2robot.speech.speak.aloud`); without it, it is only written what is said.
     `console`: makes the web console, `nl2robot.console.app.Console`; once in a process. `read`: the
     robot file that it keeps to. `start`: what its clock shows at the beginning; None: as the
-    world's file says, else a Monday morning at eight.
+    world's file says, else a Monday morning at eight. `timing`: how it
+    keeps time, if appointments are done here.
     """
     simulation = Simulation(world, seed=seed, speed=speed, start=start)
     heard = sound(lambda: simulation.time) if sound else SILENT
@@ -196,6 +201,7 @@ def simulated_station(
         entrance=entrance,
         simulation=simulation,
         console=console,
+        timing=timing,
     ) as server:
         station = SimulatedStation(server, simulation)
         yield station
@@ -256,6 +262,7 @@ def robot_station(
     token: str | None = None,
     entrance: Entrance | None = None,
     console: Callable[[Backstage], Console] | None = None,
+    timing: Timing | None = None,
 ) -> Iterator[tuple[Station, Server]]:
     """A station with a robot that is not simulated. Its places are those of `world`, in which dry
     runs are simulated, with the keep-out zones as they are then. `places` are what the driver is
@@ -283,6 +290,7 @@ def robot_station(
         token=token,
         entrance=entrance,
         console=console,
+        timing=timing,
     ) as server:
         yield Station(server.address, server.token), server
 
@@ -330,6 +338,7 @@ def _open(
     entrance: Entrance | None = None,
     simulation: Simulation | None = None,
     console: Callable[[Backstage], Console] | None = None,
+    timing: Timing | None = None,
 ) -> Iterator[Server]:
     """A server with a runner on it. `on_program` is told of the runs' events before others are,
     `give_way` ends what the robot says when a client speaks to it."""
@@ -358,6 +367,8 @@ def _open(
         review=review_apart if console else review,
     )
 
+    schedule = schedule_of(runner, timing)
+    keeper = Timekeeper(schedule, runner, timing, publish) if timing is not None else None
     hand = ByHand(log)
 
     def before_call(who: str | None, method: str, arguments: Mapping[str, Any]) -> None:
@@ -395,6 +406,8 @@ def _open(
             microphones.give_up()
         elif kind == "link":
             runner.note_link(data)
+        elif kind == "battery" and keeper is not None:
+            keeper.note(kind, data)
 
     backstage.subscribe(on_event)
     added = console(backstage) if console else None
@@ -414,10 +427,16 @@ def _open(
         token=token,
         services={
             **services(runner, talks, microphones),
+            **schedule_services(schedule),
             **attention.services(),
             **(added.services if added else {}),
         },
-        events={**EVENTS, **present.EVENTS, **(added.events if added else {})},
+        events={
+            **EVENTS,
+            **present.EVENTS,
+            **schedule_service.EVENTS,
+            **(added.events if added else {}),
+        },
         remembered=(present.KIND,),
         pages=added.pages() if added else None,
         on_left=on_left,
@@ -434,9 +453,11 @@ def _open(
         with server:
             runner.present.begin()
             try:
-                yield server
+                with keeper or nullcontext():
+                    yield server
             finally:
                 runner.close()
+                schedule.close()
     except CannotListen as error:
         raise UserError(str(error)) from error
     finally:

@@ -51,6 +51,7 @@ SAYING = {
     "nl2robot/checks/canned.py": {"UserError"},
     "nl2robot/station/world_file.py": {"UserError"},
     "nl2robot/station/robots.py": {"UserError"},
+    "nl2robot/schedule": {"UserError", "BadRhythm", "BookError", "AccessDenied"},
     "nl2robot/station/station.py": {"UserError"},
     "nl2robot/models/catalogue.py": {"ModelError"},
     "nl2robot/translate/planners.py": {"UserError"},

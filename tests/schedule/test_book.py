@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from nl2robot.run.process import lives
 from nl2robot.schedule.appointments import DAY
 from nl2robot.schedule.book import Book, BookError, NoAppointment
 from tests.schedule.conftest import ROBOT, Added, Clock, at, rhythm
@@ -128,10 +129,10 @@ def test_what_a_killed_process_had_begun_is_known_afterwards(
     ) as child:
         assert child.stdout is not None
         assert child.stdout.readline() == "claimed\n"
-        assert book.left_over(ROBOT) == [], "it is at work on it"
         os.kill(child.pid, signal.SIGKILL)
         child.wait()
-    [(occurrence, appointment)] = book.left_over(ROBOT)
+    [(occurrence, appointment)] = book.begun(ROBOT)
+    assert occurrence.process is not None and not lives(occurrence.process)
     assert appointment == kept and occurrence.state == state
     assert occurrence.run == (41 if state == "running" else None)
     assert not book.claim(occurrence.id), "it is not begun again"

@@ -22,6 +22,10 @@ from nl2robot.errors import ExitStatus, UserError
 from nl2robot.paths import authority_file, data_folder, pictures_folder
 from nl2robot.review.review import get_ready
 from nl2robot.run.retention import DAY, kept_for
+from nl2robot.schedule.clerk import Settings
+from nl2robot.schedule.quiet import quiet_hours
+from nl2robot.schedule.service import Timing
+from nl2robot.schedule.zone import local_zone
 from nl2robot.station.accounts import Accounts
 from nl2robot.station.entrance import PAGES_AT, Entrance
 from nl2robot.station.garbage import swept
@@ -73,6 +77,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"after how many days what is known of a run is deleted (default: {LOG_DAYS})",
     )
     parser.add_argument(
+        "--quiet-hours",
+        metavar="HOURS",
+        help="in which no appointment begins, such as 22:00-06:00",
+    )
+    parser.add_argument(
         "--token",
         type=_token,
         help=f"what programs may show instead of signing in: {SHORTEST_TOKEN} letters or more",
@@ -112,6 +121,7 @@ def run(options: argparse.Namespace) -> int:
     sys.setswitchinterval(SWITCHES_WITHIN)
     allow_open_files()
     robot = robot_of(options)
+    timing = Timing(settings=_settings(options))
     world, log = world_of(options), open_log(options.debug)
     with ExitStack() as stack:
         stack.enter_context(kept_for(log, options.log_days * DAY))
@@ -132,6 +142,7 @@ def run(options: argparse.Namespace) -> int:
                 console=Console,
                 read=robot.read,
                 start=beginning_of(world, options.clock),
+                timing=timing,
             )
             server = stack.enter_context(simulated).server
         else:
@@ -150,6 +161,7 @@ def run(options: argparse.Namespace) -> int:
                 token=options.token,
                 entrance=entrance,
                 console=Console,
+                timing=timing,
             )
             _, server = stack.enter_context(station)
         planners.get_ready()
@@ -157,6 +169,12 @@ def run(options: argparse.Namespace) -> int:
         stack.enter_context(swept(lambda: server.dispatcher.moves))
         server.serve_forever(lambda server: _say_where(server, entrance, options))
     return ExitStatus.OK
+
+
+def _settings(options: argparse.Namespace) -> Settings:
+    """Of the appointments that are done here. Raises `UserError`."""
+    quiet = quiet_hours(options.quiet_hours, local_zone()) if options.quiet_hours else None
+    return Settings(quiet=quiet, kept=options.log_days * DAY)
 
 
 @contextmanager

@@ -1,0 +1,277 @@
+"""The timekeeper of a station: has the clerk look every second, and runs what he says begins.
+
+Each run is one as any other: reviewed again, approved at the runner in the name of who approved
+the appointment, in view, stopped by a stop. What came of it is taken from the run log, so that a
+process which takes the place of one that was killed can tell it, too.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import msgspec
+
+from grammar.language import languages
+from nl2robot.errors import UserError
+from nl2robot.run.process import lives, own_process
+from nl2robot.run.runlog import Run
+from nl2robot.run.runner import Runner
+from nl2robot.run.state import GOING, State
+from nl2robot.schedule.appointments import Appointment, Occurrence
+from nl2robot.schedule.book import Book
+from nl2robot.schedule.clerk import Begin, Clerk, Settings, Waits
+from nl2robot.schedule.findings import decoded, findings_of, news
+from nl2robot.schedule.schedule import FILE, Schedule
+from nl2robot.schedule.telling import told
+from nl2robot.schedule.zone import local_zone
+from nl2robot.sentences import in_language
+from nl2robot.texts import texts_in
+from robot_api.errors import AccessDenied, LostConnection, NotPossible, RobotError
+
+RESTS_AFTER_STOP: Final = 120.0
+"""Seconds after somebody has stopped the robot in which nothing begins by itself."""
+CHARGED: Final = 30.0
+"""Percent below which a robot that charges goes on charging."""
+TRIES_AGAIN: Final = 30.0
+"""Seconds after which it is tried again where something was not free after all."""
+FORGETS_EVERY: Final = 3600.0
+STARTED_BEFORE: Final = 1.0
+"""Seconds that a run may have begun, by the clock, before its time was claimed."""
+LATEST_RUNS: Final = 200
+
+EVENTS: Final[Mapping[str, str]] = {
+    "schedule": "open (what waits, begins or runs now, as schedule.history tells it): something in"
+    " the book of appointments has changed; schedule.list tells all of it",
+    "notice": "id, time, kind (missed | missed_many | overtaken | waits | ended | changed | refused"
+    " | failed | broken_off | trouble), appointment, occurrence, parts, told (the sentence by"
+    " language): what somebody has to know of an appointment who was not looking",
+}
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Timing:
+    """How a station keeps time: what the house decides, and the clock, in seconds since the
+    epoch."""
+
+    settings: Settings = field(default_factory=Settings)
+    clock: Callable[[], float] = time.time
+    every: float = 1.0
+    """Seconds between two looks at it."""
+
+
+def schedule_of(runner: Runner, timing: Timing | None) -> Schedule:
+    """The appointments of a runner's robot, in the folder of its log."""
+    log = runner.log.path
+
+    def robot() -> str:
+        capabilities = runner.knowledge.capabilities
+        return capabilities.name if capabilities is not None else ""
+
+    return Schedule(
+        log.with_name(FILE) if str(log) != ":memory:" else None,
+        robot,
+        runner.check,
+        timing.clock if timing is not None else time.time,
+    )
+
+
+class Timekeeper:
+    """Has appointments done while it is entered."""
+
+    def __init__(
+        self,
+        schedule: Schedule,
+        runner: Runner,
+        timing: Timing,
+        publish: Callable[[str, Mapping[str, Any]], None],
+    ) -> None:
+        self._schedule = schedule
+        self._runner = runner
+        self._timing = timing
+        self._publish = publish
+        self._clerk: Clerk | None = None
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._keep_time, name="schedule", daemon=True)
+        self._battery: float | None = None
+        self._not_before = 0.0
+        """By the monotonic clock."""
+        self._version: object = None
+        self._trouble = ""
+        self._forgot: float | None = None
+
+    def __enter__(self) -> Timekeeper:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._over.set()
+        self._thread.join()
+
+    def note(self, kind: str, data: Mapping[str, Any]) -> None:
+        """One of the robot's own events."""
+        if kind == "battery" and isinstance(data.get("percent"), int | float):
+            self._battery = float(data["percent"])
+
+    def look(self) -> None:
+        """Look once: tell what came of what was begun, and begin what is due."""
+        book = self._schedule.book()
+        if book is None:
+            return
+        if self._clerk is None:
+            self._clerk = Clerk(book, self._schedule.robot, self._timing.settings)
+        for occurrence, appointment in book.begun(self._schedule.robot):
+            self._follow(self._clerk, occurrence, appointment)
+        begin = self._clerk.look(self._timing.clock(), self._waits())
+        self._tell(book)
+        if begin is not None:
+            self._perform(self._clerk, begin)
+            self._tell(book)
+        self._forget(book)
+
+    # --- inside
+
+    def _keep_time(self) -> None:
+        while not self._over.wait(self._timing.every):
+            try:
+                self.look()
+                self._trouble = ""
+            except UserError as error:  # a full disk: what is not in the book is not done
+                self._tell_trouble(str(error))
+            except Exception as error:  # noqa: BLE001 - the clock goes on
+                _log.exception("appointments are not looked after")
+                self._tell_trouble(f"Appointments are not looked after ({error}).")
+
+    def _waits(self) -> Waits | None:
+        if time.monotonic() < self._not_before:
+            return "busy"
+        return waits_for(self._runner.present.state, time.time(), self._battery)
+
+    def _perform(self, clerk: Clerk, begin: Begin) -> None:
+        """Review it again, and begin it if that finds what was approved."""
+        kept = begin.appointment
+        try:
+            found = findings_of(self._runner.check(kept.program, kept.language))
+            new = news(decoded(kept.reviewed), found)
+            if new:
+                clerk.changed(begin, new)
+                return
+            if self._waits() is not None or self._over.is_set():  # somebody was quicker, or stopped
+                clerk.not_begun(begin)
+                return
+            approval = self._runner.approve(
+                kept.program,
+                kept.sha256,
+                in_the_name_of(kept),
+                utterance=kept.sentence,
+                language=kept.language,
+                plan=kept.plan,
+                insists=True,  # the review just now found what was approved
+            )
+            if self._waits() is not None:
+                clerk.not_begun(begin)
+                return
+            clerk.runs(begin.occurrence, self._runner.run(approval.id))
+        except (NotPossible, LostConnection) as error:
+            _log.info("appointment %s waits: %s", kept.id, error)
+            self._not_before = time.monotonic() + TRIES_AGAIN
+            clerk.not_begun(begin)
+        except (AccessDenied, RobotError) as error:
+            clerk.refused(begin, str(error))
+
+    def _follow(self, clerk: Clerk, occurrence: Occurrence, appointment: Appointment) -> None:
+        """Note what came of something that was begun, here or by a process that is gone."""
+        mine = occurrence.process == own_process()
+        if not mine and occurrence.process is not None and lives(occurrence.process):
+            return
+        run = self._run_of(occurrence, appointment)
+        if run is not None and occurrence.run is None:
+            clerk.runs(occurrence, run.id)
+            occurrence = msgspec.structs.replace(occurrence, run=run.id)
+        if run is not None and run.status is not None:
+            clerk.ended(occurrence, appointment, run.status, run.message)
+            return
+        present = self._runner.state()
+        if mine and run is not None and present is not None and present.run == run.id:
+            if present.state not in GOING:  # its end could not be logged
+                clerk.ended(occurrence, appointment, present.state, present.message)
+            return
+        clerk.ended(occurrence, appointment, None, None)
+
+    def _run_of(self, occurrence: Occurrence, appointment: Appointment) -> Run | None:
+        """Its run in the log; also of a process that ended before it could note which that is."""
+        log = self._runner.log
+        if occurrence.run is not None:
+            return log.run(occurrence.run)
+        since = (occurrence.began or 0.0) - STARTED_BEFORE
+        candidates = (
+            run
+            for run in log.runs(LATEST_RUNS)
+            if run.process == occurrence.process
+            and run.sha256 == appointment.sha256
+            and run.approved_by == in_the_name_of(appointment)
+            and run.started >= since
+        )
+        return min(candidates, key=lambda run: run.id, default=None)
+
+    def _tell(self, book: Book) -> None:
+        """Publish what is new in the book."""
+        assert self._clerk is not None
+        for notice in self._clerk.notices():
+            said = {code: told(notice, code, local_zone()) for code in languages()}
+            self._publish("notice", {**msgspec.to_builtins(notice), "told": said})
+        version = book.version()
+        if version != self._version:
+            self._version = version
+            going = [
+                msgspec.to_builtins(each)
+                for each in self._schedule.history()
+                if each.occurrence.state in ("due", "claimed", "running")
+            ]
+            self._publish("schedule", {"open": going})
+
+    def _tell_trouble(self, sentence: str) -> None:
+        """Once, until it is over."""
+        if sentence == self._trouble:
+            return
+        self._trouble = sentence
+        _log.warning("%s", sentence)
+        said = {code: in_language(sentence, code) or sentence for code in languages()}
+        data = {"id": None, "time": time.time(), "kind": "trouble", "appointment": None}
+        self._publish("notice", {**data, "occurrence": None, "parts": {}, "told": said})
+
+    def _forget(self, book: Book) -> None:
+        now = time.monotonic()
+        if self._forgot is None or now - self._forgot > FORGETS_EVERY:
+            self._forgot = now
+            book.forget(self._timing.clock() - self._timing.settings.kept)
+
+
+def waits_for(state: State, now: float, battery: float | None) -> Waits | None:
+    """Why a robot that stands like that begins nothing by itself; None if it is free. `now` is in
+    seconds since the epoch, `battery` in percent if it is known."""
+    if state.lost_since is not None:
+        return "lost"
+    if state.unconfirmed or state.state == "stopping":
+        return "stopped"
+    if state.state in GOING or state.run is not None:
+        return "busy"
+    if state.state == "stopped" and now - state.since < RESTS_AFTER_STOP:
+        return "stopped"
+    if state.driven_by is not None:
+        return "driven"
+    if state.charging and battery is not None and battery < CHARGED:
+        return "charging"
+    return None
+
+
+def in_the_name_of(appointment: Appointment) -> str:
+    """How the run log calls who approved it."""
+    words = texts_in(appointment.language, "schedules")["in_the_name_of"]
+    return str(words).format(by=appointment.approved_by, number=appointment.id)

@@ -1,0 +1,186 @@
+"""The methods on the wire for appointments: `schedule.list` to `schedule.notices`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from datetime import date, datetime
+from typing import Any, Final
+
+from nl2robot.errors import UserError
+from nl2robot.schedule.appointments import MAKES_UP_AT_MOST, PRIORITIES, Appointment
+from nl2robot.schedule.rhythm import LONGEST_RULE, BadRhythm, Rhythm
+from nl2robot.schedule.schedule import Came, Listed, Schedule, Told
+from nl2robot.schedule.zone import local_zone
+from nl2robot.wire import an_object, service
+from robot_api.methods import MAX_TEXT
+from robot_api.server import Service
+
+LONGEST_PROGRAM: Final = 65_536
+_NUMBER: Final = {"type": "integer", "minimum": 1}
+_LANGUAGE: Final = {"type": "string", "pattern": "^[a-z]{2}$"}
+_LAST: Final = {"type": "integer", "minimum": 1, "maximum": 1000}
+_DATE: Final = {"type": "string", "pattern": "^[0-9]{4}-[0-9]{2}-[0-9]{2}$"}
+_NAME: Final = {"type": "string", "minLength": 1, "maxLength": 200}
+_SHA256: Final = {"type": "string", "pattern": "^[0-9a-f]{64}$"}
+_TIME: Final = {"type": ["number", "null"]}
+_RHYTHM: Final = {
+    **an_object(
+        {
+            "begins": {"type": "string", "maxLength": 40},
+            "zone": {"type": "string", "maxLength": 60},
+            "rule": {"type": ["string", "null"], "maxLength": LONGEST_RULE},
+        },
+        "begins",
+    ),
+    "type": ["object", "null"],
+}
+_TRIGGER: Final = {"type": ["object", "null"]}
+
+
+def schedule_services(schedule: Schedule) -> dict[str, Service]:
+    """The methods to register with a `robot_api.server.Server`."""
+
+    def added(p: Mapping[str, Any]) -> Appointment:
+        given = dict(p)
+        given["rhythm"] = _rhythm(given.pop("rhythm", None))
+        return schedule.add(**given)
+
+    def paused(p: Mapping[str, Any], yes: bool) -> Appointment:
+        return schedule.pause(p["id"], yes)
+
+    def skipped(p: Mapping[str, Any]) -> list[float]:
+        day = _day(p["date"]) if "date" in p else None
+        if not p.get("back"):
+            return schedule.skip(p["id"], day)
+        if day is None:
+            raise UserError("Say by `date` which day is to be done after all.")
+        return schedule.call_back(p["id"], day)
+
+    return {
+        "schedule.list": service(
+            lambda p: schedule.listed(p.get("language", "en")),
+            "List the appointments of this robot: approved programs with the times at which they"
+            " are done, when they come next, and which of those were called off.",
+            {"language": _LANGUAGE},
+            observes=True,
+            result=list[Listed],
+        ),
+        "schedule.add": service(
+            added,
+            "Approve exactly the program with this SHA-256 for a rhythm, or for a trigger, `until`"
+            " then (seconds since the epoch; 30 days if it is not said). `rhythm`: `begins`, a"
+            " local time as 2026-11-30T08:00, `zone` as Europe/Zurich (the server's if it is left"
+            " out) and a `rule` of RFC 5545, or none for once. Of those that wait the one with the"
+            " highest `priority` begins first. What was missed while the server was not running is"
+            " made up for within `makes_up` minutes. Before each time it is reviewed again; if that"
+            " finds something new, it waits for a new approval.",
+            {
+                "program": {"type": "string", "maxLength": LONGEST_PROGRAM},
+                "sha256": _SHA256,
+                "by": _NAME,
+                "sentence": {"type": "string", "minLength": 1, "maxLength": MAX_TEXT},
+                "language": _LANGUAGE,
+                "rhythm": _RHYTHM,
+                "trigger": _TRIGGER,
+                "plan": {"type": ["string", "null"], "maxLength": 4 * LONGEST_PROGRAM},
+                "priority": {
+                    "type": "integer",
+                    "minimum": PRIORITIES[0],
+                    "maximum": PRIORITIES[1],
+                },
+                "makes_up": {"type": "integer", "minimum": 0, "maximum": MAKES_UP_AT_MOST},
+                "until": _TIME,
+                "insists": {"type": "boolean"},
+            },
+            "program sha256 by sentence",
+            result=Appointment,
+        ),
+        "schedule.approve": service(
+            lambda p: schedule.approve(
+                p["id"], p["sha256"], p["by"], p.get("until"), p.get("insists", False)
+            ),
+            "Approve an appointment anew, as its program is reviewed now: one whose approval has"
+            " ended, or whose review came out another way.",
+            {
+                "id": _NUMBER,
+                "sha256": _SHA256,
+                "by": _NAME,
+                "until": _TIME,
+                "insists": {"type": "boolean"},
+            },
+            "id sha256 by",
+            result=Appointment,
+        ),
+        "schedule.pause": service(
+            lambda p: paused(p, True),
+            "Have an appointment skipped until it is resumed.",
+            {"id": _NUMBER},
+            "id",
+            result=Appointment,
+        ),
+        "schedule.resume": service(
+            lambda p: paused(p, False),
+            "Have a paused appointment done again from its next time on.",
+            {"id": _NUMBER},
+            "id",
+            result=Appointment,
+        ),
+        "schedule.remove": service(
+            lambda p: schedule.remove(p["id"]),
+            "Remove an appointment; what was done is still told. A run that goes on goes on.",
+            {"id": _NUMBER},
+            "id",
+            result=None,
+        ),
+        "schedule.skip": service(
+            skipped,
+            "Call off the next time of an appointment, or all of a day (`date`); with `back`, have"
+            " them done after all. Returns the times, in seconds since the epoch.",
+            {"id": _NUMBER, "date": _DATE, "back": {"type": "boolean"}},
+            "id",
+            result=list[float],
+        ),
+        "schedule.history": service(
+            lambda p: schedule.history(p.get("id"), p.get("last", 100), p.get("language", "en")),
+            "List the latest times that came, of an appointment or all, and what became of each;"
+            " the newest first. Times to come that were called off are among them.",
+            {"id": _NUMBER, "last": _LAST, "language": _LANGUAGE},
+            observes=True,
+            result=list[Came],
+        ),
+        "schedule.notices": service(
+            lambda p: schedule.notices(
+                p.get("after", 0), p.get("last", 100), p.get("language", "en")
+            ),
+            "List the newest notices, or those with a higher number than `after`: what somebody has"
+            " to know of an appointment who was not looking. The newest is the last.",
+            {
+                "after": {"type": "integer", "minimum": 0},
+                "last": _LAST,
+                "language": _LANGUAGE,
+            },
+            observes=True,
+            result=list[Told],
+        ),
+    }
+
+
+def _rhythm(given: Mapping[str, Any] | None) -> Rhythm | None:
+    """Raises `BadRhythm`."""
+    if given is None:
+        return None
+    try:
+        begins = datetime.fromisoformat(given["begins"])
+    except ValueError:
+        raise BadRhythm(
+            f"{given['begins']!r} is no time at which something begins. Write it as"
+            " 2026-11-30T08:00."
+        ) from None
+    return Rhythm(begins, given.get("zone") or local_zone(), given.get("rule"))
+
+
+def _day(written: str) -> date:
+    try:
+        return date.fromisoformat(written)
+    except ValueError:
+        raise UserError(f"There is no day {written}. Write it as 2026-11-30.") from None

@@ -1,0 +1,281 @@
+"""A station that keeps time: appointments over the wire, run, stopped, and told."""
+
+from __future__ import annotations
+
+import queue
+import sqlite3
+import time
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from nl2robot.review.review import digest
+from nl2robot.run.runlog import RunLog
+from nl2robot.run.state import State
+from nl2robot.schedule.clerk import Settings
+from nl2robot.schedule.quiet import quiet_hours
+from nl2robot.schedule.service import RESTS_AFTER_STOP, Timing, waits_for
+from nl2robot.station.station import SimulatedStation, simulated_station
+from robot_api.client import Robot
+from robot_api.errors import AccessDenied, InvalidCall
+from sim.world.loading import load_world
+from sim.world.model import Zone
+from tests.schedule.conftest import ROUND, ZURICH, Clock, at
+
+DAILY = {"begins": "2026-11-30T08:00", "zone": ZURICH, "rule": "FREQ=DAILY"}
+LONG = 'while True:\n    robot.goto("ward a")\n    robot.goto("ward b")\n'
+EVERY = 0.02
+
+
+class Ward:
+    """A ward with a robot, somebody who talks to it over the wire, and a clock."""
+
+    def __init__(self, station: SimulatedStation, robot: Robot, log: RunLog, clock: Clock) -> None:
+        self.station, self.robot, self.log, self.clock = station, robot, log, clock
+        self._events: queue.SimpleQueue[tuple[str, Mapping[str, Any]]] = queue.SimpleQueue()
+        robot.subscribe(("notice", "schedule"), lambda kind, data: self._events.put((kind, data)))
+
+    def add(self, program: str = ROUND, **given: Any) -> dict[str, Any]:
+        values = {
+            "program": program,
+            "sha256": digest(program),
+            "by": "Nurse Kim",
+            "sentence": "go to ward a and say good morning",
+            "rhythm": DAILY,
+            **given,
+        }
+        added: dict[str, Any] = self.robot.request("schedule.add", values)
+        return added
+
+    def ask(self, method: str, **given: Any) -> Any:
+        return self.robot.request(f"schedule.{method}", given)
+
+    def states(self) -> list[str]:
+        return [each["occurrence"]["state"] for each in reversed(self.ask("history"))]
+
+    def until(self, states: list[str]) -> None:
+        """Wait until that is what became of the times that came."""
+        self.until_true(lambda: self.states() == states)
+
+    def until_true(self, holds: Callable[[], bool]) -> None:
+        """Look again whenever the station says that something has changed."""
+        ends = time.monotonic() + 60.0
+        while not holds():
+            self._events.get(timeout=max(0.01, ends - time.monotonic()))
+
+    def notice(self, kind: str) -> Mapping[str, Any]:
+        """Wait for a notice of that kind."""
+        ends = time.monotonic() + 60.0
+        while True:
+            event, data = self._events.get(timeout=max(0.01, ends - time.monotonic()))
+            if event == "notice" and data["kind"] == kind:
+                return data
+
+
+@pytest.fixture
+def log(tmp_path: Path) -> Iterator[RunLog]:
+    log = RunLog(tmp_path / "log" / "runs.sqlite")
+    yield log
+    log.close()
+
+
+@pytest.fixture
+def ward(log: RunLog, clock: Clock, request: pytest.FixtureRequest) -> Iterator[Ward]:
+    settings = Settings(quiet=quiet_hours("22:00-06:00", ZURICH))
+    timing = Timing(settings=settings, clock=clock, every=EVERY)
+    speed = getattr(request, "param", None)
+    with (
+        simulated_station(load_world("ward"), log, seed=1, speed=speed, timing=timing) as station,
+        station.connect() as robot,
+    ):
+        yield Ward(station, robot, log, clock)
+
+
+slow = pytest.mark.parametrize("ward", [5], indirect=True)
+
+
+def test_a_round_is_made_each_morning_in_the_name_of_who_approved_it(ward: Ward) -> None:
+    added = ward.add()
+    ward.clock.set("2026-11-30 08:00")
+    ward.until(["done"])
+    ward.clock.set("2026-12-01 08:00")
+    ward.until(["done", "done"])
+    second, first = ward.log.runs()
+    assert first.status == second.status == "done"
+    assert first.approved_by == f"Nurse Kim (appointment {added['id']})"
+    assert first.utterance == "go to ward a and say good morning"
+    assert [each["occurrence"]["run"] for each in ward.ask("history")] == [second.id, first.id]
+
+
+def test_what_is_planned_is_told(ward: Ward) -> None:
+    ward.add(rhythm={**DAILY, "rule": "FREQ=WEEKLY;BYDAY=MO,TU,WE,TH,FR"})
+    [listed] = ward.ask("list", language="de")
+    assert listed["when"] == "montags bis freitags um 08:00"
+    assert listed["next"][:2] == [at("2026-11-30 08:00"), at("2026-12-01 08:00")]
+    assert listed["appointment"]["approved_by"] == "Nurse Kim"
+
+
+def test_not_tomorrow_and_then_after_all(ward: Ward) -> None:
+    number = ward.add()["id"]
+    assert ward.ask("skip", id=number, date="2026-12-01") == [at("2026-12-01 08:00")]
+    [listed] = ward.ask("list")
+    assert listed["off"] == [at("2026-12-01 08:00")]
+    assert listed["next"][:2] == [at("2026-11-30 08:00"), at("2026-12-02 08:00")]
+    with pytest.raises(InvalidCall, match="not done then"):
+        ward.ask("skip", id=number, date="2026-12-01")
+    assert ward.ask("skip", id=number, date="2026-12-01", back=True) == [at("2026-12-01 08:00")]
+    assert ward.ask("list")[0]["off"] == []
+    assert ward.ask("skip", id=number) == [at("2026-11-30 08:00")], "what comes next"
+    with pytest.raises(InvalidCall, match="Nothing of appointment"):
+        ward.ask("skip", id=number, date="2026-12-01", back=True)
+
+
+def test_a_paused_one_waits_until_it_is_resumed(ward: Ward) -> None:
+    number = ward.add()["id"]
+    assert ward.ask("pause", id=number)["paused"] is True
+    assert ward.ask("list")[0]["next"] == []
+    ward.clock.set("2026-11-30 08:00")
+    ward.until(["skipped"])
+    ward.ask("resume", id=number)
+    ward.clock.set("2026-12-01 08:00")
+    ward.until(["skipped", "done"])
+    ward.ask("remove", id=number)
+    assert ward.ask("list") == []
+    assert ward.states() == ["skipped", "done"], "what was done is still told"
+
+
+@slow
+def test_a_stop_ends_the_run_and_nothing_begins_it_again(ward: Ward) -> None:
+    ward.add(LONG, insists=True)
+    ward.clock.set("2026-11-30 08:00")
+    ward.until(["running"])
+    ward.robot.stop()
+    assert ward.notice("failed")["told"]["en"].endswith("The robot was stopped.")
+    assert ward.states() == ["failed"] and len(ward.log.runs()) == 1
+    assert ward.log.runs()[0].status == "stopped"
+    ward.clock.set("2026-12-01 08:00")
+    told = ward.notice("waits")["told"]
+    assert told["de"].endswith("wartet: Der Roboter wurde angehalten."), "nothing begins so soon"
+
+
+@slow
+def test_a_program_that_runs_makes_it_wait(ward: Ward) -> None:
+    ward.add()
+    approval = ward.robot.request(
+        "program.approve",
+        {"program": LONG, "sha256": digest(LONG), "by": "Dr Weber", "insists": True},
+    )
+    ward.robot.request("program.run", {"approval": approval["id"]})
+    ward.clock.set("2026-11-30 08:00")
+    assert ward.notice("waits")["told"]["en"].endswith("waits: another program is running.")
+    ward.clock.set("2026-11-30 08:31")
+    assert "another program was running" in ward.notice("missed")["told"]["en"]
+    ward.robot.request("program.stop")
+
+
+def test_a_zone_that_was_drawn_since_asks_for_a_new_approval(ward: Ward) -> None:
+    added = ward.add('robot.goto("ward a")\n')
+    zone = Zone("wet floor", ((2.0, 4.0), (4.0, 4.0), (4.0, 6.5), (2.0, 6.5)))
+    ward.station.simulation.set_zones((zone,))
+    ward.clock.set("2026-11-30 08:00")
+    told = ward.notice("changed")["told"]["en"]
+    assert "wet floor" in told and told.endswith("Review it and approve it anew.")
+    assert ward.states() == ["asked"] and ward.log.runs() == []
+    assert ward.ask("list")[0]["appointment"]["asked"] == "changed"
+    with pytest.raises(AccessDenied, match="did not come to its end"):
+        ward.ask("approve", id=added["id"], sha256=added["sha256"], by="Dr Weber")
+    ward.station.simulation.set_zones(())
+    approved = ward.ask("approve", id=added["id"], sha256=added["sha256"], by="Dr Weber")
+    assert approved["asked"] is None and approved["approved_by"] == "Dr Weber"
+    ward.clock.set("2026-12-01 08:00")
+    ward.until(["asked", "done"])
+
+
+def test_where_the_robot_happens_to_stand_is_no_news(ward: Ward) -> None:
+    ward.add()
+    ward.robot.goto("ward b")
+    ward.clock.set("2026-11-30 08:00")
+    ward.until(["done"])
+
+
+def test_an_approval_ends_when_it_was_said_to(ward: Ward) -> None:
+    ward.add(until=at("2026-12-01 00:00"))
+    ward.clock.set("2026-12-01 08:00")
+    assert "has ended" in ward.notice("ended")["told"]["en"]
+    assert any("a expiré" in each["told"] for each in ward.ask("notices", language="fr"))
+
+
+@pytest.mark.parametrize(
+    ("changed", "error", "sentence"),
+    [
+        ({"sha256": "0" * 64}, AccessDenied, "changed after its review"),
+        ({"program": "robot.fly()\n"}, AccessDenied, "cannot be approved: line 1"),
+        ({"program": 'robot.goto("roof")\n'}, AccessDenied, "cannot be approved|its end"),
+        ({"rhythm": None}, InvalidCall, "a rhythm or a trigger"),
+        ({"trigger": {"battery": 20}}, InvalidCall, "a rhythm or a trigger"),
+        ({"rhythm": {"begins": "soon"}}, InvalidCall, "no time at which something begins"),
+        ({"rhythm": {**DAILY, "rule": "FREQ=MINUTELY"}}, InvalidCall, "more often than"),
+        ({"rhythm": {"begins": "2026-11-30T05:00", "zone": ZURICH}}, InvalidCall, "is over"),
+        ({"until": 0}, InvalidCall, "a year at most"),
+        ({"priority": 10}, InvalidCall, "priority"),
+    ],
+)
+def test_what_is_no_appointment_is_refused_with_a_sentence(
+    ward: Ward, changed: dict[str, Any], error: type[Exception], sentence: str
+) -> None:
+    program = changed.get("program", ROUND)
+    with pytest.raises(error, match=sentence):
+        ward.add(**{"sha256": digest(program), **changed})
+    assert ward.ask("list") == []
+
+
+def test_nothing_is_made_or_opened_where_there_is_no_appointment(ward: Ward, log: RunLog) -> None:
+    assert ward.ask("list") == ward.ask("history") == ward.ask("notices") == []
+    assert not log.path.with_name("schedule.sqlite").exists()
+    with pytest.raises(InvalidCall, match="no appointment 3"):
+        ward.ask("pause", id=3)
+
+
+def test_a_book_that_cannot_be_written_is_told_once_and_nothing_runs(ward: Ward) -> None:
+    ward.add()
+    file = ward.log.path.with_name("schedule.sqlite")
+    with sqlite3.connect(file) as database:
+        database.execute(
+            "CREATE TRIGGER full BEFORE INSERT ON occurrences"
+            " BEGIN SELECT RAISE(ABORT, 'database or disk is full'); END"
+        )
+    ward.clock.set("2026-11-30 08:00")
+    told = ward.notice("trouble")["told"]
+    assert "Free some disk space" in told["en"] and "Speicherplatz" in told["de"]
+    assert ward.log.runs() == []
+    with sqlite3.connect(file) as database:
+        database.execute("DROP TRIGGER full")
+    ward.until(["done"])
+
+
+def test_a_robot_that_charges_begins_when_it_has_enough() -> None:
+    state = State(sequence=1, state="charging", charging=True)
+    assert waits_for(state, 0.0, 12.0) == "charging"
+    assert waits_for(state, 0.0, 80.0) is None
+    assert waits_for(state, 0.0, None) is None
+
+
+@pytest.mark.parametrize(
+    ("state", "why"),
+    [
+        (State(sequence=1), None),
+        (State(sequence=1, state="reviewing"), None),
+        (State(sequence=1, state="running", run=3), "busy"),
+        (State(sequence=1, state="paused", run=3), "busy"),
+        (State(sequence=1, state="stopping", run=3), "stopped"),
+        (State(sequence=1, unconfirmed=True), "stopped"),
+        (State(sequence=1, state="stopped", since=1.0), "stopped"),
+        (State(sequence=1, driven_by="Ann"), "driven"),
+        (State(sequence=1, state="lost", lost_since=5.0), "lost"),
+    ],
+)
+def test_what_a_robot_has_to_be_for_something_to_begin(state: State, why: str | None) -> None:
+    assert waits_for(state, 2.0, 50.0) == why
+    assert waits_for(State(sequence=1, state="stopped"), RESTS_AFTER_STOP, 50.0) is None
