@@ -12,12 +12,27 @@ from nl2robot.review.review import Review
 from nl2robot.run.answers import Sentence
 from nl2robot.run.runs import Approval, Status
 from nl2robot.run.state import GOING
+from nl2robot.schedule.appointments import Appointment
+from nl2robot.schedule.rhythm import Rhythm
+from nl2robot.schedule.schedule import Listed
 from nl2robot.translate.thinking import EVENT, OnProgress, Progress
 from nl2robot.translate.translation import Translation
 from robot_api.client import Robot
 from robot_api.errors import InvalidCall, RobotError, Stopped
 
 T = TypeVar("T")
+
+
+class Wish(msgspec.Struct, frozen=True, kw_only=True):
+    """What is to be done at set times, besides its program."""
+
+    rhythm: Rhythm
+    when: str
+    """In words."""
+    sentence: str
+    plan: dict[str, Any] | None = None
+    more: dict[str, Any] = {}
+    """Further parameters of `schedule.add`: until, priority, makes_up."""
 
 
 class Left(msgspec.Struct, frozen=True):
@@ -35,7 +50,9 @@ def _continuing(run: int | None) -> dict[str, int]:
 
 
 # Learned before there are threads, see `robot_api.schema`.
-msgspec.json.Decoder(tuple[Translation, Review, Approval, Status, Sentence, Left])
+msgspec.json.Decoder(
+    tuple[Translation, Review, Approval, Status, Sentence, Left, Appointment, Listed]
+)
 
 
 class Operator:
@@ -156,6 +173,40 @@ class Operator:
         if insists:
             parameters["insists"] = True
         return self._request("program.approve", parameters, Approval)
+
+    def put_in_book(
+        self, review: Review, wish: Wish, language: str = "en", insists: bool = False
+    ) -> Listed:
+        """Approve exactly the program that was reviewed for set times; returns the appointment."""
+        plan = None if wish.plan is None else msgspec.json.encode(wish.plan).decode()
+        parameters = {
+            "program": review.program,
+            "sha256": review.sha256,
+            "by": self.name,
+            "sentence": wish.sentence,
+            "language": language,
+            "rhythm": msgspec.to_builtins(wish.rhythm),
+            "plan": plan,
+            "insists": insists,
+            **{name: value for name, value in wish.more.items() if value is not None},
+        }
+        number = self._request("schedule.add", parameters, Appointment).id
+        return next(each for each in self.appointments(language) if each.appointment.id == number)
+
+    def appointments(self, language: str = "en") -> list[Listed]:
+        """Those of this robot."""
+        return self._request("schedule.list", {"language": language}, list[Listed])
+
+    def approve_anew(self, kept: Appointment, until: float | None, insists: bool) -> None:
+        """Approve an appointment once more, as its program was just reviewed."""
+        parameters = {
+            "id": kept.id,
+            "sha256": kept.sha256,
+            "by": self.name,
+            "until": until,
+            "insists": insists,
+        }
+        self.robot.request("schedule.approve", parameters)
 
     def run(self, approval: Approval) -> int:
         """Start it; returns the run's number."""

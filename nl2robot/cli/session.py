@@ -18,7 +18,7 @@ import msgspec
 from grammar.language import languages
 from grammar.planning.rules import NAME as RULES
 from grammar.requests import ABOUT_RUNS
-from nl2robot.cli.operator import Operator
+from nl2robot.cli.operator import Operator, Wish
 from nl2robot.cli.terminal import Decision, Terminal
 from nl2robot.cli.waiting import GivenUp
 from nl2robot.errors import ExitStatus, UserError
@@ -30,7 +30,7 @@ from nl2robot.run.runs import Approval, Status
 from nl2robot.run.state import GOING, HELD
 from nl2robot.station.harmless import approver, needs_no_question
 from nl2robot.translate.other_language import accepted, hint, language_of, question
-from nl2robot.translate.translation import STOP, Translation
+from nl2robot.translate.translation import STOP, Scheduled, Translation
 from robot_api.errors import (
     AccessDenied,
     InvalidCall,
@@ -111,6 +111,10 @@ class Session:
             self.terminal.show_given_up()
             return given_up.status
         self.is_asked = translation.status == "clarify"
+        if translation.schedule is not None:
+            return self.make_appointment(
+                wished(translation.schedule), translation.schedule.translation
+            )
         if translation.program is None:
             self._show_answer(translation)
             return ExitStatus.OK if translation.status == "ok" else ExitStatus.NOT_UNDERSTOOD
@@ -120,6 +124,11 @@ class Session:
             self.terminal.show_end("stopped", None)
             return ExitStatus.OK
         return self.perform_program(translation.program, translation, heard)
+
+    def make_appointment(self, wish: Wish, translation: Translation) -> ExitStatus:
+        """Have a program approved for set times, and put it in the book."""
+        assert translation.program is not None
+        return self.perform_program(translation.program, translation, wish=wish)
 
     def next_line(self) -> str | None:
         """What was typed while a program ran and waits for its turn."""
@@ -183,10 +192,11 @@ class Session:
         translation: Translation | None = None,
         heard: str | None = None,
         continues: int | None = None,
+        wish: Wish | None = None,
     ) -> ExitStatus:
         """Review a program, have it approved, run it; what is left of it, if it `continues` a run.
-        A correction instead of a decision makes another program of it, which is reviewed in its
-        place."""
+        With a `wish` it is approved for set times, and put in the book instead. A correction
+        instead of a decision makes another program of it, which is reviewed in its place."""
         asked, proposed = self.ask_always, program
         while True:
             if len(program.encode()) > MAX_PROGRAM:
@@ -194,11 +204,13 @@ class Session:
                 raise UserError(words.format(kilobytes=MAX_PROGRAM // 1000))
             review = self.operator.check(program, self.language, continues)
             edited = translation is None or program != translation.program
+            if wish is not None:
+                self.terminal.show_when(wish.when)
             self.terminal.show_review(review, None if edited else translation)
             if self.approve_all and not review.acceptable:
                 self.terminal.console.print(self.terminal.words["cannot_be_approved"])
                 return ExitStatus.NOT_APPROVED
-            no_question = not (asked or self.approve_all or edited or continues is not None)
+            no_question = not (asked or self.approve_all or edited or continues is not None or wish)
             if no_question and needs_no_question(review, translation):
                 by = approver(self.operator.name, self.language)
                 approval = self._approve(review, translation, heard, by=by)
@@ -210,6 +222,8 @@ class Session:
             finally:
                 self.operator.reviewing(False)
             asked = True
+            if decision == "approve" and wish is not None:
+                return self._put_in_book(review, wish)
             if decision == "approve":
                 approval = self._approve(review, translation, heard, continues, proposed=proposed)
                 if approval is not None:
@@ -228,6 +242,9 @@ class Session:
                 except GivenUp:
                     self.terminal.show_given_up()
                     continue
+                if changed.schedule is not None:
+                    wish = wished(changed.schedule)
+                    changed = changed.schedule.translation
                 if changed.program is not None and changed.program != STOP:
                     translation, program, continues = changed, changed.program, None
                     proposed = program
@@ -275,6 +292,12 @@ class Session:
                 raise
             self.terminal.console.print(self.terminal.words["not_as_it_was"], markup=False)
             return None
+
+    def _put_in_book(self, review: Review, wish: Wish) -> ExitStatus:
+        insists = not review.came_through
+        kept = self.operator.put_in_book(review, wish, self.language, insists)
+        self.terminal.show_appointment(kept)
+        return ExitStatus.OK
 
     def _decision(self, review: Review) -> tuple[Decision | None, str]:
         return ("approve", "") if self.approve_all else self.terminal.decide(review)
@@ -440,3 +463,10 @@ class Session:
                 if isinstance(error, KeyboardInterrupt) and not waiting.begun:
                     raise
                 raise GivenUp(self.language) from error
+
+
+def wished(planned: Scheduled) -> Wish:
+    """What somebody has asked for in a sentence."""
+    return Wish(
+        rhythm=planned.rhythm, when=planned.when, sentence=planned.sentence, plan=planned.plan
+    )

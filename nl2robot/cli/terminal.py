@@ -34,6 +34,10 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.plain import visible
 from nl2robot.run.state import HELD
 from nl2robot.run.trouble import error_told, told
+from nl2robot.schedule.rhythm import local
+from nl2robot.schedule.schedule import Listed
+from nl2robot.schedule.words import a_date, a_moment
+from nl2robot.schedule.zone import local_zone
 from nl2robot.translate.teaching import topic_of
 from nl2robot.words import authorship, foreseen, words_in
 from robot_api.errors import InvalidCall, RobotError
@@ -159,6 +163,22 @@ class Terminal:
                 border_style="dim",
             )
         )
+
+    def show_when(self, when: str) -> None:
+        """At what times a program is to be done, above its review."""
+        self.console.print(f"[bold]{self.words['when']}[/] {_plain(when)}")
+
+    def show_appointment(self, kept: Listed) -> None:
+        """What is in the book from now on."""
+        about = kept.appointment
+        zone = about.rhythm.zone if about.rhythm is not None else local_zone()
+        told = self.words["in_the_book"].format(
+            number=about.id,
+            when=kept.when,
+            next=a_moment(kept.next[0], zone, self.language) if kept.next else "-",
+            until=a_date(local(about.approved_until - 1, zone), self.language),
+        )
+        self.console.print(_plain(told))
 
     def show_review(self, review: Review, translation: Translation | None = None) -> None:
         """`translation` is what made the program, if it stands as it was made."""

@@ -229,6 +229,15 @@ class Book:
                 *(now, number),
             )
 
+    def finish(self, number: int) -> None:
+        """Nothing more comes of it: it is removed, unless something of it is not over."""
+        self._write(
+            "UPDATE appointments SET removed = ? WHERE id = ? AND removed IS NULL AND NOT EXISTS"
+            " (SELECT 1 FROM occurrences WHERE appointment = ?"
+            " AND state IN ('due', 'claimed', 'running'))",
+            *(self._clock(), number, number),
+        )
+
     def look_until(self, number: int, moment: float) -> None:
         self._write("UPDATE appointments SET looked = ? WHERE id = ?", moment, number)
 

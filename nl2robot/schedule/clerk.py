@@ -150,6 +150,9 @@ class Clerk:
 
     def _look_at_approval(self, appointment: Appointment, now: float) -> None:
         if appointment.asked is None and appointment.approved_until <= now:
+            rhythm = appointment.rhythm
+            if rhythm is not None and next_time(rhythm, appointment.looked) is None:
+                return  # nothing more would come
             with self._book.at_once():
                 self._book.ask(appointment.id, "ended")
                 self._tell("ended", appointment, by=appointment.approved_by)
@@ -162,7 +165,10 @@ class Clerk:
         if known is None or known[0] != since:
             known = (since, next_time(appointment.rhythm, since))
             self._next[appointment.id] = known
-        if known[1] is None or known[1] > now:
+        if known[1] is None:
+            self._book.finish(appointment.id)
+            return
+        if known[1] > now:
             return
         came = list(itertools.takewhile(lambda due: due <= now, times(appointment.rhythm, since)))
         with self._book.at_once():

@@ -85,9 +85,14 @@ class Schedule:
     then nothing is opened."""
 
     def __init__(
-        self, file: Path | None, robot: Callable[[], str], check: Checks, clock: Callable[[], float]
+        self,
+        file: Path | None,
+        robot: Callable[[], str | None],
+        check: Checks,
+        clock: Callable[[], float],
     ) -> None:
-        """`file`: where the book is or will be, None to keep it in memory."""
+        """`file`: where the book is or will be, None to keep it in memory.
+        `robot`: its name; None for those of all robots, to which none can be added."""
         self._file = file
         self._robot = robot
         self._check = check
@@ -96,7 +101,7 @@ class Schedule:
         self._lock = threading.Lock()
 
     @property
-    def robot(self) -> str:
+    def robot(self) -> str | None:
         return self._robot()
 
     def book(self) -> Book | None:
@@ -145,17 +150,18 @@ class Schedule:
                 f"What was missed is made up for within {MAKES_UP_AT_MOST} minutes at most."
                 " Choose fewer."
             )
-        until = self._until(until, now)
+        until, robot = self._until(until, now), self.robot
+        assert robot is not None
         review = self._reviewed(program, sha256, language, insists)
         book = self._open()
-        if len(book.appointments(self.robot)) >= MOST:
+        if len(book.appointments(robot)) >= MOST:
             raise UserError(f"This robot has {MOST} appointments. Remove some first.")
         return book.add(
             program=program,
             sha256=sha256,
             sentence=sentence,
             language=language,
-            robot=self.robot,
+            robot=robot,
             approved_by=by,
             approved_until=until,
             reviewed=encoded(findings_of(review)),
@@ -274,7 +280,7 @@ class Schedule:
         """Raises `NoAppointment`, also for another robot's."""
         book = self._open()
         kept = book.appointment(number)
-        if kept.robot != self.robot:
+        if self.robot not in (None, kept.robot):
             raise UserError(f"Appointment {number} is one of {kept.robot}. Change it there.")
         return book, kept
 

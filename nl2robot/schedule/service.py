@@ -122,11 +122,12 @@ class Timekeeper:
     def look(self) -> None:
         """Look once: tell what came of what was begun, and begin what is due."""
         book = self._schedule.book()
-        if book is None:
+        robot = self._schedule.robot
+        if book is None or robot is None:
             return
         if self._clerk is None:
-            self._clerk = Clerk(book, self._schedule.robot, self._timing.settings)
-        for occurrence, appointment in book.begun(self._schedule.robot):
+            self._clerk = Clerk(book, robot, self._timing.settings)
+        for occurrence, appointment in book.begun(robot):
             self._follow(self._clerk, occurrence, appointment)
         begin = self._clerk.look(self._timing.clock(), self._waits())
         self._tell(book)

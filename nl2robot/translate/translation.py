@@ -39,6 +39,11 @@ from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.plain import visible
 from nl2robot.run.history import told_of
+from nl2robot.schedule.asking import Timeless, asked_for
+from nl2robot.schedule.rhythm import BadRhythm, Rhythm
+from nl2robot.schedule.words import in_words
+from nl2robot.schedule.zone import local_zone
+from nl2robot.sentences import in_language
 from nl2robot.translate.courtesies import courtesy
 from nl2robot.translate.other_language import language_of
 from nl2robot.translate.planners import AUTO, available, planner
@@ -62,6 +67,42 @@ _IN_ANY_LANGUAGE = ({"set_language"}, {"stop"})
 """What is done, whatever language it is asked for in."""
 
 Status = Literal["ok", "clarify", "rejected"]
+
+
+class Scheduled(msgspec.Struct, frozen=True, kw_only=True):
+    """What is to be done at set times, once somebody has approved it for them; the fields of the
+    program are those of its `Translation`."""
+
+    rhythm: Rhythm
+    when: str
+    """The rhythm in words: "every day at 08:00"."""
+    sentence: str
+    """What is to be done, as it was said, without the times."""
+    program: str
+    plan: dict[str, Any] | None
+    source: str | None
+    confidence: float
+    explanation: str
+    unused: tuple[str, ...] = ()
+    own: tuple[str, ...] = ()
+
+    @property
+    def translation(self) -> Translation:
+        """What is done each time."""
+        return Translation(
+            utterance=self.sentence,
+            status="ok",
+            program=self.program,
+            plan=self.plan,
+            source=self.source,
+            confidence=self.confidence,
+            explanation=self.explanation,
+            message=None,
+            suggestions=[],
+            ms=0.0,
+            unused=self.unused,
+            own=self.own,
+        )
 
 
 class Translation(msgspec.Struct, frozen=True, kw_only=True):
@@ -90,6 +131,9 @@ class Translation(msgspec.Struct, frozen=True, kw_only=True):
     request: Request | None = None
     """What is asked of the application instead of the robot, such as to learn a routine; there
     is no program then, and the message is the answer."""
+    schedule: Scheduled | None = None
+    """What is asked to be done at set times. There is no program to be run now then: this one is
+    reviewed and approved for those times (`schedule.add` on the wire)."""
 
     def to_json(self) -> str:
         return msgspec.json.encode(self).decode()
@@ -99,6 +143,8 @@ class Translation(msgspec.Struct, frozen=True, kw_only=True):
         if self.program is not None:
             told = [self.explanation, *self._authorship(language)]
             return visible(self.program + "".join(f"# {line}\n" for line in told))
+        if self.schedule is not None:
+            return visible(f"# {self.message}\n{self.schedule.program}")
         lines = [self.message or ""]
         if self.suggestions:
             lines += [
@@ -129,6 +175,8 @@ class Talk:
     refused: str = ""
     """The words that no program was made of last. Said again, they are meant as they stand:
     whatever language they seem to be in, and whatever the robot remembers."""
+    timeless: Timeless | None = None
+    """What is to be done at a time of day that was asked back."""
     who: str = ""
     """Who speaks; noted with the routines that they teach."""
 
@@ -180,6 +228,9 @@ def translate(
     answered = _settled(utterance, knowledge, talk)
     if answered is not None:
         return _answer(utterance, answered, None, started)
+    later = _with_its_time(utterance, knowledge, language, planner, talk, watch, do)
+    if later is not None:
+        return later
     record = history.last() if history is not None else None
     if talk.context is not None and talk.carried_out(record):
         assert record is not None
@@ -199,6 +250,12 @@ def translate(
     if watch.cancelled:  # nobody waits for it, so nothing that is said later can refer to it
         raise Interrupted
     match answer:
+        case Service(request=request) if request.kind == "schedule" and request.when is not None:
+            talk.context = answer.context
+            what = translate(
+                request.sentence, knowledge, turn.language.code, planner, watch=watch, do=do
+            )
+            return _at_set_times(utterance, request, what, turn.language.code, talk, started)
         case Service(request=request):
             talk.context = answer.context
             reply = _replied(request, knowledge, turn.language.code, before, talk, record)
@@ -231,6 +288,66 @@ def translate(
                 translation = msgspec.structs.replace(translation, explanation=explanation)
             talk.note(translation)
             return translation
+
+
+def _at_set_times(
+    utterance: str,
+    request: Request,
+    what: Translation,
+    language: str,
+    talk: Talk,
+    started: float,
+) -> Translation:
+    """What is to be done is understood, or not; at what times is told here, or asked back."""
+    if what.program is None:
+        return msgspec.structs.replace(what, utterance=utterance, ms=_milliseconds(started))
+    try:
+        found = asked_for(request, time.time(), local_zone(), language)
+    except BadRhythm as error:
+        message = in_language(str(error), language) or str(error)
+        return _without_program(utterance, "rejected", message, (), started)
+    if isinstance(found, Timeless):
+        talk.timeless = found
+        return _without_program(utterance, "clarify", found.question, found.sentences, started)
+    words = in_words(found, language)
+    planned = Scheduled(
+        rhythm=found,
+        when=words,
+        sentence=request.sentence,
+        program=what.program,
+        plan=what.plan,
+        source=what.source,
+        confidence=what.confidence,
+        explanation=what.explanation,
+        unused=what.unused,
+        own=what.own,
+    )
+    told = Reply("ok", f"{words[:1].upper()}{words[1:]}: {what.explanation}")
+    answer = _answer(utterance, told, request, started)
+    return msgspec.structs.replace(answer, schedule=planned, confidence=what.confidence)
+
+
+def _with_its_time(
+    utterance: str,
+    knowledge: Knowledge,
+    language: str,
+    planner: str,
+    talk: Talk,
+    watch: Watch,
+    do: Do,
+) -> Translation | None:
+    """What is to be done, at the time of day that was said when it was asked back; None if this is
+    no answer to that."""
+    timeless, talk.timeless = talk.timeless, None
+    whole = timeless.with_answer(utterance, language) if timeless is not None else None
+    if whole is None:
+        return None
+    mine = talk.copy()
+    made = translate(whole, knowledge, language, planner, mine, watch=watch, do=do)
+    if made.schedule is None:
+        return None
+    talk.adopt(mine)
+    return msgspec.structs.replace(made, utterance=utterance)
 
 
 def _turn(utterance: str, knowledge: Knowledge, language: str, context: Context | None) -> Turn:

@@ -323,3 +323,17 @@ def test_quiet_hours_end_by_the_clock_of_the_ward() -> None:
     noon = quiet_hours("12:00-14:00", ZURICH)
     assert noon.cover(at("2026-11-30 12:00")) and not noon.cover(at("2026-11-30 14:00"))
     assert noon.over(at("2026-11-30 13:00")) == at("2026-11-30 14:00")
+
+
+def test_what_was_for_once_is_over_when_it_was_done(
+    clerk: Clerk, book: Book, added: Added, clock: Clock
+) -> None:
+    added(rhythm=rhythm(None))
+    begin = clerk.look(clock.set("2026-11-30 08:00"))
+    assert clerk.look(clock.set("2026-11-30 08:01"), "busy") is None
+    assert len(book.appointments()) == 1, "it is not over yet"
+    finish(clerk, begin)
+    assert clerk.look(clock.set("2026-11-30 08:05")) is None
+    assert book.appointments() == [] and states(book) == ["done"]
+    assert clerk.look(clock.set("2027-11-30 08:05")) is None
+    assert sentences(clerk) == [], "and no approval of it has ended"
