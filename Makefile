@@ -78,10 +78,10 @@ coverage: $(STAMP) browser
 	$(BIN)/pytest -q -n auto --dist loadfile --cov --cov-report=; $(BIN)/coverage json -q -o .coverage/coverage.json
 	$(BIN)/python -m tests.coverage .coverage/coverage.json
 
-# What takes too long for every change: whole samples of what people say, and all attacks, an hour of
+# What takes too long for every change: whole samples of what people say, a server killed 200 times, and all attacks, an hour of
 # them unless MINUTES says otherwise.
 soak: $(STAMP)
-	$(BIN)/pytest -n auto --soak tests/errands
+	$(BIN)/pytest -n auto --soak --timeout 3600 tests/errands tests/schedule/test_kills.py
 	$(MAKE) attacks
 
 MINUTES ?= 60

@@ -333,6 +333,13 @@ class Book:
             if row["appointment"] in known
         ]
 
+    def runs_of(self, appointment: int) -> set[int]:
+        """The numbers of its runs."""
+        rows = self._read(
+            "SELECT run FROM occurrences WHERE appointment = ? AND run IS NOT NULL", appointment
+        )
+        return {row["run"] for row in rows}
+
     def call_back(self, appointment: int, due: float) -> bool:
         """Have a time to come done after all that was called off; False if it was not."""
         cursor = self._write(

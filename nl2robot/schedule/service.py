@@ -40,8 +40,6 @@ CHARGED: Final = 30.0
 TRIES_AGAIN: Final = 30.0
 """Seconds after which it is tried again where something was not free after all."""
 FORGETS_EVERY: Final = 3600.0
-STARTED_BEFORE: Final = 1.0
-"""Seconds that a run may have begun, by the clock, before its time was claimed."""
 LATEST_RUNS: Final = 200
 
 EVENTS: Final[Mapping[str, str]] = {
@@ -128,7 +126,7 @@ class Timekeeper:
         if self._clerk is None:
             self._clerk = Clerk(book, robot, self._timing.settings)
         for occurrence, appointment in book.begun(robot):
-            self._follow(self._clerk, occurrence, appointment)
+            self._follow(self._clerk, book, occurrence, appointment)
         begin = self._clerk.look(self._timing.clock(), self._waits())
         self._tell(book)
         if begin is not None:
@@ -186,12 +184,14 @@ class Timekeeper:
         except (AccessDenied, RobotError) as error:
             clerk.refused(begin, str(error))
 
-    def _follow(self, clerk: Clerk, occurrence: Occurrence, appointment: Appointment) -> None:
+    def _follow(
+        self, clerk: Clerk, book: Book, occurrence: Occurrence, appointment: Appointment
+    ) -> None:
         """Note what came of something that was begun, here or by a process that is gone."""
         mine = occurrence.process == own_process()
         if not mine and occurrence.process is not None and lives(occurrence.process):
             return
-        run = self._run_of(occurrence, appointment)
+        run = self._run_of(book, occurrence, appointment)
         if run is not None and occurrence.run is None:
             clerk.runs(occurrence, run.id)
             occurrence = msgspec.structs.replace(occurrence, run=run.id)
@@ -205,21 +205,21 @@ class Timekeeper:
             return
         clerk.ended(occurrence, appointment, None, None)
 
-    def _run_of(self, occurrence: Occurrence, appointment: Appointment) -> Run | None:
+    def _run_of(self, book: Book, occurrence: Occurrence, appointment: Appointment) -> Run | None:
         """Its run in the log; also of a process that ended before it could note which that is."""
         log = self._runner.log
         if occurrence.run is not None:
             return log.run(occurrence.run)
-        since = (occurrence.began or 0.0) - STARTED_BEFORE
+        known = book.runs_of(appointment.id)
         candidates = (
             run
             for run in log.runs(LATEST_RUNS)
             if run.process == occurrence.process
             and run.sha256 == appointment.sha256
             and run.approved_by == in_the_name_of(appointment)
-            and run.started >= since
+            and run.id not in known
         )
-        return min(candidates, key=lambda run: run.id, default=None)
+        return next(candidates, None)
 
     def _tell(self, book: Book) -> None:
         """Publish what is new in the book."""
