@@ -26,6 +26,9 @@ Kind = Literal[
     "undo",
     "pace",
     "planned",
+    "appointments",
+    "skip",
+    "unschedule",
     "why",
     "doing",
     "done",
@@ -75,9 +78,10 @@ class Request:
     """Something asked of the application."""
 
     kind: Kind
-    """What to do. "schedule" is to do something at set times; "cancel", "undo", "planned", "why"
-    and "pace" ("slower") are about the command before, those `ABOUT_RUNS` about what was done,
-    "help" about what can be said; the others are about routines."""
+    """What to do. "schedule" is to do something at set times; "appointments" asks what is done so,
+    "skip" that it is not done on a day, "unschedule" that it is not done any more. "cancel",
+    "undo", "planned", "why" and "pace" ("slower") are about the command before, those `ABOUT_RUNS`
+    about what was done, "help" about what can be said; the others are about routines."""
     name: str = ""
     """The name of a routine or a person, as it was said."""
     new: str = ""
@@ -89,7 +93,8 @@ class Request:
     """The words that say at what times; of "help", what the help shall be about; of "who said" and
     "how many said", the answer."""
     when: When | None = None
-    """Of "schedule", what those words say; None if they are not understood."""
+    """Of "schedule", what those words say; None if they are not understood. Of "skip" the day, of
+    "unschedule" the time of day, if one was said."""
 
 
 def agreed(text: str, language: str = "en") -> bool | None:

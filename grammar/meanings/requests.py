@@ -116,6 +116,29 @@ def schedule_routine(d: Discourse, node: Node) -> Request:
     return replace(asked, when=d.build(node.parts["part"]))
 
 
+@meaning("skip_appointments")
+def skip_appointments(d: Discourse, node: Node) -> Request:
+    """ "not tomorrow", "not on Monday"."""
+    ahead = node.production.fixed.get("days_ahead")
+    day = d.get(node, "weekday")
+    return Request(
+        "skip",
+        when=When(
+            days_ahead=int(ahead) if ahead is not None else None,
+            weekdays=(WEEKDAYS.index(str(day)),) if day else (),
+        ),
+    )
+
+
+@meaning("cancel_appointment")
+def cancel_appointment(d: Discourse, node: Node) -> Request:
+    """ "cancel the round at eight": by its words, or by its time alone."""
+    clock = node.parts.get("clock")
+    times = (time_said(d, clock)[0],) if isinstance(clock, Node) else ()
+    asked = request(d, node, "unschedule")
+    return replace(asked, when=When(times=times))
+
+
 @meaning("rename_routine")
 def rename_routine(d: Discourse, node: Node) -> Request:
     return request(d, node, "rename")

@@ -9,7 +9,7 @@ from __future__ import annotations
 import itertools
 import threading
 from collections.abc import Callable, Sequence
-from datetime import date
+from datetime import date, datetime
 from pathlib import Path
 from typing import Any, Final, Protocol
 
@@ -48,7 +48,9 @@ _A_DAY_AT_MOST: Final = 300
 class Checks(Protocol):
     """Reviews a program as `nl2robot.run.runner.Runner.check` does."""
 
-    def __call__(self, program: str, language: str = "en") -> Review: ...
+    def __call__(
+        self, program: str, language: str = "en", *, at: datetime | None = None
+    ) -> Review: ...
 
 
 class Listed(msgspec.Struct, frozen=True, kw_only=True):
@@ -152,7 +154,7 @@ class Schedule:
             )
         until, robot = self._until(until, now), self.robot
         assert robot is not None
-        review = self._reviewed(program, sha256, language, insists)
+        review = self._reviewed(program, sha256, language, insists, rhythm)
         book = self._open()
         if len(book.appointments(robot)) >= MOST:
             raise UserError(f"This robot has {MOST} appointments. Remove some first.")
@@ -184,7 +186,7 @@ class Schedule:
         """Approve an appointment anew, as it is reviewed now. Raises as `add` does."""
         book, kept = self._kept(number)
         until = self._until(until, self.clock())
-        review = self._reviewed(kept.program, sha256, kept.language, insists)
+        review = self._reviewed(kept.program, sha256, kept.language, insists, kept.rhythm)
         book.approve(number, by, until, encoded(findings_of(review)), insists)
         return book.appointment(number)
 
@@ -225,6 +227,12 @@ class Schedule:
         return back
 
     # --- seeing them
+
+    def is_done_on(self, number: int, day: date) -> bool:
+        """Whether it comes on that day, from now on, and was not called off."""
+        book, kept = self._kept(number)
+        off = {each.due for each in book.skipped_from(number, self.clock())}
+        return any(due not in off for due in self._on_day(kept, day))
 
     def listed(self, language: str = "en") -> list[Listed]:
         book = self.book()
@@ -284,13 +292,17 @@ class Schedule:
             raise UserError(f"Appointment {number} is one of {kept.robot}. Change it there.")
         return book, kept
 
-    def _reviewed(self, program: str, sha256: str, language: str, insists: bool) -> Review:
-        """A review made now, of a program that may be approved."""
+    def _reviewed(
+        self, program: str, sha256: str, language: str, insists: bool, rhythm: Rhythm | None
+    ) -> Review:
+        """A review of a program that may be approved, as it would go the next time."""
         if digest(program) != sha256:
             raise AccessDenied(
                 "The program was changed after its review. Review it again, then approve it."
             )
-        review = self._check(program, language)
+        due = next_time(rhythm, self.clock()) if rhythm is not None else None
+        at = local(due, rhythm.zone) if rhythm is not None and due is not None else None
+        review = self._check(program, language, at=at)
         errors = [each for each in review.findings if each.severity == "error"]
         if errors:
             raise AccessDenied(

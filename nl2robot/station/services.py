@@ -19,6 +19,7 @@ from nl2robot.run.runlog import Run
 from nl2robot.run.runner import Runner
 from nl2robot.run.runs import Approval, Status
 from nl2robot.run.state import GOING, Reviewing
+from nl2robot.schedule.schedule import Schedule
 from nl2robot.station.local_clock import moment_in
 from nl2robot.translate.planners import names
 from nl2robot.translate.talks import Talks
@@ -53,7 +54,9 @@ EVENTS: Mapping[str, str] = {
 """The events that these services publish."""
 
 
-def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str, Service]:
+def services(
+    runner: Runner, talks: Talks, microphones: Microphones, schedule: Schedule | None = None
+) -> dict[str, Service]:
     """The methods to register with a `robot_api.server.Server`."""
 
     def translated(p: Mapping[str, Any], context: Context) -> Translation:
@@ -71,6 +74,7 @@ def services(runner: Runner, talks: Talks, microphones: Microphones) -> dict[str
                 runner,
                 watch,
                 runner.think,
+                schedule,
             ),
             published(context.publish, {"talk": talk, "utterance": utterance}),
         )

@@ -426,7 +426,7 @@ def _open(
         port=port,
         token=token,
         services={
-            **services(runner, talks, microphones),
+            **services(runner, talks, microphones, schedule),
             **schedule_services(schedule),
             **attention.services(),
             **(added.services if added else {}),

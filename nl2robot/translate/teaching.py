@@ -27,6 +27,7 @@ from grammar.understand import understand
 from grammar.understanding import Understanding
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
+from nl2robot.schedule.talking import CallOff
 from nl2robot.translate.routines import Routine, Routines, spelled
 
 LITTLE = 3
@@ -56,7 +57,7 @@ class Reply:
     status: Literal["ok", "clarify", "rejected"]
     message: str
     suggestions: Sequence[str] = ()
-    pending: Pending | None = None
+    pending: Pending | CallOff | None = None
 
 
 def reply(request: Request, knowledge: Knowledge, language: str, before: str = "") -> Reply:

@@ -39,6 +39,7 @@ from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.plain import visible
 from nl2robot.run.history import told_of
+from nl2robot.schedule import talking as appointments
 from nl2robot.schedule.asking import Timeless, asked_for
 from nl2robot.schedule.rhythm import BadRhythm, Rhythm
 from nl2robot.schedule.words import in_words
@@ -54,6 +55,7 @@ from robot_api.capabilities.matching import match_answer
 
 if TYPE_CHECKING:
     from nl2robot.run.history import History, Record
+    from nl2robot.schedule.schedule import Schedule
     from nl2robot.translate.teaching import Pending
 
 
@@ -164,7 +166,7 @@ class Talk:
     """A conversation: "no, the pharmacy" refers to what was said before in it."""
 
     context: Context | None = None
-    pending: Pending | None = None
+    pending: Pending | appointments.CallOff | None = None
     """What waits for a yes."""
     offers: tuple[Offer, ...] = ()
     """Programs of which one was asked whether it was meant."""
@@ -214,18 +216,20 @@ def translate(
     history: History | None = None,
     watch: Watch | None = None,
     do: Do = here,
+    schedule: Schedule | None = None,
 ) -> Translation:
     """Understand an utterance and write it as a program. Never moves anything, never raises for
     words that are not understood: the status says so. A `talk` remembers it; `history` knows what
     was run, for questions about it; `watch` is told how far it is, and may end it; `do`
-    does what computes for more than a moment (`nl2robot.review.apart.think`: in another process).
+    does what computes for more than a moment (`nl2robot.review.apart.think`: in another process);
+    `schedule` knows the appointments, for questions about them.
     Raises `UserError` for a language or a planner that there is not, and
     `grammar.planning.planner.Interrupted` when `watch` has ended it."""
     started, watch, talk = time.perf_counter(), watch or Watch(), talk or Talk()
     courteous = _courtesy(utterance, knowledge, language, talk)
     if courteous is not None:  # what was said before is as it was
         return _answer(utterance, courteous, None, started)
-    answered = _settled(utterance, knowledge, talk)
+    answered = _settled(utterance, knowledge, talk, schedule)
     if answered is not None:
         return _answer(utterance, answered, None, started)
     later = _with_its_time(utterance, knowledge, language, planner, talk, watch, do)
@@ -258,7 +262,7 @@ def translate(
             return _at_set_times(utterance, request, what, turn.language.code, talk, started)
         case Service(request=request):
             talk.context = answer.context
-            reply = _replied(request, knowledge, turn.language.code, before, talk, record)
+            reply = _replied(request, knowledge, turn.language.code, before, talk, record, schedule)
             talk.pending = reply.pending
             return _answer(utterance, reply, request, started)
         case Question() | Refusal():
@@ -535,9 +539,12 @@ def _replied(
     before: str,
     talk: Talk,
     record: Record | None,
+    schedule: Schedule | None,
 ) -> Reply:
     """The answer to what is asked of the application."""
     pack = load_language(language)
+    if request.kind in appointments.KINDS:
+        return _of_appointments(request, schedule, language)
     if request.kind in ABOUT_RUNS:
         answer = told_of(request, record, knowledge.lexicon(language), pack)
         return Reply("ok" if record is not None else "rejected", answer)
@@ -563,6 +570,14 @@ def _replied(
             return reply(request, knowledge, language, before)
 
 
+def _of_appointments(request: Request, schedule: Schedule | None, language: str) -> Reply:
+    try:
+        said = appointments.answered(request, schedule, language)
+    except UserError as error:  # the book cannot be read
+        return Reply("rejected", in_language(str(error), language) or str(error))
+    return Reply(said.status, said.message, pending=said.pending)
+
+
 def _courtesy(
     utterance: str, knowledge: Knowledge, language: str, talk: Talk, *, with_slips: bool = False
 ) -> Reply | None:
@@ -574,7 +589,9 @@ def _courtesy(
     return Reply("ok", said) if said is not None else None
 
 
-def _settled(utterance: str, knowledge: Knowledge, talk: Talk) -> Reply | None:
+def _settled(
+    utterance: str, knowledge: Knowledge, talk: Talk, schedule: Schedule | None
+) -> Reply | None:
     """What became of the change that was waiting for a yes; None if this is no answer to it."""
     pending, talk.pending = talk.pending, None
     if pending is None:
@@ -582,7 +599,9 @@ def _settled(utterance: str, knowledge: Knowledge, talk: Talk) -> Reply | None:
     yes = agreed(utterance, pending.language)
     if yes is None:
         return None
-
+    if isinstance(pending, appointments.CallOff):
+        said = appointments.settled(pending, yes, schedule)
+        return Reply(said.status, said.message)
     return settle(pending, yes, knowledge, talk.who)
 
 
