@@ -45,6 +45,7 @@ from nl2robot.schedule.rhythm import BadRhythm, Rhythm
 from nl2robot.schedule.words import in_words
 from nl2robot.schedule.zone import local_zone
 from nl2robot.sentences import in_language
+from nl2robot.texts import texts_in
 from nl2robot.translate.courtesies import courtesy
 from nl2robot.translate.other_language import language_of
 from nl2robot.translate.planners import AUTO, available, planner
@@ -326,7 +327,8 @@ def _at_set_times(
         unused=what.unused,
         own=what.own,
     )
-    told = Reply("ok", f"{words[:1].upper()}{words[1:]}: {what.explanation}")
+    waits = texts_in(language, "schedules")["not_yet"]
+    told = Reply("ok", f"{words[:1].upper()}{words[1:]}: {what.explanation} {waits}")
     answer = _answer(utterance, told, request, started)
     return msgspec.structs.replace(answer, schedule=planned, confidence=what.confidence)
 

@@ -235,16 +235,22 @@ def test_forgetting_asks_and_tells_what_else_would_break(nurse, routines) -> Non
     assert nurse.says("forget the routine tea dance").status == "rejected"
 
 
-def test_set_times_are_refused_with_the_part(nurse) -> None:
+def test_a_routine_at_set_times_is_no_program_for_now(nurse) -> None:
     nurse.teaches("evening round", ROUND)
-    for words, part in (
-        ("every morning at eight do the evening round", "every morning at eight"),
-        ("do the evening round every day at half past nine", "every day at half past nine"),
+    for words, when in (
+        ("every morning at eight do the evening round", "every day at 08:00"),
+        ("do the evening round every day at half past ten", "every day at 10:30"),
     ):
-        refused = nurse.says(words)
-        assert (refused.status, refused.program) == ("rejected", None)
-        assert f"“{part}”" in refused.message
-        assert refused.suggestions == ("do the evening round",)
+        planned = nurse.says(words)
+        assert (planned.status, planned.program) == ("ok", None)
+        assert planned.schedule.when == when
+        assert 'robot.say("Good night.")' in planned.schedule.program
+        assert "Nothing is planned before somebody has approved it" in planned.message
+
+
+def test_set_times_that_cannot_be_told_are_refused_with_the_part(nurse) -> None:
+    refused = nurse.says("every other week go to ward a")
+    assert (refused.status, refused.program, refused.schedule) == ("rejected", None, None)
 
 
 def test_a_routine_follows_the_world_and_says_where_it_cannot(nurse, routines) -> None:
