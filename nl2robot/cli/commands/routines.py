@@ -15,7 +15,7 @@ from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.translate import routine_files
 from nl2robot.translate.routines import as_data, open_routines
-from nl2robot.translate.teaching import Reply, Teacher, settle
+from nl2robot.translate.teaching import Pending, Reply, Teacher, settle
 from sim.world.files import read_text
 
 ACTIONS = (
@@ -63,7 +63,7 @@ def run(options: argparse.Namespace) -> int:
     terminal = Terminal()
     reply = _reply(Teacher.of(knowledge, options.lang), options)
     terminal.console.print(reply.message, markup=False)
-    if reply.pending is None:
+    if not isinstance(reply.pending, Pending):
         return ExitStatus.OK if reply.status == "ok" else ExitStatus.BAD_INPUT
     agreed = _agreed(terminal, options)
     told = settle(reply.pending, agreed, knowledge, user_name())
