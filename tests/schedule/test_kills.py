@@ -83,7 +83,13 @@ class Day:
         notices = book.notices(last=100_000)
         numbers = [each.run for each in came if each.run is not None]
         assert len(numbers) == len(set(numbers)), "a run belongs to one time"
-        assert sorted(numbers) == sorted(run.id for run in runs), "nothing ran beside the book"
+        # Killed between the two, a run is in the log and not in the book yet: the next server
+        # notes it with what was claimed for it.
+        claimed = {each.process for each in came if each.state == "claimed"}
+        beside = [run for run in runs if run.id not in numbers]
+        assert len(beside) <= len(claimed), "nothing ran beside the book"
+        assert {run.process for run in beside} <= claimed
+        assert set(numbers) <= {run.id for run in runs}
         by_number = {run.id: run for run in runs}
         for each in came:
             if each.state == "done":
