@@ -1,0 +1,228 @@
+"""The MQTT broker of the house: what its systems say there is heard, and the robot is heard there.
+
+A thin shell around paho-mqtt: it connects by itself, again and again, and knows nothing of what the
+messages mean. Every topic of the robot's own begins with the prefix of the address,
+
+    mqtt://robot@broker.hospital.example:1883/nl2robot/ward-a
+
+with `mqtts` for an encrypted connection. What is said to have been published while the broker
+cannot be reached is sent when it can be.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+from urllib.parse import unquote, urlsplit
+
+if TYPE_CHECKING:
+    from paho.mqtt.client import Client
+
+PASSWORD: Final = "NL2ROBOT_MQTT_PASSWORD"
+"""The environment variable with the password: an address is seen by others."""
+PORTS: Final = {"mqtt": 1883, "mqtts": 8883}
+PREFIX: Final = "nl2robot"
+ALIVE: Final = "available"
+"""The topic below the prefix that says "online" or "offline"; the broker itself says the latter
+when the robot's server is gone."""
+LONGEST_MESSAGE: Final = 65_536
+"""Bytes; what is longer is not for us."""
+LONGEST_TOPIC: Final = 200
+KEPT_UNSENT: Final = 1_000
+"""Messages that wait for a broker that is away; then the oldest are lost."""
+ASKS_EVERY: Final = 20
+"""Seconds between two signs of life: a broker that is gone without a word is noticed after one and
+a half of it."""
+TRIES_AFTER: Final = (1, 60)
+"""Seconds before it is tried again, the first time and at most."""
+
+
+class BadBroker(ValueError):
+    """It is no address of a broker; the message says what to write instead."""
+
+
+@dataclass(frozen=True)
+class BrokerAddress:
+    host: str
+    port: int
+    encrypted: bool = False
+    user: str | None = None
+    prefix: str = PREFIX
+
+    def __str__(self) -> str:
+        host = f"[{self.host}]" if ":" in self.host else self.host
+        return f"{'mqtts' if self.encrypted else 'mqtt'}://{host}:{self.port}/{self.prefix}"
+
+    def topic(self, *parts: str) -> str:
+        """A topic of the robot's own."""
+        return "/".join((self.prefix, *parts))
+
+
+def parse_broker(text: str) -> BrokerAddress:
+    """Read an address. Raises `BadBroker`."""
+    try:
+        parts = urlsplit(text.strip() if "://" in text else f"mqtt://{text.strip()}")
+        host, port = parts.hostname or "", parts.port
+    except ValueError:
+        host, port, parts = "", None, urlsplit("")
+    if parts.password is not None:
+        raise BadBroker(
+            "A password must not stand in an address, where others see it. Put it into the"
+            f" environment variable {PASSWORD}."
+        )
+    prefix = unquote(parts.path).strip("/") or PREFIX
+    if not host or parts.scheme not in PORTS or "?" in text or "#" in text or not is_topic(prefix):
+        raise BadBroker(f"{text!r} is no address of a broker. Write it as mqtt://HOST:PORT/PREFIX.")
+    return BrokerAddress(
+        host=host,
+        port=port or PORTS[parts.scheme],
+        encrypted=parts.scheme == "mqtts",
+        user=unquote(parts.username) if parts.username else None,
+        prefix=prefix,
+    )
+
+
+def is_topic(text: str, wildcards: bool = False) -> bool:
+    """Whether one can publish there or, with `wildcards`, listen: `+` is any one level, `#` at the
+    end all that is below."""
+    if not 0 < len(text) <= LONGEST_TOPIC or "\0" in text or text.startswith("$"):
+        return False
+    levels = text.split("/")
+    special = [level for level in levels if re.search(r"[+#]", level)]
+    if not wildcards:
+        return not special
+    return all(level in ("+", "#") for level in special) and "#" not in levels[:-1]
+
+
+class Broker:
+    """A connection to a broker that comes back by itself.
+
+    `heard(topic, text)` and `linked(connected, because)` are called in its thread, which they must
+    not keep: `because` is a sentence, empty while it is connected.
+    """
+
+    def __init__(
+        self,
+        address: BrokerAddress,
+        name: str,
+        heard: Callable[[str, str], None],
+        linked: Callable[[bool, str], None] = lambda connected, because: None,
+        password: str | None = None,
+    ) -> None:
+        """`name` is how the broker tells us from others. Nothing happens before `open`. The
+        password is the environment's unless it is given."""
+        self.address = address
+        self._heard = heard
+        self._linked = linked
+        self._lock = threading.Lock()
+        self._topics: set[str] = set()
+        self._connected = threading.Event()
+        self._because = ""
+        self._client = self._made(name, password or os.environ.get(PASSWORD))
+
+    def _made(self, name: str, password: str | None) -> Client:
+        from paho.mqtt.client import Client
+        from paho.mqtt.enums import CallbackAPIVersion
+
+        client = Client(CallbackAPIVersion.VERSION2, client_id=name, clean_session=True)
+        if self.address.user is not None:
+            client.username_pw_set(self.address.user, password)
+        if self.address.encrypted:
+            client.tls_set()
+        client.will_set(self.address.topic(ALIVE), "offline", qos=1, retain=True)
+        client.reconnect_delay_set(*TRIES_AFTER)
+        client.max_queued_messages_set(KEPT_UNSENT)
+        client.on_connect = self._on_connect
+        client.on_connect_fail = self._on_failure
+        client.on_disconnect = self._on_disconnect
+        client.on_message = self._on_message
+        return client
+
+    def open(self) -> None:
+        """Begin to connect, and go on trying."""
+        self._client.connect_async(self.address.host, self.address.port, keepalive=ASKS_EVERY)
+        self._client.loop_start()
+
+    def close(self) -> None:
+        """Say that we go, and go."""
+        if self.connected:
+            last = self._client.publish(self.address.topic(ALIVE), "offline", qos=1, retain=True)
+            last.wait_for_publish(timeout=1.0)
+        self._client.disconnect()
+        self._client.loop_stop()
+
+    @property
+    def connected(self) -> bool:
+        return self._connected.is_set()
+
+    def wait(self, seconds: float) -> bool:
+        """Until it is connected, or the time is up; whether it is."""
+        return self._connected.wait(seconds)
+
+    def listen(self, topic: str) -> None:
+        """Hear what is said there, from now on; `+` and `#` stand for levels."""
+        with self._lock:
+            self._topics.add(topic)
+        if self.connected:
+            self._client.subscribe(topic, qos=1)
+
+    def leave(self, topic: str) -> None:
+        """Hear it no more."""
+        with self._lock:
+            self._topics.discard(topic)
+        if self.connected:
+            self._client.unsubscribe(topic)
+
+    def publish(self, topic: str, text: str, *, kept: bool = False) -> None:
+        """Say it there. `kept`: whoever comes later hears the last one, too."""
+        self._client.publish(topic, text, qos=1, retain=kept)
+
+    # --- told by paho, in its thread
+
+    def _on_connect(self, client: Client, _data: Any, _flags: Any, reason: Any, _more: Any) -> None:
+        if reason.is_failure:
+            self._lost(f"it refuses us ({reason})")
+            return
+        with self._lock:
+            topics = sorted(self._topics)
+        for topic in topics:
+            client.subscribe(topic, qos=1)
+        client.publish(self.address.topic(ALIVE), "online", qos=1, retain=True)
+        self._connected.set()
+        self._because = ""
+        self._linked(True, "")
+
+    def _on_failure(self, _client: Client, _data: Any) -> None:
+        self._lost("nothing answers there")
+
+    def _on_disconnect(
+        self, _client: Client, _data: Any, _flags: Any, reason: Any, _more: Any
+    ) -> None:
+        if reason.is_failure:
+            self._lost(f"it is gone ({reason})")
+        else:
+            self._connected.clear()
+
+    def _lost(self, because: str) -> None:
+        """Told once, however often it is tried."""
+        self._connected.clear()
+        if because != self._because:
+            self._because = because
+            self._linked(
+                False,
+                f"The broker {self.address} cannot be reached: {because}. It is tried again and"
+                " again; check its address, its login and the network.",
+            )
+
+    def _on_message(self, _client: Client, _data: Any, message: Any) -> None:
+        if len(message.payload) > LONGEST_MESSAGE:
+            return
+        try:
+            text = message.payload.decode("utf-8")
+        except UnicodeDecodeError:
+            return
+        self._heard(message.topic, text)

@@ -1,0 +1,70 @@
+"""A real broker (Debian's mosquitto), for as long as a story lasts."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import socket
+import subprocess
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+MOSQUITTO = shutil.which("mosquitto", path=f"{os.environ.get('PATH', '')}:/usr/sbin")
+
+
+class House:
+    """A broker that can go and come back on its port."""
+
+    def __init__(self, folder: Path, users: dict[str, str]) -> None:
+        with socket.create_server(("127.0.0.1", 0)) as found:
+            self.port = found.getsockname()[1]
+        self._settings = folder / "mosquitto.conf"
+        lines = [f"listener {self.port} 127.0.0.1", f"allow_anonymous {str(not users).lower()}"]
+        if users:
+            passwords = folder / "passwords"
+            passwords.write_text("".join(f"{name}:{word}\n" for name, word in users.items()))
+            subprocess.run(["mosquitto_passwd", "-U", passwords], check=True)
+            passwords.chmod(0o644)
+            folder.chmod(0o755)
+            lines += [f"password_file {passwords}", f"user {os.environ.get('USER', 'root')}"]
+        self._settings.write_text("\n".join(lines) + "\n")
+        self._broker: subprocess.Popen[str] | None = None
+
+    def comes(self) -> None:
+        assert MOSQUITTO is not None
+        self._broker = subprocess.Popen(
+            [MOSQUITTO, "-c", self._settings], stderr=subprocess.PIPE, text=True
+        )
+        assert self._broker.stderr is not None
+        for line in self._broker.stderr:
+            if "running" in line:
+                return
+        raise AssertionError("the broker does not come")
+
+    def goes(self) -> None:
+        if self._broker is not None:
+            self._broker.kill()
+            self._broker.wait()
+            assert self._broker.stderr is not None
+            self._broker.stderr.close()
+            self._broker = None
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Iterator[Callable[..., House]]:
+    if MOSQUITTO is None:
+        if os.environ.get("CI"):
+            pytest.fail("There is no mosquitto here: apt-get install mosquitto")
+        pytest.skip("There is no mosquitto here: apt-get install mosquitto")
+    made: list[House] = []
+
+    def make(users: dict[str, str] | None = None) -> House:
+        made.append(House(tmp_path, users or {}))
+        made[-1].comes()
+        return made[-1]
+
+    yield make
+    for each in made:
+        each.goes()

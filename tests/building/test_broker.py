@@ -1,0 +1,168 @@
+"""The robot at the broker of the house, which comes and goes."""
+
+from __future__ import annotations
+
+import queue
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from nl2robot.building.broker import BadBroker, Broker, BrokerAddress, is_topic, parse_broker
+
+SOON = 20.0
+
+
+class Listener:
+    """Who connects, and what it is told."""
+
+    def __init__(self, port: int, name: str, user: str | None = None, password: str = "") -> None:
+        self.heard: queue.Queue[tuple[str, str]] = queue.Queue()
+        self.links: queue.Queue[tuple[bool, str]] = queue.Queue()
+        self.broker = Broker(
+            BrokerAddress("127.0.0.1", port, user=user, prefix=f"ward/{name}"),
+            name,
+            lambda topic, text: self.heard.put((topic, text)),
+            lambda connected, because: self.links.put((connected, because)),
+            password,
+        )
+
+    def hears(self) -> tuple[str, str]:
+        return self.heard.get(timeout=SOON)
+
+    def is_told(self) -> tuple[bool, str]:
+        return self.links.get(timeout=SOON)
+
+
+@pytest.fixture
+def join() -> Iterator[Callable[..., Listener]]:
+    there: list[Listener] = []
+
+    def make(*words: Any, **more: Any) -> Listener:
+        there.append(Listener(*words, **more))
+        there[-1].broker.open()
+        return there[-1]
+
+    yield make
+    for each in there:
+        each.broker.close()
+
+
+def test_a_nurse_call_reaches_the_robot(house: Any, join: Any) -> None:
+    port = house().port
+    robot, hospital = join(port, "robot"), join(port, "hospital")
+    assert robot.is_told() == hospital.is_told() == (True, "")
+    robot.broker.listen("ward-3/call/+")
+    hospital.broker.listen("ward/robot/heard")
+    robot.broker.listen("ward/robot/heard")
+    robot.broker.publish("ward/robot/heard", "listening")
+    assert robot.hears() == hospital.hears() == ("ward/robot/heard", "listening")
+    hospital.broker.publish("ward-3/call/12", "pressed")
+    hospital.broker.publish("elsewhere", "pressed")
+    hospital.broker.publish("ward-3/call/13", "pressed")
+    assert [robot.hears(), robot.hears()] == [
+        ("ward-3/call/12", "pressed"),
+        ("ward-3/call/13", "pressed"),
+    ]
+
+
+def test_who_comes_later_knows_whether_the_robot_is_there(house: Any, join: Any) -> None:
+    port = house().port
+    robot = join(port, "robot")
+    assert robot.is_told() == (True, "")
+    late = join(port, "late")
+    late.broker.listen("ward/robot/available")
+    assert late.hears() == ("ward/robot/available", "online")
+    robot.broker.close()
+    assert late.hears() == ("ward/robot/available", "offline")
+
+
+def test_a_broker_that_is_away_is_told_of_once_and_found_again(house: Any, join: Any) -> None:
+    broker = house()
+    robot = join(broker.port, "robot")
+    assert robot.is_told() == (True, "")
+    robot.broker.listen("ward-3/call")
+    broker.goes()
+    lost, because = robot.is_told()
+    assert not lost
+    assert "cannot be reached" in because and str(broker.port) in because
+    robot.broker.publish("ward/robot/notice", "kept until it is back")
+    broker.comes()
+    while robot.is_told() != (True, ""):
+        pass
+    hospital = join(broker.port, "hospital")
+    assert hospital.is_told() == (True, "")
+    hospital.broker.publish("ward-3/call", "pressed")
+    assert robot.hears() == ("ward-3/call", "pressed")
+
+
+def test_a_wrong_password_is_said_to_be_one(house: Any, join: Any) -> None:
+    port = house({"robot": "a word of ours"}).port
+    wrong = join(port, "robot", user="robot", password="another word")
+    refused, because = wrong.is_told()
+    assert not refused
+    assert "refuses us" in because and "login" in because
+    assert join(port, "robot-2", user="robot", password="a word of ours").is_told() == (True, "")
+
+
+def test_what_is_no_text_or_far_too_long_is_not_heard(house: Any, join: Any) -> None:
+    port = house().port
+    robot, hospital = join(port, "robot"), join(port, "hospital")
+    assert robot.is_told() == hospital.is_told() == (True, "")
+    robot.broker.listen("call")
+    robot.broker.publish("call", "I listen")
+    assert robot.hears() == ("call", "I listen")
+    hospital.broker._client.publish("call", b"\xff\xfe", qos=1)
+    hospital.broker.publish("call", "x" * 70_000)
+    hospital.broker.publish("call", "at last a word")
+    assert robot.hears() == ("call", "at last a word")
+
+
+@pytest.mark.parametrize(
+    ("text", "address"),
+    [
+        ("broker", BrokerAddress("broker", 1883)),
+        ("mqtt://broker:1884/ward-a", BrokerAddress("broker", 1884, prefix="ward-a")),
+        (
+            "mqtts://robot@broker.example/house/robots/1",
+            BrokerAddress("broker.example", 8883, True, "robot", "house/robots/1"),
+        ),
+    ],
+)
+def test_addresses(text: str, address: BrokerAddress) -> None:
+    assert parse_broker(text) == address
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "http://broker", "mqtt://", "mqtt://b:x", "mqtt://b/#", "mqtt://b/a?b", "mqtt://b:0x"],
+)
+def test_what_is_no_address_is_said_to_be_none(text: str) -> None:
+    with pytest.raises(BadBroker, match="Write it as"):
+        parse_broker(text)
+
+
+def test_a_password_has_no_place_in_an_address() -> None:
+    with pytest.raises(BadBroker, match="NL2ROBOT_MQTT_PASSWORD"):
+        parse_broker("mqtt://robot:secret@broker")
+
+
+@given(st.text(max_size=300))
+def test_no_address_is_a_fault(text: str) -> None:
+    try:
+        address = parse_broker(text)
+    except BadBroker:
+        return
+    assert is_topic(address.topic("available"))
+
+
+@pytest.mark.parametrize("topic", ["a", "ward/+/call", "ward/#", "#", "+"])
+def test_where_one_can_listen(topic: str) -> None:
+    assert is_topic(topic, wildcards=True)
+
+
+@pytest.mark.parametrize("topic", ["", "a/#/b", "a+/b", "$SYS/x", "a\0", "x" * 201])
+def test_where_one_cannot(topic: str) -> None:
+    assert not is_topic(topic, wildcards=True)
