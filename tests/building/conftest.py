@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import os
+import queue
 import shutil
 import socket
 import subprocess
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from nl2robot.building.broker import Broker, BrokerAddress
+
+SOON = 20.0
 MOSQUITTO = shutil.which("mosquitto", path=f"{os.environ.get('PATH', '')}:/usr/sbin")
 
 
@@ -68,3 +73,38 @@ def house(tmp_path: Path) -> Iterator[Callable[..., House]]:
     yield make
     for each in made:
         each.goes()
+
+
+class Listener:
+    """Who connects, and what it is told."""
+
+    def __init__(self, port: int, name: str, user: str | None = None, password: str = "") -> None:
+        self.heard: queue.Queue[tuple[str, str]] = queue.Queue()
+        self.links: queue.Queue[tuple[bool, str]] = queue.Queue()
+        self.broker = Broker(
+            BrokerAddress("127.0.0.1", port, user=user, prefix=f"ward/{name}"),
+            name,
+            lambda topic, text: self.heard.put((topic, text)),
+            lambda connected, because: self.links.put((connected, because)),
+            password,
+        )
+
+    def hears(self) -> tuple[str, str]:
+        return self.heard.get(timeout=SOON)
+
+    def is_told(self) -> tuple[bool, str]:
+        return self.links.get(timeout=SOON)
+
+
+@pytest.fixture
+def join() -> Iterator[Callable[..., Listener]]:
+    there: list[Listener] = []
+
+    def make(*words: Any, **more: Any) -> Listener:
+        there.append(Listener(*words, **more))
+        there[-1].broker.open()
+        return there[-1]
+
+    yield make
+    for each in there:
+        each.broker.close()

@@ -1,0 +1,146 @@
+"""What the house is told of the robot, and what it may tell it: topics and their payloads.
+
+Without I/O: what happens goes in, messages come out. Below the robot's own prefix
+
+| topic                | payload                                                                |
+|----------------------|------------------------------------------------------------------------|
+| `available`          | "online", "offline" (by the broker, see `broker`)                       |
+| `state`              | the event `state` as JSON, kept: `state`, `since`, `because`, `run` ... |
+| `battery`            | `{"percent": 80, "charging": false}`, kept                             |
+| `place`              | the name of the place that it is at, kept; empty: at none              |
+| `notice`             | each notice as JSON: what somebody has to know while not looking       |
+| `stop`               | anything that is said here stops the robot                             |
+
+and, for Home Assistant, `homeassistant/device/<robot>/config`, by which it finds all of that.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Mapping
+from typing import Any, Final, Protocol
+
+from nl2robot.building.broker import ALIVE, BrokerAddress
+
+DISCOVERY: Final = "homeassistant"
+"""The prefix of Home Assistant's MQTT discovery, unless somebody changed it there."""
+BORN: Final = f"{DISCOVERY}/status"
+"""Where Home Assistant says "online" when it begins: then it is told anew."""
+STOP: Final = "stop"
+KEPT: Final = {"state": True, "battery": True, "notice": False}
+"""The events that are told, and whether who comes later hears the last one."""
+_NOTICE: Final = "{{ {'event_type': 'notice', 'text': value_json.text} | tojson }}"
+STATES: Final = (
+    *("idle", "reviewing", "charging", "running", "pausing", "paused"),
+    *("stopping", "stopped", "lost"),
+)
+
+
+class Publish(Protocol):
+    def __call__(self, topic: str, text: str, *, kept: bool = False) -> None: ...
+
+
+class Reporter:
+    """Tells a broker of one robot.
+
+    `publish` says something there; `stop(because)` stops the robot. Any thread may call it.
+    """
+
+    def __init__(
+        self,
+        address: BrokerAddress,
+        robot: str,
+        version: str,
+        publish: Publish,
+        stop: Callable[[str], None],
+    ) -> None:
+        self._address = address
+        self._robot = robot
+        self._version = version
+        self._publish = publish
+        self._stop = stop
+        self._place: str | None = None
+
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """Where it has to listen."""
+        return (self._address.topic(STOP), BORN)
+
+    def connected(self) -> None:
+        """The broker is there, perhaps again."""
+        self._publish(self._discovery_topic, json.dumps(self.discovery()), kept=True)
+
+    def on_event(self, kind: str, data: Mapping[str, Any]) -> None:
+        """Something has happened, as on the wire."""
+        if kind in KEPT:
+            self._publish(self._address.topic(kind), json.dumps(dict(data)), kept=KEPT[kind])
+        elif kind == "pose" and data.get("place") != self._place:
+            self._place = data.get("place")
+            self._publish(self._address.topic("place"), self._place or "", kept=True)
+
+    def heard(self, topic: str, text: str) -> bool:
+        """Something was said there; whether it was for us."""
+        if topic == self._address.topic(STOP):
+            self._stop("A system of the house has stopped it.")
+            return True
+        if topic == BORN and text == "online":
+            self.connected()
+            return True
+        return topic == BORN
+
+    def discovery(self) -> dict[str, Any]:
+        """What Home Assistant wants to know of a device: its entities and their topics."""
+        topic = self._address.topic
+        return {
+            "device": {
+                "identifiers": [self._id],
+                "name": self._robot,
+                "manufacturer": "nl2robot",
+                "sw_version": self._version,
+            },
+            "origin": {"name": "nl2robot", "sw_version": self._version},
+            "availability_topic": topic(ALIVE),
+            "components": {
+                "state": self._entity(
+                    "sensor",
+                    "State",
+                    state_topic=topic("state"),
+                    value_template="{{ value_json.state }}",
+                    json_attributes_topic=topic("state"),
+                    device_class="enum",
+                    options=list(STATES),
+                ),
+                "battery": self._entity(
+                    "sensor",
+                    "Battery",
+                    state_topic=topic("battery"),
+                    value_template="{{ value_json.percent }}",
+                    device_class="battery",
+                    unit_of_measurement="%",
+                ),
+                "place": self._entity("sensor", "Place", state_topic=topic("place")),
+                "notice": self._entity(
+                    "event",
+                    "Notice",
+                    state_topic=topic("notice"),
+                    event_types=["notice"],
+                    value_template=_NOTICE,
+                ),
+                "stop": self._entity(
+                    "button", "Stop", command_topic=topic(STOP), payload_press="stop"
+                ),
+            },
+        }
+
+    def _entity(self, platform: str, name: str, **more: Any) -> dict[str, Any]:
+        of = re.sub(r"\W+", "_", name.lower())
+        return {"platform": platform, "name": name, "unique_id": f"{self._id}_{of}", **more}
+
+    @property
+    def _id(self) -> str:
+        return re.sub(r"[^A-Za-z0-9_-]+", "_", self._address.prefix)
+
+    @property
+    def _discovery_topic(self) -> str:
+        return f"{DISCOVERY}/device/{self._id}/config"

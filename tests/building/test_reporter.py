@@ -1,0 +1,113 @@
+"""What a system of the house hears of the robot, and finds of it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from nl2robot.building.broker import BrokerAddress
+from nl2robot.building.joining import joined
+from nl2robot.building.reporter import STATES, Reporter
+from nl2robot.run.state import FOLLOWS
+from robot_api.errors import StopNotConfirmed
+
+ADDRESS = BrokerAddress("broker", 1883, prefix="house/robots/ward a")
+
+
+class Ward:
+    """A reporter, with what it said and whom it stopped."""
+
+    def __init__(self) -> None:
+        self.said: dict[str, tuple[str, bool]] = {}
+        self.stops: list[str] = []
+        self.reporter = Reporter(ADDRESS, "Robi", "1.0", self._publish, self.stops.append)
+
+    def _publish(self, topic: str, text: str, *, kept: bool = False) -> None:
+        self.said[topic] = (text, kept)
+
+
+@pytest.fixture
+def ward() -> Ward:
+    return Ward()
+
+
+def test_who_comes_later_hears_how_the_robot_stands(ward: Ward) -> None:
+    ward.reporter.on_event("state", {"state": "running", "run": 7})
+    text, kept = ward.said["house/robots/ward a/state"]
+    assert kept
+    assert json.loads(text) == {"state": "running", "run": 7}
+
+
+def test_a_place_is_told_when_it_changes_and_not_ten_times_a_second(ward: Ward) -> None:
+    told = []
+    for place in ("lobby", "lobby", None, None, "pharmacy"):
+        ward.said.clear()
+        ward.reporter.on_event("pose", {"x": 1.0, "place": place})
+        told.append(ward.said.get("house/robots/ward a/place"))
+    assert told == [("lobby", True), None, ("", True), None, ("pharmacy", True)]
+
+
+def test_what_the_robot_says_and_hears_stays_in_the_room(ward: Ward) -> None:
+    for kind in ("speech", "heard", "program", "log", "screen", "sound"):
+        ward.reporter.on_event(kind, {"text": "Frau Keller has a fever."})
+    assert not ward.said
+
+
+@pytest.mark.parametrize("text", ["stop", "", "go on"])
+def test_whatever_is_said_at_stop_stops_it(ward: Ward, text: str) -> None:
+    assert ward.reporter.heard("house/robots/ward a/stop", text)
+    assert ward.stops == ["A system of the house has stopped it."]
+
+
+def test_home_assistant_finds_it_again_when_it_begins_anew(ward: Ward) -> None:
+    assert ward.reporter.heard("homeassistant/status", "online")
+    text, kept = ward.said["homeassistant/device/house_robots_ward_a/config"]
+    assert kept
+    found = json.loads(text)
+    assert found["device"]["name"] == "Robi"
+    assert found["availability_topic"] == "house/robots/ward a/available"
+    entities = found["components"].values()
+    assert {each["platform"] for each in entities} == {"sensor", "event", "button"}
+    assert len({each["unique_id"] for each in entities}) == len(entities)
+    assert not ward.reporter.heard("ward-3/call", "pressed")
+
+
+def test_it_is_said_to_be_in_no_state_that_home_assistant_does_not_know() -> None:
+    assert set(STATES) == set(FOLLOWS)
+
+
+class Stage:
+    """A station whose robot does not say that it stands."""
+
+    def __init__(self) -> None:
+        self.listeners: list[Callable[[str, Any], None]] = []
+        self.stops: list[str] = []
+
+    def stop(self, because: str) -> None:
+        self.stops.append(because)
+        for listener in self.listeners:
+            listener("state", {"state": "stopping", "because": because})
+        raise StopNotConfirmed("It may still be moving.")
+
+    def subscribe(self, listener: Callable[[str, Any], None]) -> Callable[[], None]:
+        self.listeners.append(listener)
+        return lambda: self.listeners.remove(listener)
+
+
+def test_a_button_of_the_house_stops_the_robot(house: Any, join: Any) -> None:
+    port, stage = house().port, Stage()
+    nurse = join(port, "nurse")
+    assert nurse.is_told() == (True, "")
+    nurse.broker.listen("ward-a/#")
+    with joined(BrokerAddress("127.0.0.1", port, prefix="ward-a"), "Robi", stage) as broker:
+        assert nurse.hears() == ("ward-a/available", "online")
+        broker.listen("ward-a/stop")  # once more, which changes nothing
+        nurse.broker.publish("ward-a/stop", "please")
+        assert nurse.hears() == ("ward-a/stop", "please")
+        topic, text = nurse.hears()
+        assert (topic, json.loads(text)["state"]) == ("ward-a/state", "stopping")
+    assert nurse.hears() == ("ward-a/available", "offline")
+    assert stage.stops and not stage.listeners
