@@ -8,7 +8,7 @@ VOICES := $(VENV)/.installed-voices
 STAMP  := $(VENV)/.installed
 ROS2   := .venv-ros2
 
-.PHONY: run voices test format lint types tests coverage soak attacks browser systemd ros2 wheels lock sbom audit bench docs docs-version test-all hooks changelog release image clean
+.PHONY: run voices test format lint types tests coverage soak attacks browser systemd broker ros2 wheels lock sbom audit bench docs docs-version test-all hooks changelog release image clean
 
 run: $(RUNS)
 	@$(BIN)/nl2robot demo
@@ -68,12 +68,12 @@ types: $(STAMP)
 # Most stories wait for something, so there are more of them at a time than cores, by four at least;
 # those of a file, which share a console or a robot, stay together. Many start commands, which would
 # compile what they import each time where Python may write no bytecode.
-tests: $(STAMP) browser systemd ros2
+tests: $(STAMP) browser systemd broker ros2
 	@$(BIN)/python -m compileall -q grammar nl2robot robot_api sandbox sim
 	$(BIN)/pytest -n $$($(BIN)/python -c 'import os; n = os.cpu_count() or 1; print(n + max(n, 4))') --dist loadfile
 
 # Which lines no test runs; a module of which tests run less than 70 % has to say why.
-coverage: $(STAMP) browser
+coverage: $(STAMP) browser broker
 	rm -rf .coverage && mkdir .coverage
 	$(BIN)/pytest -q -n auto --dist loadfile --cov --cov-report=; $(BIN)/coverage json -q -o .coverage/coverage.json
 	$(BIN)/python -m tests.coverage .coverage/coverage.json
@@ -111,6 +111,16 @@ systemd:
 	    (apt-get -qq update && apt-get install -qq -y --no-install-recommends systemd) >/dev/null; \
 	  else \
 	    echo "The unit file is not checked without systemd-analyze."; \
+	  fi; }
+
+# The broker of a house is a real one: Debian's mosquitto.
+broker:
+	@PATH=$$PATH:/usr/sbin command -v mosquitto >/dev/null || { \
+	  if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+	    echo "Installing mosquitto, the MQTT broker of the tests ..."; \
+	    (apt-get -qq update && apt-get install -qq -y --no-install-recommends mosquitto) >/dev/null; \
+	  else \
+	    echo "What MQTT does is not tested without mosquitto: sudo apt-get install mosquitto"; \
 	  fi; }
 
 # Real ROS 2 nodes and a real rosbridge, of which there are wheels for Python 3.11 on x86-64. They
