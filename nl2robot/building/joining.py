@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import logging
 import re
 import threading
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from typing import Any, Protocol
 
 from nl2robot import __version__
@@ -13,7 +14,7 @@ from nl2robot.building.broker import Broker, BrokerAddress
 from nl2robot.building.reporter import Reporter
 from robot_api.errors import RobotError
 
-Heard = Callable[[str, str], None]
+_log = logging.getLogger(__name__)
 
 
 class Stage(Protocol):
@@ -27,43 +28,62 @@ class Stage(Protocol):
     ) -> Callable[[], None]: ...
 
 
-@contextmanager
-def joined(
-    address: BrokerAddress,
-    robot: str,
-    stage: Stage,
-    heard: Heard = lambda topic, text: None,
-    linked: Callable[[bool, str], None] = lambda connected, because: None,
-) -> Iterator[Broker]:
-    """Tell the broker of this robot, and stop it when it is told to there. What else is said where
-    somebody listens (`Broker.listen`), `heard(topic, text)` is told, and of the link `linked`."""
+class House:
+    """Tells a broker of this robot while it is entered, and stops the robot when it is told to
+    there. What else is said where somebody listens, `heard(topic, text)` is told."""
 
-    def on_message(topic: str, text: str) -> None:
-        if not reporter.heard(topic, text):
-            heard(topic, text)
+    def __init__(
+        self,
+        address: BrokerAddress,
+        robot: str,
+        stage: Stage,
+        heard: Callable[[str, str], None] = lambda topic, text: None,
+    ) -> None:
+        self._stage = stage
+        self._heard = heard
+        name = re.sub(r"[^A-Za-z0-9]+", "-", address.prefix)
+        self.broker = Broker(address, name, self._on_message, self._on_link)
+        self._reporter = Reporter(address, robot, __version__, self.broker.publish, self._stop)
+        self._topics: frozenset[str] = frozenset()
+        self._unsubscribe: Callable[[], None] | None = None
 
-    def on_link(connected: bool, because: str) -> None:
+    def __enter__(self) -> House:
+        for topic in self._reporter.topics:
+            self.broker.listen(topic)
+        self._unsubscribe = self._stage.subscribe(self._reporter.on_event)
+        self.broker.open()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._unsubscribe is not None:
+            self._unsubscribe()
+        self.broker.close()
+
+    def listen_to(self, topics: frozenset[str]) -> None:
+        """Hear these topics besides our own, and no others."""
+        for topic in self._topics - topics:
+            self.broker.leave(topic)
+        for topic in topics - self._topics:
+            self.broker.listen(topic)
+        self._topics = topics
+
+    # --- told by the broker, in its thread
+
+    def _on_message(self, topic: str, text: str) -> None:
+        if not self._reporter.heard(topic, text):
+            self._heard(topic, text)
+
+    def _on_link(self, connected: bool, because: str) -> None:
         if connected:
-            reporter.connected()
-        linked(connected, because)
+            self._reporter.connected()
+        else:
+            _log.warning("%s", because)
 
-    def stop(because: str) -> None:
-        with suppress(RobotError):  # a stop that is not confirmed is a state, which all are told
-            stage.stop(because)
-
-    def stop_at_once(because: str) -> None:
+    def _stop(self, because: str) -> None:
         """Without keeping the broker until the robot stands."""
-        threading.Thread(target=stop, args=(because,), name="stop by MQTT", daemon=True).start()
 
-    name = re.sub(r"[^A-Za-z0-9]+", "-", address.prefix)
-    broker = Broker(address, name, on_message, on_link)
-    reporter = Reporter(address, robot, __version__, broker.publish, stop_at_once)
-    for topic in reporter.topics:
-        broker.listen(topic)
-    unsubscribe = stage.subscribe(reporter.on_event)
-    broker.open()
-    try:
-        yield broker
-    finally:
-        unsubscribe()
-        broker.close()
+        def stop() -> None:
+            with suppress(RobotError):  # one that is not confirmed is a state, which all are told
+                self._stage.stop(because)
+
+        threading.Thread(target=stop, name="stop by MQTT", daemon=True).start()

@@ -15,6 +15,7 @@ from nl2robot.run.state import GOING
 from nl2robot.schedule.appointments import Appointment
 from nl2robot.schedule.rhythm import Rhythm
 from nl2robot.schedule.schedule import Listed
+from nl2robot.schedule.triggers import Trigger
 from nl2robot.translate.thinking import EVENT, OnProgress, Progress
 from nl2robot.translate.translation import Translation
 from robot_api.client import Robot
@@ -24,9 +25,10 @@ T = TypeVar("T")
 
 
 class Wish(msgspec.Struct, frozen=True, kw_only=True):
-    """What is to be done at set times, besides its program."""
+    """What is to be done at set times or at an event, besides its program."""
 
-    rhythm: Rhythm
+    rhythm: Rhythm | None = None
+    trigger: Trigger | None = None
     when: str
     """In words."""
     sentence: str
@@ -186,6 +188,7 @@ class Operator:
             "sentence": wish.sentence,
             "language": language,
             "rhythm": msgspec.to_builtins(wish.rhythm),
+            "trigger": msgspec.to_builtins(wish.trigger),
             "plan": plan,
             "insists": insists,
             **{name: value for name, value in wish.more.items() if value is not None},

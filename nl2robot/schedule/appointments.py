@@ -7,6 +7,7 @@ from typing import Any, Final, Literal
 import msgspec
 
 from nl2robot.schedule.rhythm import Rhythm
+from nl2robot.schedule.triggers import Trigger
 
 State = Literal["due", "claimed", "running", "done", "failed", "skipped", "missed", "asked"]
 """Of a time that came: it waits until the robot is free (due); it is taken, to be reviewed and
@@ -54,8 +55,8 @@ class Appointment(msgspec.Struct, frozen=True, kw_only=True):
     language: str
     rhythm: Rhythm | None
     """None for one that something else than the clock begins."""
-    trigger: Any
-    """What begins it instead; JSON, None for one by the clock. See `nl2robot.schedule`'s users."""
+    trigger: Trigger | None
+    """What begins it instead; None for one by the clock."""
     robot: str
     """Its name, as its capabilities tell it; no other robot does it."""
     approved_by: str

@@ -23,6 +23,7 @@ from nl2robot.errors import UserError
 from nl2robot.run.process import own_process
 from nl2robot.schedule.appointments import Appointment, Notice, NoticeKind, Occurrence, State, Why
 from nl2robot.schedule.rhythm import Rhythm
+from nl2robot.schedule.triggers import Trigger
 from robot_api.errors import cause
 
 _VERSION: Final = 1
@@ -150,7 +151,7 @@ class Book:
         priority: int,
         makes_up: int,
         rhythm: Rhythm | None = None,
-        trigger: Any = None,
+        trigger: Trigger | None = None,
         plan: str | None = None,
         insists: bool = False,
     ) -> Appointment:
@@ -441,7 +442,7 @@ def _appointment(row: Mapping[str, Any]) -> Appointment:
         **{
             **row,
             "rhythm": msgspec.json.decode(rhythm, type=Rhythm) if rhythm else None,
-            "trigger": msgspec.json.decode(trigger) if trigger else None,
+            "trigger": msgspec.json.decode(trigger, type=Trigger) if trigger else None,
             "insists": bool(row["insists"]),
             "paused": bool(row["paused"]),
         }

@@ -39,6 +39,9 @@ stopped just now, or stops; it cannot be reached; quiet hours; another one begin
 
 ON_TIME: Final = 60.0
 """Seconds after its time until which it is no matter that nobody looked."""
+WAITS_FOR_ROBOT: Final = 60.0
+"""Seconds that what something happened for may wait: nobody is greeted who has gone on. `makes_up`
+gives it longer."""
 MISSED_AT_ONCE: Final = 50
 """Times of an appointment that were missed in one go and are in the book one by one; of more only
 the latest are, and how many there were."""
@@ -242,7 +245,8 @@ class Clerk:
         for occurrence, appointment in waiting:
             latest[appointment.id] = max(latest[appointment.id], occurrence.due)
         for occurrence, appointment in waiting:
-            most = max(self._settings.waits, appointment.makes_up * 60.0)
+            waits = self._settings.waits if appointment.trigger is None else WAITS_FOR_ROBOT
+            most = max(waits, appointment.makes_up * 60.0)
             if appointment.paused:
                 self._book.end(occurrence.id, "skipped", "paused")
             elif appointment.asked is not None:

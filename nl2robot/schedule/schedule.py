@@ -11,7 +11,7 @@ import threading
 from collections.abc import Callable, Sequence
 from datetime import date, datetime
 from pathlib import Path
-from typing import Any, Final, Protocol
+from typing import Final, Protocol
 
 import msgspec
 
@@ -31,6 +31,8 @@ from nl2robot.schedule.book import Book
 from nl2robot.schedule.findings import encoded, findings_of
 from nl2robot.schedule.rhythm import Rhythm, checked, local, next_time, times
 from nl2robot.schedule.telling import outcome, told, when
+from nl2robot.schedule.triggers import Trigger
+from nl2robot.schedule.triggers import checked as checked_trigger
 from nl2robot.schedule.zone import local_zone
 from robot_api.errors import AccessDenied
 
@@ -128,7 +130,7 @@ class Schedule:
         sentence: str,
         language: str = "en",
         rhythm: Rhythm | None = None,
-        trigger: Any = None,
+        trigger: Trigger | None = None,
         plan: str | None = None,
         priority: int = ORDINARY,
         makes_up: int = 0,
@@ -145,6 +147,8 @@ class Schedule:
             rhythm = checked(rhythm)
             if next_time(rhythm, now) is None:
                 raise UserError("That time is over. Choose one that is still to come.")
+        if trigger is not None:
+            trigger = checked_trigger(trigger)
         if not PRIORITIES[0] <= priority <= PRIORITIES[1]:
             raise UserError(f"A priority is {PRIORITIES[0]} to {PRIORITIES[1]}. Choose another.")
         if not 0 <= makes_up <= MAKES_UP_AT_MOST:

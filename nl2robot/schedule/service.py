@@ -26,6 +26,7 @@ from nl2robot.schedule.appointments import Appointment, Occurrence
 from nl2robot.schedule.book import Book
 from nl2robot.schedule.clerk import Begin, Clerk, Settings, Waits
 from nl2robot.schedule.findings import decoded, findings_of, news
+from nl2robot.schedule.lookout import Ask, Lookout
 from nl2robot.schedule.schedule import FILE, Schedule
 from nl2robot.schedule.telling import told
 from nl2robot.schedule.zone import local_zone
@@ -89,13 +90,19 @@ class Timekeeper:
         runner: Runner,
         timing: Timing,
         publish: Callable[[str, Mapping[str, Any]], None],
+        ask: Ask,
+        listen: Callable[[frozenset[str]], None] = lambda topics: None,
     ) -> None:
+        """`ask` calls a method of the robot that only looks; `listen`: have these topics of the
+        house's broker told to `note`, as `message`."""
         self._schedule = schedule
         self._runner = runner
         self._timing = timing
         self._publish = publish
         self._clerk: Clerk | None = None
         self._over = threading.Event()
+        self._soon = threading.Event()
+        self._lookout = Lookout(ask, timing.clock, listen, self._soon.set)
         self._thread = threading.Thread(target=self._keep_time, name="schedule", daemon=True)
         self._battery: float | None = None
         self._not_before = 0.0
@@ -110,12 +117,19 @@ class Timekeeper:
 
     def __exit__(self, *_: object) -> None:
         self._over.set()
+        self._soon.set()
         self._thread.join()
 
     def note(self, kind: str, data: Mapping[str, Any]) -> None:
-        """One of the robot's own events."""
+        """An event of the robot or of its runs, or one of `nl2robot.schedule.triggers`."""
+        self._lookout.note(kind, data)
         if kind == "battery" and isinstance(data.get("percent"), int | float):
             self._battery = float(data["percent"])
+
+    @property
+    def buttons(self) -> list[str]:
+        """Those that the robot's face shows, each of which is a trigger."""
+        return self._lookout.buttons
 
     def look(self) -> None:
         """Look once: tell what came of what was begun, and begin what is due."""
@@ -127,6 +141,7 @@ class Timekeeper:
             self._clerk = Clerk(book, robot, self._timing.settings)
         for occurrence, appointment in book.begun(robot):
             self._follow(self._clerk, book, occurrence, appointment)
+        self._lookout.look(book, book.appointments(robot), self._waits() is None)
         begin = self._clerk.look(self._timing.clock(), self._waits())
         self._tell(book)
         if begin is not None:
@@ -137,7 +152,11 @@ class Timekeeper:
     # --- inside
 
     def _keep_time(self) -> None:
-        while not self._over.wait(self._timing.every):
+        while True:
+            self._soon.wait(self._timing.every)
+            self._soon.clear()
+            if self._over.is_set():
+                return
             try:
                 self.look()
                 self._trouble = ""

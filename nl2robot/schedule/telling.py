@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from typing import Any, Final
 
+import msgspec
+
 from nl2robot.schedule.appointments import Appointment, Notice, Occurrence
+from nl2robot.schedule.triggers import Trigger
 from nl2robot.schedule.words import a_moment, in_words
 from nl2robot.sentences import in_language
 from nl2robot.texts import texts_in
@@ -52,8 +55,20 @@ def outcome(occurrence: Occurrence, language: str = "en") -> str:
 def when(appointment: Appointment, language: str = "en") -> str:
     """At what times it is done, in words."""
     if appointment.rhythm is None:
-        return str(texts_in(language, "schedules")["trigger"])
+        assert appointment.trigger is not None
+        return happening(appointment.trigger, language)
     return in_words(appointment.rhythm, language)
+
+
+def happening(trigger: Trigger, language: str = "en") -> str:
+    """What begins it, in words: "when the battery falls below 20 %"."""
+    texts = texts_in(language, "schedules")["happenings"]
+    named: str = trigger.what
+    if trigger.what == "seen" and trigger.place:
+        named += "_there"
+    elif trigger.what in ("scanned", "message") and trigger.text:
+        named += "_so"
+    return str(texts[named]).format(**msgspec.structs.asdict(trigger))
 
 
 def _sentence(text: str, language: str) -> str:

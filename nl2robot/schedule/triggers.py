@@ -24,6 +24,8 @@ from typing import Any, Final, Literal
 
 import msgspec
 
+from nl2robot.errors import UserError
+
 What = Literal["battery", "place", "seen", "heard", "scanned", "pressed", "message"]
 MINUTE: Final = 60.0
 SHORTEST: Final = 5.0
@@ -54,7 +56,7 @@ class Trigger(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """Seconds that lie between two times at least."""
 
 
-class BadTrigger(ValueError):
+class BadTrigger(UserError):
     """It could never happen, or all the time; the message says what to change."""
 
 
@@ -79,6 +81,37 @@ def checked(trigger: Trigger) -> Trigger:
             f"An event begins a program every {SHORTEST:.0f} seconds at most: allow it that rarely."
         )
     return trigger
+
+
+_OF_A_TEXT: Final[Mapping[str, What]] = {
+    "heard": "heard",
+    "scanned": "scanned",
+    "pressed": "pressed",
+}
+WRITTEN: Final = (
+    "battery:20, seen:person@lobby, place:lobby, heard:WORDS, scanned:CODE, pressed:BUTTON,"
+    " message:TOPIC=TEXT"
+)
+"""How people write them."""
+
+
+def written(text: str, every: float = MINUTE) -> Trigger:
+    """Read a trigger as people write it, such as "seen:person@lobby" (`WRITTEN`). Raises
+    `BadTrigger`."""
+    what, _, rest = (each.strip() for each in text.partition(":"))
+    if what == "place":
+        return checked(Trigger(what="place", place=rest, every=every))
+    if what in _OF_A_TEXT:
+        return checked(Trigger(what=_OF_A_TEXT[what], text=rest, every=every))
+    if what == "seen":
+        thing, _, place = rest.partition("@")
+        return checked(Trigger(what="seen", thing=thing.strip(), place=place.strip(), every=every))
+    if what == "message":
+        topic, _, payload = rest.partition("=")
+        return checked(Trigger(what="message", topic=topic, text=payload, every=every))
+    if what == "battery" and rest.rstrip("% ").isdecimal() and len(rest) < LONGEST:
+        return checked(Trigger(what="battery", below=int(rest.rstrip("% ")), every=every))
+    raise BadTrigger(f"{text!r} is no event that begins a program. There are: {WRITTEN}.")
 
 
 class Watch:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from datetime import date, datetime
-from typing import Any, Final
+from typing import Any, Final, Protocol, get_args
+
+import msgspec
 
 from nl2robot.errors import UserError
 from nl2robot.schedule.appointments import MAKES_UP_AT_MOST, PRIORITIES, Appointment
 from nl2robot.schedule.rhythm import LONGEST_RULE, BadRhythm, Rhythm
 from nl2robot.schedule.schedule import Came, Listed, Schedule, Told
+from nl2robot.schedule.triggers import LONGEST, SHORTEST, Trigger, What
 from nl2robot.schedule.zone import local_zone
 from nl2robot.wire import an_object, service
 from robot_api.methods import MAX_TEXT
@@ -34,15 +37,43 @@ _RHYTHM: Final = {
     ),
     "type": ["object", "null"],
 }
-_TRIGGER: Final = {"type": ["object", "null"]}
+_TEXT: Final = {"type": "string", "maxLength": LONGEST}
+_TRIGGER: Final = {
+    **an_object(
+        {
+            "what": {"enum": list(get_args(What))},
+            **dict.fromkeys(("text", "thing", "place", "topic"), _TEXT),
+            "below": {"type": "integer", "minimum": 0, "maximum": 99},
+            "every": {"type": "number", "minimum": SHORTEST},
+        },
+        "what",
+    ),
+    "type": ["object", "null"],
+}
 
 
-def schedule_services(schedule: Schedule) -> dict[str, Service]:
+class Face(Protocol):
+    """Whose buttons are triggers, see `nl2robot.schedule.service.Timekeeper`."""
+
+    @property
+    def buttons(self) -> list[str]: ...
+
+    def note(self, kind: str, data: Mapping[str, Any]) -> None: ...
+
+
+def schedule_services(schedule: Schedule, face: Face | None = None) -> dict[str, Service]:
     """The methods to register with a `robot_api.server.Server`."""
+
+    def pressed(p: Mapping[str, Any]) -> None:
+        if face is None or p["button"] not in face.buttons:
+            raise UserError("There is no such button any more. Load the page anew.")
+        face.note("pressed", {"button": p["button"]})
 
     def added(p: Mapping[str, Any]) -> Appointment:
         given = dict(p)
         given["rhythm"] = _rhythm(given.pop("rhythm", None))
+        trigger = given.pop("trigger", None)
+        given["trigger"] = msgspec.convert(trigger, Trigger) if trigger is not None else None
         return schedule.add(**given)
 
     def paused(p: Mapping[str, Any], yes: bool) -> Appointment:
@@ -139,6 +170,20 @@ def schedule_services(schedule: Schedule) -> dict[str, Service]:
             {"id": _NUMBER, "date": _DATE, "back": {"type": "boolean"}},
             "id",
             result=list[float],
+        ),
+        "schedule.buttons": service(
+            lambda p: face.buttons if face is not None else [],
+            "List the buttons that the robot's face shows: each begins an appointment.",
+            right="face",
+            result=list[str],
+        ),
+        "schedule.press": service(
+            pressed,
+            "Somebody presses one of `schedule.buttons`.",
+            {"button": _TEXT},
+            "button",
+            right="face",
+            result=None,
         ),
         "schedule.history": service(
             lambda p: schedule.history(p.get("id"), p.get("last", 100), p.get("language", "en")),

@@ -16,6 +16,8 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from nl2robot.building.broker import BrokerAddress
+from nl2robot.building.joining import House
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.review.apart import think
@@ -41,7 +43,7 @@ from robot_api import limits
 from robot_api.capabilities.sound import SILENT, Sound
 from robot_api.client import Robot
 from robot_api.composed import ComposedDriver
-from robot_api.driver import Driver, Event
+from robot_api.driver import Driver, Event, StopFlag
 from robot_api.drivers import simulated
 from robot_api.errors import AccessDenied, NotPossible, NotTrusted, RobotError
 from robot_api.robots.opening import hold
@@ -160,6 +162,7 @@ def simulated_station(
     read: Read | None = None,
     start: datetime | None = None,
     timing: Timing | None = None,
+    broker: BrokerAddress | None = None,
 ) -> Iterator[SimulatedStation]:
     """Open a station with a simulated robot.
 
@@ -202,6 +205,7 @@ def simulated_station(
         simulation=simulation,
         console=console,
         timing=timing,
+        broker=broker,
     ) as server:
         station = SimulatedStation(server, simulation)
         yield station
@@ -263,6 +267,7 @@ def robot_station(
     entrance: Entrance | None = None,
     console: Callable[[Backstage], Console] | None = None,
     timing: Timing | None = None,
+    broker: BrokerAddress | None = None,
 ) -> Iterator[tuple[Station, Server]]:
     """A station with a robot that is not simulated. Its places are those of `world`, in which dry
     runs are simulated, with the keep-out zones as they are then. `places` are what the driver is
@@ -291,6 +296,7 @@ def robot_station(
         entrance=entrance,
         console=console,
         timing=timing,
+        broker=broker,
     ) as server:
         yield Station(server.address, server.token), server
 
@@ -339,6 +345,7 @@ def _open(
     simulation: Simulation | None = None,
     console: Callable[[Backstage], Console] | None = None,
     timing: Timing | None = None,
+    broker: BrokerAddress | None = None,
 ) -> Iterator[Server]:
     """A server with a runner on it. `on_program` is told of the runs' events before others are,
     `give_way` ends what the robot says when a client speaks to it."""
@@ -368,7 +375,19 @@ def _open(
     )
 
     schedule = schedule_of(runner, timing)
-    keeper = Timekeeper(schedule, runner, timing, publish) if timing is not None else None
+
+    def ask(method: str, arguments: dict[str, Any]) -> Any:
+        """What the robot sees or how it is, at no program's and nobody's behest."""
+        return driver.call(method, arguments, StopFlag())
+
+    def listen(topics: frozenset[str]) -> None:
+        if house is not None:
+            house.listen_to(topics)
+
+    keeper = (
+        Timekeeper(schedule, runner, timing, publish, ask, listen) if timing is not None else None
+    )
+    house: House | None = None
     hand = ByHand(log)
 
     def before_call(who: str | None, method: str, arguments: Mapping[str, Any]) -> None:
@@ -406,10 +425,18 @@ def _open(
             microphones.give_up()
         elif kind == "link":
             runner.note_link(data)
-        elif kind == "battery" and keeper is not None:
+        if keeper is not None:
             keeper.note(kind, data)
 
     backstage.subscribe(on_event)
+    if broker is not None:
+        name = driver.capabilities().name
+
+        def said_in_house(topic: str, text: str) -> None:
+            if keeper is not None:
+                keeper.note("message", {"topic": topic, "text": text})
+
+        house = House(broker, name, backstage, said_in_house)
     added = console(backstage) if console else None
 
     def on_left(connection: str) -> None:
@@ -427,7 +454,7 @@ def _open(
         token=token,
         services={
             **services(runner, talks, microphones, schedule),
-            **schedule_services(schedule),
+            **schedule_services(schedule, keeper),
             **attention.services(),
             **(added.services if added else {}),
         },
@@ -453,7 +480,7 @@ def _open(
         with server:
             runner.present.begin()
             try:
-                with keeper or nullcontext():
+                with house or nullcontext(), keeper or nullcontext():
                     yield server
             finally:
                 runner.close()

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from nl2robot.building.broker import BrokerAddress
-from nl2robot.building.joining import joined
+from nl2robot.building.joining import House
 from nl2robot.building.reporter import STATES, Reporter
 from nl2robot.run.state import FOLLOWS
 from robot_api.errors import StopNotConfirmed
@@ -102,9 +102,9 @@ def test_a_button_of_the_house_stops_the_robot(house: Any, join: Any) -> None:
     nurse = join(port, "nurse")
     assert nurse.is_told() == (True, "")
     nurse.broker.listen("ward-a/#")
-    with joined(BrokerAddress("127.0.0.1", port, prefix="ward-a"), "Robi", stage) as broker:
+    with House(BrokerAddress("127.0.0.1", port, prefix="ward-a"), "Robi", stage) as joined:
         assert nurse.hears() == ("ward-a/available", "online")
-        broker.listen("ward-a/stop")  # once more, which changes nothing
+        joined.broker.listen("ward-a/stop")  # once more, which changes nothing
         nurse.broker.publish("ward-a/stop", "please")
         assert nurse.hears() == ("ward-a/stop", "please")
         topic, text = nurse.hears()

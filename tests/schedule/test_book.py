@@ -15,6 +15,7 @@ import pytest
 from nl2robot.run.process import lives
 from nl2robot.schedule.appointments import DAY
 from nl2robot.schedule.book import Book, BookError, NoAppointment
+from nl2robot.schedule.triggers import Trigger
 from tests.schedule.conftest import ROBOT, Added, Clock, at, rhythm
 
 
@@ -29,7 +30,7 @@ def test_an_appointment_is_kept_as_it_was_approved(
 
 
 def test_one_begun_by_something_else_keeps_what_that_is(book: Book, added: Added) -> None:
-    wish = {"battery": {"below": 20}}
+    wish = Trigger(what="battery", below=20)
     kept = added(rhythm=None, trigger=wish)
     assert book.appointment(kept.id).trigger == wish
     assert book.appointment(kept.id).rhythm is None

@@ -13,6 +13,7 @@ from nl2robot.schedule.clerk import MISSED_AT_ONCE, Begin, Clerk, Settings
 from nl2robot.schedule.findings import News
 from nl2robot.schedule.quiet import quiet_hours
 from nl2robot.schedule.telling import outcome, told
+from nl2robot.schedule.triggers import Trigger
 from tests.schedule.conftest import ROBOT, ZURICH, Added, Clock, at, rhythm
 
 
@@ -241,7 +242,7 @@ def test_something_else_than_the_clock_begins_one(
     clerk: Clerk, book: Book, added: Added, clock: Clock
 ) -> None:
     """What notices that the battery is low says that it is due; the rest is the same."""
-    kept = added(rhythm=None, trigger={"battery": 20})
+    kept = added(rhythm=None, trigger=Trigger(what="battery", below=20))
     assert clerk.look(clock.set("2026-11-30 08:00")) is None
     book.come(kept.id, clock.now)
     assert begun(clerk.look(clock.now)) == kept.id

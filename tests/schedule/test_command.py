@@ -78,6 +78,16 @@ def test_a_program_at_times_that_options_name(
     assert kept["appointment"]["sentence"] == str(file)
 
 
+def test_something_that_happens_begins_one(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ("add", "go to ward a", "--when", "battery:20", "--world", "ward", "--yes")
+    assert schedule(*words) == ExitStatus.OK
+    assert "when the battery falls below 20 %" in capsys.readouterr().out
+    [kept] = listed(capsys, "--lang", "fr")
+    assert kept["when"] == "quand la batterie descend sous 20 %"
+    assert kept["appointment"]["trigger"] == {"what": "battery", "below": 20}
+    assert schedule() == ExitStatus.OK  # a table without a time to come
+
+
 def test_what_was_added_is_paused_called_off_and_removed(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
@@ -152,6 +162,12 @@ def test_run_puts_in_the_book_what_is_to_be_done_at_set_times(
         (("add", "say hello", "--every", "day"), ExitStatus.BAD_INPUT, "what time of day"),
         (("add", "say hello", "--at", "8 pm"), ExitStatus.BAD_INPUT, "is no time"),
         (("add", "say hello", "--at", "8:00", "--every", "blue moon"), 2, "is no rhythm"),
+        (("add", "say hello", "--when", "fire"), ExitStatus.BAD_INPUT, "There are: battery:20"),
+        (
+            ("add", "say hello", "--when", "battery:20", "--at", "8:00"),
+            ExitStatus.BAD_INPUT,
+            "or by --when",
+        ),
         (("add", "say hello", "--every", "2m"), ExitStatus.BAD_INPUT, "more often than"),
         (("add", "say hello", "--at", "2020-01-01 08:00", "-y"), 2, "is over"),
         (("pause",), ExitStatus.BAD_INPUT, "by its number"),

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import queue
 import sqlite3
-import time
-from collections.abc import Callable, Iterator, Mapping
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,86 +10,12 @@ import pytest
 from nl2robot.review.review import digest
 from nl2robot.run.runlog import RunLog
 from nl2robot.run.state import State
-from nl2robot.schedule.clerk import Settings
-from nl2robot.schedule.quiet import quiet_hours
-from nl2robot.schedule.service import RESTS_AFTER_STOP, Timing, waits_for
-from nl2robot.station.station import SimulatedStation, simulated_station
-from robot_api.client import Robot
+from nl2robot.schedule.service import RESTS_AFTER_STOP, waits_for
 from robot_api.errors import AccessDenied, InvalidCall
-from sim.world.loading import load_world
 from sim.world.model import Zone
-from tests.schedule.conftest import ROUND, ZURICH, Clock, at
+from tests.schedule.conftest import DAILY, ROUND, ZURICH, Ward, at, slow
 
-DAILY = {"begins": "2026-11-30T08:00", "zone": ZURICH, "rule": "FREQ=DAILY"}
 LONG = 'while True:\n    robot.goto("ward a")\n    robot.goto("ward b")\n'
-EVERY = 0.02
-
-
-class Ward:
-    """A ward with a robot, somebody who talks to it over the wire, and a clock."""
-
-    def __init__(self, station: SimulatedStation, robot: Robot, log: RunLog, clock: Clock) -> None:
-        self.station, self.robot, self.log, self.clock = station, robot, log, clock
-        self._events: queue.SimpleQueue[tuple[str, Mapping[str, Any]]] = queue.SimpleQueue()
-        robot.subscribe(("notice", "schedule"), lambda kind, data: self._events.put((kind, data)))
-
-    def add(self, program: str = ROUND, **given: Any) -> dict[str, Any]:
-        values = {
-            "program": program,
-            "sha256": digest(program),
-            "by": "Nurse Kim",
-            "sentence": "go to ward a and say good morning",
-            "rhythm": DAILY,
-            **given,
-        }
-        added: dict[str, Any] = self.robot.request("schedule.add", values)
-        return added
-
-    def ask(self, method: str, **given: Any) -> Any:
-        return self.robot.request(f"schedule.{method}", given)
-
-    def states(self) -> list[str]:
-        return [each["occurrence"]["state"] for each in reversed(self.ask("history"))]
-
-    def until(self, states: list[str]) -> None:
-        """Wait until that is what became of the times that came."""
-        self.until_true(lambda: self.states() == states)
-
-    def until_true(self, holds: Callable[[], bool]) -> None:
-        """Look again whenever the station says that something has changed."""
-        ends = time.monotonic() + 60.0
-        while not holds():
-            self._events.get(timeout=max(0.01, ends - time.monotonic()))
-
-    def notice(self, kind: str) -> Mapping[str, Any]:
-        """Wait for a notice of that kind."""
-        ends = time.monotonic() + 60.0
-        while True:
-            event, data = self._events.get(timeout=max(0.01, ends - time.monotonic()))
-            if event == "notice" and data["kind"] == kind:
-                return data
-
-
-@pytest.fixture
-def log(tmp_path: Path) -> Iterator[RunLog]:
-    log = RunLog(tmp_path / "log" / "runs.sqlite")
-    yield log
-    log.close()
-
-
-@pytest.fixture
-def ward(log: RunLog, clock: Clock, request: pytest.FixtureRequest) -> Iterator[Ward]:
-    settings = Settings(quiet=quiet_hours("22:00-06:00", ZURICH))
-    timing = Timing(settings=settings, clock=clock, every=EVERY)
-    speed = getattr(request, "param", None)
-    with (
-        simulated_station(load_world("ward"), log, seed=1, speed=speed, timing=timing) as station,
-        station.connect() as robot,
-    ):
-        yield Ward(station, robot, log, clock)
-
-
-slow = pytest.mark.parametrize("ward", [5], indirect=True)
 
 
 def test_a_round_is_made_each_morning_in_the_name_of_who_approved_it(ward: Ward) -> None:
@@ -214,7 +136,7 @@ def test_an_approval_ends_when_it_was_said_to(ward: Ward) -> None:
         ({"program": "robot.fly()\n"}, AccessDenied, "cannot be approved: line 1"),
         ({"program": 'robot.goto("roof")\n'}, AccessDenied, "cannot be approved|its end"),
         ({"rhythm": None}, InvalidCall, "a rhythm or a trigger"),
-        ({"trigger": {"battery": 20}}, InvalidCall, "a rhythm or a trigger"),
+        ({"trigger": {"what": "battery", "below": 20}}, InvalidCall, "a rhythm or a trigger"),
         ({"rhythm": {"begins": "soon"}}, InvalidCall, "no time at which something begins"),
         ({"rhythm": {**DAILY, "rule": "FREQ=MINUTELY"}}, InvalidCall, "more often than"),
         ({"rhythm": {"begins": "2026-11-30T05:00", "zone": ZURICH}}, InvalidCall, "is over"),

@@ -12,6 +12,7 @@ from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from nl2robot.building.broker import BadBroker, BrokerAddress, parse_broker
 from nl2robot.cli.options.robot import add_address, robot_of
 from nl2robot.cli.options.sound import add_sound, sound_of
 from nl2robot.cli.options.values import add_clock, add_seed, speed, whole
@@ -77,6 +78,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f"after how many days what is known of a run is deleted (default: {LOG_DAYS})",
     )
     parser.add_argument(
+        "--mqtt",
+        metavar="ADDRESS",
+        help="the house's broker, mqtt://HOST:PORT/PREFIX: it hears of the robot, and may stop it",
+    )
+    parser.add_argument(
         "--quiet-hours",
         metavar="HOURS",
         help="in which no appointment begins, such as 22:00-06:00",
@@ -122,6 +128,7 @@ def run(options: argparse.Namespace) -> int:
     allow_open_files()
     robot = robot_of(options)
     timing = Timing(settings=_settings(options))
+    broker = _broker(options.mqtt)
     world, log = world_of(options), open_log(options.debug)
     with ExitStack() as stack:
         stack.enter_context(kept_for(log, options.log_days * DAY))
@@ -143,6 +150,7 @@ def run(options: argparse.Namespace) -> int:
                 read=robot.read,
                 start=beginning_of(world, options.clock),
                 timing=timing,
+                broker=broker,
             )
             server = stack.enter_context(simulated).server
         else:
@@ -162,6 +170,7 @@ def run(options: argparse.Namespace) -> int:
                 entrance=entrance,
                 console=Console,
                 timing=timing,
+                broker=broker,
             )
             _, server = stack.enter_context(station)
         planners.get_ready()
@@ -175,6 +184,14 @@ def _settings(options: argparse.Namespace) -> Settings:
     """Of the appointments that are done here. Raises `UserError`."""
     quiet = quiet_hours(options.quiet_hours, local_zone()) if options.quiet_hours else None
     return Settings(quiet=quiet, kept=options.log_days * DAY)
+
+
+def _broker(given: str | None) -> BrokerAddress | None:
+    """Raises `UserError`."""
+    try:
+        return parse_broker(given) if given is not None else None
+    except BadBroker as error:
+        raise UserError(str(error)) from error
 
 
 @contextmanager

@@ -25,6 +25,8 @@ from nl2robot.review.review import Review
 from nl2robot.schedule.appointments import MAKES_UP_AT_MOST, PRIORITIES
 from nl2robot.schedule.rhythm import local
 from nl2robot.schedule.schedule import Came, Listed, Schedule, Told
+from nl2robot.schedule.telling import happening
+from nl2robot.schedule.triggers import WRITTEN, written
 from nl2robot.schedule.words import in_words
 from nl2robot.schedule.zone import local_zone
 from nl2robot.station.robots import Chosen
@@ -57,6 +59,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     times.add_argument(
         "--until", metavar="DATE", help="the last day on which it is done (default: 30 days)"
+    )
+    times.add_argument(
+        "--when", metavar="EVENT", help=f"when something happens: {WRITTEN}".replace("%", "%%")
     )
     adding = parser.add_argument_group("to add one")
     adding.add_argument("--program", metavar="FILE", help="this program instead of words")
@@ -116,12 +121,14 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _add(options: argparse.Namespace, robot: Chosen) -> int:
-    by_options = options.at is not None or options.every is not None
+    by_options = any((options.at, options.every, options.when))
     said = [each for each in (options.first, options.second) if each]
     if by_options and len(said) == 2:
-        raise UserError("Say at what times in words or by --at and --every, not both.")
+        raise UserError("Say at what times in words or by --at, --every or --when, not both.")
+    if options.when is not None and (options.at is not None or options.every is not None):
+        raise UserError("Say by --at and --every at what times, or by --when at what event.")
     if options.program is not None and not by_options:
-        raise UserError("Say by --at and --every at what times the program is to be done.")
+        raise UserError("Say by --at, --every or --when at what times the program is to be done.")
     if not said and options.program is None:
         raise UserError(f"Write it so: {EXAMPLE}.")
     program = read_program(options.program) if options.program is not None else None
@@ -129,11 +136,8 @@ def _add(options: argparse.Namespace, robot: Chosen) -> int:
     with open_session(options, robot, approve_all=options.yes) as (session, _):
         if not by_options:
             return _in_words(session, " ".join(said), options)
-        zone = local_zone()
-        rhythm = rhythm_of_options(options.at, options.every, options.until, zone, now)
         wish = Wish(
-            rhythm=rhythm,
-            when=in_words(rhythm, options.lang),
+            **_times(options, now),
             sentence=" ".join(said) or str(options.program),
             more=_more(options),
         )
@@ -144,6 +148,15 @@ def _add(options: argparse.Namespace, robot: Chosen) -> int:
             session.terminal.show_refusal(translation)
             return ExitStatus.NOT_UNDERSTOOD
         return session.make_appointment(wish, translation)
+
+
+def _times(options: argparse.Namespace, now: datetime) -> dict[str, Any]:
+    """At what times, or at what event, as the options say; and in words."""
+    if options.when is not None:
+        trigger = written(options.when)
+        return {"trigger": trigger, "when": happening(trigger, options.lang)}
+    rhythm = rhythm_of_options(options.at, options.every, options.until, local_zone(), now)
+    return {"rhythm": rhythm, "when": in_words(rhythm, options.lang)}
 
 
 def _in_words(session: Session, sentence: str, options: argparse.Namespace) -> int:

@@ -1,0 +1,97 @@
+"""What a house says to its robot begins what somebody approved for it, and nothing else."""
+
+from __future__ import annotations
+
+import json
+import queue
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from nl2robot.building.broker import BrokerAddress
+from nl2robot.cli import main as cli
+from nl2robot.errors import ExitStatus
+from nl2robot.review.review import digest
+from nl2robot.run.runlog import RunLog
+from nl2robot.schedule.service import Timing
+from nl2robot.station.station import simulated_station
+from robot_api.client import Robot
+from sim.world.loading import load_world
+from tests.building.conftest import SOON
+
+GREETING = 'robot.say("I am coming.")\n'
+
+
+@contextmanager
+def living_in(port: int, folder: Path) -> Iterator[Robot]:
+    log = RunLog(folder / "runs.sqlite")
+    address = BrokerAddress("127.0.0.1", port, prefix="ward-a")
+    station = simulated_station(load_world("ward"), log, timing=Timing(every=0.05), broker=address)
+    with station as there, there.connect() as robot:
+        yield robot
+    log.close()
+
+
+def test_a_nurse_call_begins_what_was_approved_for_it(
+    house: Any, join: Any, tmp_path: Path
+) -> None:
+    port = house().port
+    nurse = join(port, "nurse")
+    assert nurse.is_told() == (True, "")
+    nurse.broker.listen("ward-a/#")
+    with living_in(port, tmp_path) as robot:
+        ended: queue.Queue[Any] = queue.Queue()
+        robot.subscribe(("program",), lambda kind, data: ended.put(data))
+        given = {
+            "program": GREETING,
+            "sha256": digest(GREETING),
+            "by": "Nurse Kim",
+            "sentence": "say that you are coming",
+            "trigger": {"what": "message", "topic": "calls/+", "text": "pressed"},
+        }
+        robot.request("schedule.add", given)
+        # Until the robot listens: it is begun once a minute at most, however often they press.
+        run = None
+        for attempt in range(200):
+            nurse.broker.publish(f"calls/{attempt}", "pressed")
+            try:
+                run = ended.get(timeout=0.1)
+                break
+            except queue.Empty:
+                continue
+        assert run is not None
+        while run["what"] != "state" or run["state"] != "done":
+            run = ended.get(timeout=SOON)
+        [begun] = robot.request("schedule.history", {})
+        assert begun["occurrence"]["state"] in ("running", "done")
+        states = set()
+        while "running" not in states:
+            topic, text = nurse.hears()
+            if topic == "ward-a/state":
+                states.add(json.loads(text)["state"])
+
+
+def test_a_message_can_stop_the_robot_and_begin_nothing_of_itself(
+    house: Any, join: Any, tmp_path: Path
+) -> None:
+    port = house().port
+    nurse = join(port, "nurse")
+    assert nurse.is_told() == (True, "")
+    nurse.broker.listen("ward-a/state")
+    with living_in(port, tmp_path) as robot:
+        nurse.broker.publish("ward-a/program", GREETING)
+        nurse.broker.publish("ward-a/stop", "")
+        while json.loads(nurse.hears()[1])["state"] != "stopped":
+            pass
+        assert robot.request("program.list", {}) == []
+
+
+@pytest.mark.parametrize("address", ["http://broker", "mqtt://robot:secret@broker"])
+def test_serve_says_what_is_wrong_with_an_address(
+    address: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(["serve", "--port", "0", "--mqtt", address]) == ExitStatus.BAD_INPUT
+    assert "mqtt://HOST" in (said := capsys.readouterr().err) or "NL2ROBOT_MQTT_PASSWORD" in said
