@@ -27,6 +27,8 @@ ROLES: Final = {
     "contact": "bare",
     "code": "bare",
     "language": "bare",
+    "time": "bare",
+    "date": "bare",
     "options": "options",
 }
 """How a parameter's text is put into a sentence; all others are quoted."""
