@@ -169,7 +169,7 @@ def set_times(d: Discourse, node: Node) -> When | None:
         weekdays=_weekdays(d, node, str(fixed.get("weekdays", ""))),
         minutes=int(fixed["minutes"]) if "minutes" in fixed else None,
         date=_date(d, node),
-        repeats=_part(node, "date") is None,
+        repeats=_part(node, "date") is None and not fixed.get("once"),
         since=since,
         until=until,
     )

@@ -27,6 +27,7 @@ def when(sentence: str, language: str) -> When | None:
         ("every day at noon", When(times=("12:00",), repeats=True)),
         ("every weekday at eight", When(times=("08:00",), weekdays=WORKDAYS, repeats=True)),
         ("every day at ten and at four", When(times=("10:00", "16:00"), repeats=True)),
+        ("at ten and at four", When(times=("10:00", "16:00"))),  # today, without a rhythm
         ("on mondays and thursdays at 9:30", When(times=("09:30",), weekdays=(0, 3), repeats=True)),
         ("every Friday at half past two", When(times=("14:30",), weekdays=(4,), repeats=True)),
         # which eight it is, nobody can know; what is said as clocks show it is clear
@@ -53,6 +54,8 @@ def test_in_english(wish: str, means: When | None) -> None:
     "wish, means",
     [
         ("jeden Werktag um acht", When(times=("08:00",), weekdays=WORKDAYS, repeats=True)),
+        ("um zehn und um vier", When(times=("10:00", "16:00"))),
+        ("jeden Tag um Mitternacht", When(times=("00:00",), repeats=True)),
         ("jeden Morgen um viertel vor acht", When(times=("07:45",), repeats=True)),
         ("jeden Abend um acht", When(times=("20:00",), repeats=True)),
         ("täglich um 8 Uhr", When(times=("08:00",), repeats=True)),
@@ -72,6 +75,7 @@ def test_in_german(wish: str, means: When) -> None:
     "wish, means",
     [
         ("tous les jours à 8 h", When(times=("08:00",), repeats=True)),
+        ("à dix heures et à seize heures", When(times=("10:00", "16:00"))),
         ("chaque matin à huit heures", When(times=("08:00",), repeats=True)),
         ("tous les soirs à huit heures", When(times=("20:00",), repeats=True)),
         ("le lundi et le jeudi à midi et demi", When(("12:30",), weekdays=(0, 3), repeats=True)),
