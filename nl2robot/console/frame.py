@@ -35,6 +35,7 @@ PAGES: Final = {
         "/routines",
         "M4 12a8 8 0 0 1 13.7-5.6L20 9M20 4v5h-5M20 12a8 8 0 0 1-13.7 5.6L4 15M4 20v-5h5",
     ),
+    "schedule": ("/schedule", "M4 6h16v14H4zM4 10h16M8 3v4M16 3v4M12 13v3l2 1"),
     "runs": ("/runs", "M8 6h13M8 12h13M8 18h13M3.5 6h.01M3.5 12h.01M3.5 18h.01"),
     "face": ("/face", "M4 4h16v16H4zM9 10h.01M15 10h.01M8.5 14.5c2 2 5 2 7 0"),
 }
@@ -85,10 +86,10 @@ def frame(backstage: Backstage, page: str) -> Iterator[Visit]:
     title = visit.words["title"] if link else words[page]
     ui.page_title(f"{title} · {name}")
     ui.dark_mode({"auto": None, "light": False, "dark": True}[visitor.look])
-    ui.add_head_html(_head(visitor, words))
+    ui.add_head_html(_head(visitor, words, name))
     ui.add_body_html(_header(page, name, visitor, words, backstage))
     with ui.element("div").props('id="main" tabindex="-1"').classes(f"page page-{page}"):
-        if page not in ("runs", "routines"):  # whose pages have headings of their own
+        if page not in ("runs", "routines", "schedule"):  # whose pages have headings of their own
             ui.html(f'<h1 class="sr">{escape(title)}</h1>', sanitize=False)
         yield visit
 
@@ -105,7 +106,7 @@ def _name(backstage: Backstage, words: Mapping[str, str]) -> str:
     return capabilities.name if capabilities else "nl2robot"
 
 
-def _head(visitor: Visitor, words: Mapping[str, str]) -> str:
+def _head(visitor: Visitor, words: Mapping[str, str], robot: str) -> str:
     about = {
         "look": visitor.look,
         "language": visitor.language,
@@ -113,6 +114,7 @@ def _head(visitor: Visitor, words: Mapping[str, str]) -> str:
         "role": visitor.seat,
         "who": visitor.name or words["somebody"],
         "name": visitor.name,
+        "robot": robot,
         "call": texts("call", visitor.language),
         "microphone": texts("microphone", visitor.language),
     }
@@ -177,6 +179,9 @@ def _header(
     {microphone}
     <span id="robot-badge" class="chip" role="status" hidden></span>
     <span id="connection" role="status" data-state="waiting"><span class="sr">…</span></span>
+    <button type="button" id="bell" class="icon-button" aria-haspopup="dialog"
+      aria-label="{said("notices")}" title="{said("notices")}">{_icon(_BELL)}<span class="count"
+      hidden></span></button>
     <button type="button" id="settings-button" class="icon-button" aria-haspopup="dialog"
       aria-label="{said("settings")}" title="{said("settings")}">{_icon(_GEAR)}</button>
   </span>
@@ -184,6 +189,15 @@ def _header(
 <div id="calls"></div>
 <p id="robot-state" class="robot-state" role="alert" hidden></p>
 <p id="notice" class="notice" role="alert" hidden></p>
+<div id="toasts" role="status"></div>
+<dialog id="notices" aria-label="{said("notices")}">
+  <h2>{said("notices")}</h2>
+  <ul tabindex="0"></ul>
+  <form method="dialog" class="row">
+    <a class="button" href="/schedule">{said("notices_all")}</a>
+    <button class="button primary">{said("close")}</button>
+  </form>
+</dialog>
 <dialog id="settings" aria-label="{said("settings")}">
   <form method="dialog">
     <h2>{said("settings")}</h2>
@@ -220,6 +234,7 @@ def _door(visitor: Visitor, words: Mapping[str, str]) -> str:
     )
 
 
+_BELL: Final = "M6 16V11a6 6 0 0 1 12 0v5l2 2H4zM10 21h4"
 _GEAR: Final = (
     "M4 7h9M17 7h3M4 17h3M11 17h9M15 7m-2 0a2 2 0 1 0 4 0a2 2 0 1 0-4 0"
     "M9 17m-2 0a2 2 0 1 0 4 0a2 2 0 1 0-4 0"

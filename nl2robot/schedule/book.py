@@ -360,6 +360,13 @@ class Book:
         )
         return [Occurrence(**row) for row in rows]
 
+    def between(self, begins: float, ends: float) -> list[Occurrence]:
+        """The times from a moment on until before another that are in the book, in order."""
+        rows = self._read(
+            "SELECT * FROM occurrences WHERE due >= ? AND due < ? ORDER BY due, id", begins, ends
+        )
+        return [Occurrence(**row) for row in rows]
+
     # --- what is to be told
 
     def tell(

@@ -13,6 +13,7 @@ from nl2robot.schedule.appointments import MAKES_UP_AT_MOST, PRIORITIES, Appoint
 from nl2robot.schedule.rhythm import LONGEST_RULE, BadRhythm, Rhythm
 from nl2robot.schedule.schedule import Came, Listed, Schedule, Told
 from nl2robot.schedule.triggers import LONGEST, SHORTEST, Trigger, What
+from nl2robot.schedule.week import Week, week_of
 from nl2robot.schedule.zone import local_zone
 from nl2robot.wire import an_object, service
 from robot_api.methods import MAX_TEXT
@@ -192,6 +193,17 @@ def schedule_services(schedule: Schedule, face: Face | None = None) -> dict[str,
             {"id": _NUMBER, "last": _LAST, "language": _LANGUAGE},
             observes=True,
             result=list[Came],
+        ),
+        "schedule.week": service(
+            lambda p: week_of(
+                schedule, _day(p["date"]) if "date" in p else None, p.get("language", "en")
+            ),
+            "Tell the week with that day in it (this one, without a `date`), from Monday to Sunday:"
+            " each time with what came of it or whether it will be done (coming, called off,"
+            " paused, not approved), and when it is by the clocks of the house.",
+            {"date": _DATE, "language": _LANGUAGE},
+            observes=True,
+            result=Week,
         ),
         "schedule.notices": service(
             lambda p: schedule.notices(

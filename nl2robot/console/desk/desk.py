@@ -59,6 +59,7 @@ class Desk:
                 "microphone": dict(texts("microphone", visit.language)),
                 "desk": self.dialogue.name,
                 "who": visit.who,
+                "times": dict(texts("schedule", visit.language)),
                 "history": [line.text for line in self.dialogue.lines if line.by == "you"],
             }
         )
@@ -301,6 +302,10 @@ class Desk:
             insists = bool(event.args["all_the_same"])
             await self._do(dialogue.approve, program, who, language, shown, insists)
 
+        async def planned(event: GenericEventArguments) -> None:
+            appointment, when = int(event.args["appointment"]), str(event.args["when"])
+            await self._do(dialogue.planned, appointment, when, language)
+
         async def reject(event: GenericEventArguments) -> None:
             await self._do(dialogue.reject, language)
 
@@ -316,6 +321,7 @@ class Desk:
             "desk-propose": propose,
             "desk-go-on": go_on,
             "desk-approve": approve,
+            "desk-planned": planned,
             "desk-reject": reject,
             "desk-shade": shade,
         }

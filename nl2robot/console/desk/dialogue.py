@@ -9,9 +9,11 @@ Its methods block as long as translation and dry run take, and may be called fro
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from datetime import datetime
 from typing import Final, Literal
 
 import msgspec
@@ -28,11 +30,12 @@ from nl2robot.run.going_on import asks_to_go_on
 from nl2robot.run.going_on import texts as going_on_texts
 from nl2robot.run.state import HELD
 from nl2robot.run.trouble import told
+from nl2robot.schedule.rhythm import local, next_time
 from nl2robot.station.harmless import approver, needs_no_question
 from nl2robot.station.part import Backstage
 from nl2robot.translate.other_language import accepted, declined, language_of, question
 from nl2robot.translate.teaching import told as told_in_words
-from nl2robot.translate.translation import STOP, Translation, translate
+from nl2robot.translate.translation import STOP, Scheduled, Translation, translate
 from nl2robot.words import words_in
 from robot_api.driver import StopFlag
 from robot_api.errors import AccessDenied, NotPossible, RobotError, Stopped
@@ -55,6 +58,8 @@ class Line:
     """What can be said, by topic."""
     run: int | None = None
     """The run that it is about."""
+    planned: int | None = None
+    """The appointment that it is about."""
 
 
 @dataclass(frozen=True)
@@ -74,6 +79,8 @@ class Draft:
     proposed: str | None = None
     """The program as it was laid before them, if somebody has changed it since."""
     changed_by: str | None = None
+    times: Scheduled | None = None
+    """The set times at which it is to be done, if some were said."""
 
     @property
     def edited(self) -> bool:
@@ -313,6 +320,10 @@ class Dialogue:
             self._tell(Line("robot", translation.explanation))
             self._review(Draft(translation.program, translation, heard), language)
             self._let_through(language, who, harmless)
+        elif translation.schedule is not None:
+            times = translation.schedule
+            self._tell(Line("robot", translation.message or times.explanation))
+            self._review(Draft(times.program, times.translation, heard, times=times), language)
         elif request is not None and request.kind == "help":
             self._tell(Line("robot", _said("can_say", language), topics=self.topics(language)))
         else:
@@ -441,7 +452,8 @@ class Dialogue:
     def _review(self, draft: Draft, language: str) -> None:
         self.draft = draft
         self._changed()
-        review = self._backstage.runner.check(draft.program, language, draft.continues)
+        at = _begins(draft.times) if draft.times is not None else None
+        review = self._backstage.runner.check(draft.program, language, draft.continues, at)
         if self.draft is draft:
             self.draft = replace(draft, review=review)
         self._changed()
@@ -519,6 +531,13 @@ class Dialogue:
                 self.draft = None
                 self._tell(Line("robot", _said("rejected", language)))
 
+    def planned(self, appointment: int, when: str, language: str) -> None:
+        """What lay here was approved for set times, and is an appointment now."""
+        with self._turn:
+            self.draft = None
+            text = _said("planned", language).format(when=when)
+            self._tell(Line("robot", text, "done", planned=appointment))
+
     # --- watch
 
     def ended(self, run: int, state: str, message: str | None, language: str) -> None:
@@ -550,6 +569,12 @@ def _changed_by_hand(draft: Draft, program: str, who: str) -> Draft:
     """It needs a new review; the program that was proposed is not forgotten."""
     proposed = draft.program if draft.proposed is None else draft.proposed
     return replace(draft, program=program, review=None, proposed=proposed, changed_by=who)
+
+
+def _begins(times: Scheduled) -> datetime | None:
+    """When it would be done the next time."""
+    due = next_time(times.rhythm, time.time())
+    return local(due, times.rhythm.zone) if due is not None else None
 
 
 def _said(key: str, language: str) -> str:

@@ -19,7 +19,7 @@ from nl2robot.console.desk.dialogue import Dialogue, Draft, Line
 from nl2robot.run.archive import state_of
 from nl2robot.run.state import GOING, Reviewing
 from nl2robot.station.part import STOP, Backstage
-from nl2robot.translate.translation import Translation
+from nl2robot.translate.translation import Scheduled, Translation
 
 IN_MEMORY: Final = 50
 IN_FILES: Final = 200
@@ -39,6 +39,7 @@ class _Waiting(msgspec.Struct):
     said: str | None = None
     proposed: str | None = None
     changed_by: str | None = None
+    times: Scheduled | None = None
 
     @classmethod
     def of(cls, draft: Draft) -> _Waiting:

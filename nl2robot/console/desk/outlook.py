@@ -47,6 +47,23 @@ class Outlook:
         ]
 
 
+    def as_told(self, words: Mapping[str, str]) -> dict[str, Any]:
+        """The same for scripts, in the texts of the desk."""
+        return {
+            "outcome": self.sentence or words["cannot"],
+            "good": self.good,
+            "facts": [[heading, list(items)] for heading, items in self.facts],
+            "marks": [
+                {
+                    "line": mark.line,
+                    "weight": mark.weight,
+                    "text": f"{words[mark.weight]}, {words['line']} {mark.line}: {mark.text}",
+                }
+                for mark in self.marks
+            ],
+        }
+
+
 def outlook(
     review: Review, words: Mapping[str, str], language: str, knowledge: Knowledge
 ) -> Outlook:

@@ -7,19 +7,47 @@ alike (`static/desk/`).
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any, Final
+
 from nl2robot.console.desk.desk import Desk
 from nl2robot.console.desk.dialogues import Dialogues
+from nl2robot.console.desk.outlook import outlook
 from nl2robot.console.desk.run_view import run_view
 from nl2robot.console.floor import page as map_page
 from nl2robot.console.frame import frame
+from nl2robot.console.visitor import texts
 from nl2robot.paths import data_folder
 from nl2robot.station.part import Backstage, Part
+from nl2robot.station.local_clock import moment_in
 from nl2robot.wire import service
+from robot_api.errors import InvalidCall
+from sandbox.limits import MAX_PROGRAM
+
+_LANGUAGE: Final = {"type": "string", "pattern": "^[a-z]{2}$"}
 
 
 def part(backstage: Backstage) -> Part:
     dialogues = Dialogues(backstage, data_folder() / "console" / "conversations")
     unsubscribe = backstage.subscribe(dialogues.on_event)
+
+    def checked(p: Mapping[str, Any]) -> dict[str, Any]:
+        program, language = p["program"], p.get("language", "en")
+        words, knowledge = texts("desk", language), backstage.runner.knowledge
+        try:
+            at = moment_in(knowledge.world, p["at"]) if "at" in p else None
+        except ValueError:
+            raise InvalidCall(
+                f'"{p["at"]}" is no date and time. Write one such as "2026-12-24T06:00".'
+            ) from None
+        review = backstage.runner.check(program, language, at=at)
+        return {
+            "sha256": review.sha256,
+            "acceptable": review.acceptable,
+            "came_through": review.came_through,
+            "reading": [[each.line, each.depth, each.text] for each in review.reading],
+            **outlook(review, words, language, knowledge).as_told(words),
+        }
 
     def pages() -> None:
         from nicegui import ui
@@ -37,10 +65,22 @@ def part(backstage: Backstage) -> Part:
 
     return Part(
         services={
+            "desk.check": service(
+                checked,
+                "Review a program as `program.check` does, told as the desk tells it: the outcome,"
+                " whether that is good, facts (a heading with its items), marks on the lines, and"
+                " each line in plain words (line, depth, text). With `at`, as if it began then.",
+                {
+                    "program": {"type": "string", "maxLength": MAX_PROGRAM},
+                    "language": _LANGUAGE,
+                    "at": {"type": "string", "maxLength": 40},
+                },
+                "program",
+            ),
             "desk.run": service(
                 lambda p: run_view(backstage, p.get("language", "en")),
                 "Tell how the present or last run stands, with its program and calls.",
-                {"language": {"type": "string", "pattern": "^[a-z]{2}$"}},
+                {"language": _LANGUAGE},
                 observes=True,
             )
         },

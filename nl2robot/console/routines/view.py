@@ -132,19 +132,9 @@ class Viewer:
         """The dry run of what a routine does, with its picture; nothing moves."""
         reviewed = self._backstage.runner.check(body.program, reader)
         seen = outlook(reviewed, texts("desk", reader), reader, self._knowledge)
-        words = texts("desk", reader)
         return {
-            "outcome": seen.sentence or words["cannot"],
+            **seen.as_told(texts("desk", reader)),
             "good": seen.good and reviewed.acceptable,
-            "facts": [[heading, list(items)] for heading, items in seen.facts],
-            "marks": [
-                {
-                    "line": mark.line,
-                    "weight": mark.weight,
-                    "text": f"{words[mark.weight]}, {words['line']} {mark.line}: {mark.text}",
-                }
-                for mark in seen.marks
-            ],
             "picture": _picture(reviewed, self._knowledge.world),
         }
 

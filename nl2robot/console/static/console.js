@@ -2,11 +2,12 @@
 
 import '/static/focus.js';
 import {element, filled, keep, timeOfDay} from '/static/page.js';
+import {mountNotices} from '/static/notices.js';
 import {present} from '/static/state.js';
 import {mountStop} from '/static/stop.js';
 import {wire} from '/static/wire.js';
 
-const {words, role, who, name, language, call, microphone} = JSON.parse(document.getElementById('frame-data').textContent);
+const {words, role, who, name, robot, language, call, microphone} = JSON.parse(document.getElementById('frame-data').textContent);
 const NOTICE_FOR = 6000;
 const SLOW_STOP = 300;
 const TONES = {
@@ -149,6 +150,7 @@ document.getElementById('settings-button').addEventListener('click', openSetting
 document.getElementById('settings').addEventListener('click', (event) => {
   if (event.target === event.currentTarget) event.target.close();
 });
+mountNotices({wire, words, language, robot});
 wire.onChange(showConnection);
 present.onChange(showState);
 if (role === 'operator') {

@@ -183,12 +183,27 @@ function openDecisions() {
   document.addEventListener('click', (event) => {
     if (event.target.closest('#approve')) approve(false);
     if (event.target.closest('#run-anyway')) approve(true);
+    const atTimes = event.target.closest('#at-times');
+    if (atTimes) plan(atTimes);
     if (event.target.closest('#reject')) tell('desk-reject');
     const change = event.target.closest('#change');
     if (change) changeIt(change.dataset.words);
   });
   const asked = new URLSearchParams(location.search);
   if (asked.has('program') || asked.has('go_on')) history.replaceState(null, '', '/');
+}
+
+/** Approve what stands before one's eyes for set times. */
+async function plan(button) {
+  const {sentence, times, insists} = button.dataset;
+  const program = editorView().state.doc.toString();
+  const sha256 = document.getElementById('decide').dataset.review;
+  const {askForTimes} = await import('/static/schedule/form.js');
+  const planned = await askForTimes({
+    wire, language, who, words: pageData.times,
+    what: {program, sha256, sentence, times: times && JSON.parse(times), insists: insists === 'yes'},
+  });
+  if (planned) tell('desk-planned', planned);
 }
 
 /** The newest words are in view; whoever reads further up is left there. */

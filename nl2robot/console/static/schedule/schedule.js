@@ -1,0 +1,96 @@
+/** The page of the appointments: the week, all of them, and whether this browser notifies. */
+
+import {appears, element, filled, pageData} from '/static/page.js';
+import {notice} from '/static/console.js';
+import {notifies, notify} from '/static/notices.js';
+import {wire} from '/static/wire.js';
+import {Appointments} from '/static/schedule/appointments.js';
+import {showWeek} from '/static/schedule/week.js';
+import {datesIn, dayAfter} from '/static/schedule/days.js';
+
+const {words, language, role} = pageData;
+const LOOKS_EVERY = 60_000;
+
+const root = await appears('#schedule');
+const week = element('section', {class: 'card week', 'aria-labelledby': 'week-title'});
+const all = element('section', {'aria-labelledby': 'all-title'});
+let day = null; // of the week that is shown; null: this one
+let at = 0;
+
+function weekHead() {
+  const button = (text, act, more = {}) => {
+    const made = element('button', {type: 'button', class: 'button small', ...more}, text);
+    made.addEventListener('click', act);
+    return made;
+  };
+  const title = element('h2', {id: 'week-title', 'aria-live': 'polite'}, words.week);
+  const go = (days) => () => {
+    day = dayAfter(shown.days[0], days);
+    refresh();
+  };
+  const back = button('‹', go(-7), {'aria-label': words.before, title: words.before});
+  const on = button('›', go(7), {'aria-label': words.after, title: words.after});
+  const now = button(words.this_week, () => {
+    day = null;
+    refresh();
+  });
+  return {title, row: element('div', {class: 'row week-head'}, title, back, now, on)};
+}
+
+let shown = null;
+let drawn = '';
+const head = weekHead();
+const body = element('div', {class: 'week-body'});
+week.append(head.row, body);
+const narrow = matchMedia('(max-width: 900px)');
+
+function drawWeek() {
+  if (!shown) return;
+  const date = (written) =>
+    new Date(`${written}T12:00Z`).toLocaleDateString(datesIn(language), {day: 'numeric', month: 'long', timeZone: 'UTC'});
+  head.title.textContent = filled(words.week_of, {first: date(shown.days[0]), last: date(shown.days.at(-1))});
+  showWeek(body, shown, {words, language, narrow: narrow.matches, known: appointments.known});
+  root.dataset.week = shown.days[0];
+}
+
+/** Fetch all of it anew, and draw what has changed. */
+async function refresh() {
+  const number = (at += 1);
+  try {
+    const [found, listed] = await Promise.all([
+      wire.request('schedule.week', {language, ...(day ? {date: day} : {})}),
+      wire.request('schedule.list', {language}),
+    ]);
+    if (number !== at) return;
+    shown = found;
+    appointments.show(listed, found);
+    const now = JSON.stringify([found, [...appointments.known]]);
+    if (now !== drawn) drawWeek();
+    drawn = now;
+    root.dataset.ready = 'yes';
+  } catch (error) {
+    notice(error.message, {alarm: true});
+  }
+}
+
+/** The button by which this browser may tell of notices by itself. */
+function notifying() {
+  const button = element('button', {type: 'button', class: 'button', id: 'notify'});
+  const told = element('p', {class: 'muted', role: 'status'});
+  const draw = (state) => {
+    button.hidden = state === 'none' || state === 'denied';
+    button.textContent = state === 'on' ? words.notify_off : words.notify_on;
+    told.textContent = {none: words.notify_none, denied: words.notify_denied, on: words.notify_is_on}[state] ?? '';
+  };
+  button.addEventListener('click', async () => draw(await notify(notifies() !== 'on')));
+  draw(notifies());
+  return element('div', {class: 'row notifying'}, button, told);
+}
+
+const appointments = new Appointments(all, {wire, words, language, role, who: pageData.who, changed: refresh});
+const looksOn = role === 'operator' ? [] : [element('p', {class: 'muted'}, words.looking_on)];
+root.replaceChildren(notifying(), ...looksOn, week, all);
+narrow.addEventListener('change', drawWeek);
+wire.subscribe('schedule', refresh);
+wire.onChange((connected) => connected && refresh());
+setInterval(() => document.hidden || refresh(), LOOKS_EVERY);
