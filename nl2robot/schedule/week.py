@@ -114,7 +114,7 @@ class _Told:
         if kept.rhythm is None or kept.removed is not None:
             return
         due_then = itertools.takewhile(lambda due: due < until, times(kept.rhythm, after))
-        for due in itertools.islice(due_then, MOST_TIMES):
+        for due in itertools.islice(due_then, MOST_TIMES + 1):
             state: Standing = "coming"
             if kept.asked is not None or due >= kept.approved_until:
                 state = "unapproved"

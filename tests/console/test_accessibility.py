@@ -118,6 +118,29 @@ def routines(look: Callable[[str], Page]) -> Iterator[Page]:
     yield page
 
 
+def schedule(look: Callable[[str], Page]) -> Iterator[Page]:
+    page = look("/schedule")
+    expect(page.locator("#schedule[data-ready=yes]")).to_be_attached()
+    yield page
+    page.locator(".appointment button[data-act=program]").first.click()
+    expect(page.locator(".appointment .outlook")).to_be_visible()
+    yield page
+    page.set_viewport_size({"width": 390, "height": 844})
+    expect(page.locator(".week-days")).to_be_visible()
+    yield page
+    page.locator("#bell").click()
+    yield page
+
+
+def at_set_times(look: Callable[[str], Page]) -> Iterator[Page]:
+    page = look("/?program=robot.say(%22Tea!%22)")
+    read_all(page)
+    page.locator("#at-times").click()
+    expect(page.locator(".times-form")).to_be_visible()
+    page.locator(".times-form select[name=kind]").select_option("chosen")
+    yield page
+
+
 def doors(look: Callable[[str], Page]) -> Iterator[Page]:
     for path in ("/devices", "/nothing/here", "/sign-in", "/trust"):
         page = look(path)
@@ -127,12 +150,19 @@ def doors(look: Callable[[str], Page]) -> Iterator[Page]:
 
 @pytest.mark.parametrize("language", ["en", "de", "fr"])
 @pytest.mark.parametrize(
-    "pages", [desk, review_and_run, floor, drive, presence, runs, routines, doors, face]
+    "pages",
+    [
+        *(desk, review_and_run, floor, drive, presence, runs, routines, schedule),
+        *(at_set_times, doors, face),
+    ],
 )
 def test_axe_finds_nothing(look: Look, served: Served, axe: str, pages: Any, language: str) -> None:
     if pages is runs:
         with served.robot() as robot:
             _ran(robot)
+    if pages is schedule:
+        with served.robot() as robot:
+            _planned(robot)
     if pages is routines:
         with served.robot() as robot:
             new = {"name": "tea round", "language": "en", "by": "Ana"}
@@ -145,6 +175,14 @@ def test_axe_finds_nothing(look: Look, served: Served, axe: str, pages: Any, lan
         in_look(page, dark=True)
         assert page.evaluate(FINDINGS, COLOURS) == []
         in_look(page, dark=False)
+
+
+def _planned(robot: Any) -> None:
+    """An appointment that comes every day."""
+    review = robot.request("program.check", {"program": 'robot.say("Tea!")\n'})
+    about = {"program": review["program"], "sha256": review["sha256"], "by": "Nurse Kim"}
+    rhythm = {"begins": "2026-11-30T12:00", "rule": "FREQ=DAILY"}
+    robot.request("schedule.add", {**about, "sentence": "say tea", "rhythm": rhythm})
 
 
 def _ran(robot: Any) -> None:

@@ -26,6 +26,7 @@ READY = {
     "/map": ".floor-told",
     "/drive": "#drive .floor-told",
     "/routines": ".routines[data-ready=yes]",
+    "/schedule": "#schedule[data-ready=yes]",
     "/runs": "[data-part=found]",
     "/devices": "#devices .card",
 }
@@ -108,7 +109,7 @@ def test_nothing_that_people_write_becomes_part_of_a_page(look: Look, served: Se
     with served.robot() as robot:
         robot.request("zones.set", {"name": evil, "polygon": [[1, 1], [2, 1], [2, 2]]})
         robot.show(text=evil)
-        for path in ("/map", "/drive", "/routines", "/runs", "/face"):
+        for path in ("/map", "/drive", "/routines", "/schedule", "/runs", "/face"):
             page.goto(served.url + path)
             expect(page.locator("body")).to_contain_text("STOP")
             page.wait_for_load_state("networkidle")

@@ -172,7 +172,9 @@ def test_a_nurse_calls_off_pauses_and_removes(look: Look, ward: Ward) -> None:
     press(it, "Resume")
     expect(it.locator(".chip")).to_have_count(0)
     press(it, "History")
-    expect(it.locator(".history li")).to_have_text(["Fri 4 Dec, 08:00: skipped: somebody called it off"])
+    expect(it.locator(".history li")).to_have_text(
+        ["Fri 4 Dec, 08:00: skipped: somebody called it off"]
+    )
     press(it, "Remove")
     expect(it.locator(".panel")).to_contain_text("Remove “go to ward a and say good morning”?")
     expect(it.get_by_role("button", name="Keep it")).to_be_focused()
@@ -218,6 +220,9 @@ def test_what_waits_for_an_approval_is_read_and_approved_anew(
         page.wait_for_timeout(30)
     it.get_by_label("Approved until").fill("2026-12-24")
     approve.click()
+    expect(page.locator(".schedule-told")).to_have_text(
+        "“go to ward a and talk” is approved until 24 December 2026."
+    )
     expect(it.locator(".chip")).to_have_count(0)
     expect(it).to_contain_text("by operator, until 24 December 2026")
     expect(it.locator("h3")).to_be_focused()
@@ -237,14 +242,14 @@ def test_a_reviewed_program_is_planned_at_the_desk(
     form = page.get_by_role("dialog", name="At set times")
     expect(form.get_by_label("What it is")).to_have_value("say it is time for tea")
     picture(page, "schedule-form")
-    form.get_by_label("When", exact=True).select_option("chosen")
+    form.locator("select[name=kind]").select_option("chosen")
     form.get_by_label("Time", exact=True).fill("14:00")
     form.get_by_role("button", name="Approve for these times").click()
     expect(form.get_by_role("alert")).to_have_text("Choose at least one day.")
-    form.get_by_label("Monday").check()
-    form.get_by_label("Thursday").check()
+    form.get_by_role("checkbox", name="Monday").check()
+    form.get_by_role("checkbox", name="Thursday").check()
     form.get_by_label("Approved until").fill("2026-12-31")
-    form.get_by_label("If it was missed").select_option("60")
+    form.get_by_role("combobox", name="If it was missed").select_option("60")
     form.get_by_role("button", name="Approve for these times").click()
     expect(page.locator(".said.done").last).to_contain_text(
         "Planned: every Monday and Thursday at 14:00."
@@ -266,7 +271,7 @@ def test_times_that_were_said_are_in_the_form_already(look: Look, ward: Ward) ->
     expect(page.locator("#approve")).to_have_count(0)  # it was not meant for now
     page.locator("#at-times").click()
     form = page.get_by_role("dialog", name="At set times")
-    expect(form.get_by_label("When", exact=True)).to_have_value("said")
+    expect(form.locator("select[name=kind]")).to_have_value("said")
     form.get_by_role("button", name="Approve for these times").click()
     expect(page.locator(".said.done").last).to_contain_text("Planned: every weekday every 30")
     [planned] = ward.ask("list")
@@ -305,7 +310,9 @@ def test_what_was_missed_is_told_on_every_page_and_by_the_browser(
     number = ward.add("go to ward a", "FREQ=DAILY", "2026-12-02T11:00")
     page = look("/schedule", language="de", width=1100)
     page.add_init_script(NOTIFIED)
-    page.add_init_script("localStorage.setItem('notices-seen', localStorage.getItem('notices-seen') ?? '0')")
+    page.add_init_script(
+        "localStorage.setItem('notices-seen', localStorage.getItem('notices-seen') ?? '0')"
+    )
     page.reload()
     page.get_by_role("button", name="Auf diesem Gerät benachrichtigen").click()
     expect(page.get_by_role("button", name="Hier nicht mehr benachrichtigen")).to_be_visible()
@@ -338,7 +345,7 @@ def test_what_was_missed_is_told_on_every_page_and_by_the_browser(
 
 def test_who_looks_on_sees_all_of_it_and_changes_nothing(look: Look, ward: Ward) -> None:
     number = ward.add("go to ward a", "FREQ=DAILY", "2026-12-02T11:00")
-    page = look("/", url=ward.served.observer_url.removesuffix("/"))
+    page = look("", url=ward.served.observer_url)
     page.goto(f"{ward.served.url}/schedule")
     it = card(page, number)
     expect(it).to_contain_text("go to ward a")

@@ -46,7 +46,6 @@ class Outlook:
             for mark in self.marks
         ]
 
-
     def as_told(self, words: Mapping[str, str]) -> dict[str, Any]:
         """The same for scripts, in the texts of the desk."""
         return {

@@ -18,8 +18,8 @@ from nl2robot.console.floor import page as map_page
 from nl2robot.console.frame import frame
 from nl2robot.console.visitor import texts
 from nl2robot.paths import data_folder
-from nl2robot.station.part import Backstage, Part
 from nl2robot.station.local_clock import moment_in
+from nl2robot.station.part import Backstage, Part
 from nl2robot.wire import service
 from robot_api.errors import InvalidCall
 from sandbox.limits import MAX_PROGRAM
@@ -82,7 +82,7 @@ def part(backstage: Backstage) -> Part:
                 "Tell how the present or last run stands, with its program and calls.",
                 {"language": _LANGUAGE},
                 observes=True,
-            )
+            ),
         },
         pages=pages,
         close=close,

@@ -17,7 +17,7 @@ export class Appointments {
     this.drawn = '';
     root.append(element('h2', {id: 'all-title', tabindex: '-1'}, words.all), this.told, this.list);
     this.list.addEventListener('click', (event) => {
-      const button = event.target.closest('[data-act]');
+      const button = event.target.closest('button[data-act]');
       if (button) this.act(button.closest('.appointment'), button);
     });
   }
@@ -28,8 +28,8 @@ export class Appointments {
     const now = JSON.stringify([listed, zone, today]);
     if (now === this.drawn) return;
     this.drawn = now;
-    const focused = document.activeElement?.closest?.('.appointment [data-act]');
-    const at = focused && [focused.closest('.appointment').dataset.id, focused.dataset.act];
+    const focused = document.activeElement;
+    const id = focused?.closest?.('.appointment')?.dataset.id;
     const open = new Map([...this.list.querySelectorAll('.appointment')].map((each) => [each.dataset.id, each.querySelector('.panel')]));
     const cards = listed.map((each) => this.card(each));
     this.list.replaceChildren(...(cards.length ? cards : [element('li', {class: 'card muted none'}, this.words.none)]));
@@ -37,11 +37,12 @@ export class Appointments {
       const panel = open.get(card.dataset.id);
       if (!panel || panel.hidden) continue; // where somebody is at work stays as it is
       card.querySelector('.panel').replaceWith(panel);
-      card.querySelector(`[data-act=${panel.dataset.act}]`)?.setAttribute('aria-expanded', 'true');
+      card.querySelector(`button[data-act=${panel.dataset.act}]`)?.setAttribute('aria-expanded', 'true');
     }
-    if (at && !this.list.contains(document.activeElement)) {
-      const card = cards.find((each) => each.dataset.id === at[0]);
-      (card?.querySelector(`[data-act=${at[1]}]`) ?? card?.querySelector('h3'))?.focus();
+    if (id) {
+      const card = cards.find((each) => each.dataset.id === id);
+      const again = focused.dataset.act && card?.querySelector(`button[data-act=${focused.dataset.act}]`);
+      (card?.contains(focused) ? focused : again || card?.querySelector('h3'))?.focus({preventScroll: true});
     }
     if (!this.went) this.goToTheOneAsked();
   }
