@@ -10,10 +10,13 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from datetime import datetime, timedelta
 from typing import Any
 
 from robot_api.capabilities.matching import match_answer
 from robot_api.errors import NotFound, NotPossible, Stopped, UnknownPlace
+from robot_api.methods import WEEKDAYS
+from robot_api.moments import next_moment, seconds_until
 from robot_api.values import Clock, Location
 
 START = "start"
@@ -349,10 +352,19 @@ class PaperRobot:
             self.minutes += -self.minutes % LOOKED_AGAIN
         self.people_at.update(dict.fromkeys(self._coming()[:1], self.place))
 
+    def wait_until(self, time: str, weekday: str | None = None, date: str | None = None) -> None:
+        now = self._now()
+        self.wait(seconds_until(next_moment(now, time, weekday, date), now))
+
     def clock(self) -> Clock:
-        hours, minutes = map(int, self.scene.clock.split(":"))
-        now = hours * 60 + minutes + int(self.minutes)
-        return Clock(f"{now // 60 % 24:02d}:{now % 60:02d}", self.scene.weekday, self.scene.date)
+        now = self._now()
+        begun = datetime.fromisoformat(self.scene.date).date()
+        ahead = WEEKDAYS.index(self.scene.weekday) + (now.date() - begun).days
+        return Clock(f"{now:%H:%M}", WEEKDAYS[ahead % 7], f"{now:%Y-%m-%d}")
+
+    def _now(self) -> datetime:
+        begun = datetime.fromisoformat(f"{self.scene.date}T{self.scene.clock}+00:00")
+        return begun + timedelta(minutes=int(self.minutes))
 
     def battery(self) -> int:
         return self.scene.battery

@@ -32,7 +32,7 @@ from nl2robot.schedule.telling import told
 from nl2robot.schedule.zone import local_zone
 from nl2robot.sentences import in_language
 from nl2robot.texts import texts_in
-from robot_api.errors import AccessDenied, LostConnection, NotPossible, RobotError
+from robot_api.errors import AccessDenied, LostConnection, NotPossible, RobotError, cause
 
 RESTS_AFTER_STOP: Final = 120.0
 """Seconds after somebody has stopped the robot in which nothing begins by itself."""
@@ -164,7 +164,7 @@ class Timekeeper:
                 self._tell_trouble(str(error))
             except Exception as error:  # noqa: BLE001 - the clock goes on
                 _log.exception("appointments are not looked after")
-                self._tell_trouble(f"Appointments are not looked after ({error}).")
+                self._tell_trouble(f"Appointments are not looked after ({cause(error)}).")
 
     def _waits(self) -> Waits | None:
         if time.monotonic() < self._not_before:

@@ -28,6 +28,7 @@ FACE = {
         "call.end",
         "call.signal",
     ),
+    *("schedule.buttons", "schedule.press"),
 }
 """All that the tablet on the robot may call: visitors have their hands on it."""
 OBSERVER = {

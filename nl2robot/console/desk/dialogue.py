@@ -322,7 +322,9 @@ class Dialogue:
             self._let_through(language, who, harmless)
         elif translation.schedule is not None:
             times = translation.schedule
-            self._tell(Line("robot", f"{times.when[:1].upper()}{times.when[1:]}: {times.explanation}"))
+            self._tell(
+                Line("robot", f"{times.when[:1].upper()}{times.when[1:]}: {times.explanation}")
+            )
             self._review(Draft(times.program, times.translation, heard, times=times), language)
         elif request is not None and request.kind == "help":
             self._tell(Line("robot", _said("can_say", language), topics=self.topics(language)))
