@@ -44,11 +44,11 @@ export class Appointments {
       const again = focused.dataset.act && card?.querySelector(`button[data-act=${focused.dataset.act}]`);
       (card?.contains(focused) ? focused : again || card?.querySelector('h3'))?.focus({preventScroll: true});
     }
-    if (!this.went) this.goToTheOneAsked();
   }
 
-  /** Of an address with #appointment-3: that was not there when the page came. */
+  /** Of an address with #appointment-3: that was not there when the page came. Once. */
   goToTheOneAsked() {
+    if (this.went) return;
     this.went = true;
     const asked = location.hash && document.getElementById(location.hash.slice(1));
     if (!asked) return;

@@ -67,6 +67,7 @@ async function refresh() {
     const now = JSON.stringify([found, [...appointments.known]]);
     if (now !== drawn) drawWeek();
     drawn = now;
+    appointments.goToTheOneAsked(); // after the week above has its height
     root.dataset.ready = 'yes';
   } catch (error) {
     notice(error.message, {alarm: true});
