@@ -65,12 +65,12 @@ lint: $(STAMP)
 types: $(STAMP)
 	$(BIN)/mypy
 
-# Most stories wait for something, so there are more of them at a time than cores, by four at least;
-# those of a file, which share a console or a robot, stay together. Many start commands, which would
-# compile what they import each time where Python may write no bytecode.
+# Most stories wait for something, so there are more of them at a time than cores; those of a file,
+# which share a console or a robot, stay together. Many start commands, which would compile what they
+# import each time where Python may write no bytecode.
 tests: $(STAMP) browser systemd broker ros2
 	@$(BIN)/python -m compileall -q grammar nl2robot robot_api sandbox sim
-	$(BIN)/pytest -n $$($(BIN)/python -c 'import os; n = os.cpu_count() or 1; print(n + max(n, 4))') --dist loadfile
+	$(BIN)/pytest -n $$($(BIN)/python -c 'import os; print(2 * (os.cpu_count() or 1))') --dist loadfile
 
 # Which lines no test runs; a module of which tests run less than 70 % has to say why.
 coverage: $(STAMP) browser broker

@@ -10,14 +10,28 @@ from __future__ import annotations
 import os
 import sys
 import threading
+from datetime import datetime
 from functools import partial
 
 os.environ["TZ"] = "Europe/Zurich"
 
 from nl2robot.cli.commands import serve
 from nl2robot.cli.main import main
+from nl2robot.schedule.rhythm import moment_of
 from nl2robot.schedule.service import Timing
-from tests.schedule.conftest import Clock
+
+
+class Clock:
+    """Seconds since the epoch."""
+
+    def __init__(self) -> None:
+        self.set("2026-11-30T06:00")
+
+    def __call__(self) -> float:
+        return self._now
+
+    def set(self, local: str) -> None:
+        self._now = moment_of(datetime.fromisoformat(local), os.environ["TZ"])
 
 
 def obey(clock: Clock) -> None:

@@ -2,6 +2,7 @@
 
 import functools
 from collections.abc import Iterator
+from datetime import datetime
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -222,7 +223,9 @@ class _Runner:
     def last(self) -> None:
         return None
 
-    def check(self, program: str, language: str, continues: int | None) -> Review:
+    def check(
+        self, program: str, language: str, continues: int | None, at: datetime | None
+    ) -> Review:
         return review(program, self.knowledge, None, language=language)
 
 
