@@ -19,6 +19,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 from urllib.parse import unquote, urlsplit
 
+from nl2robot.errors import UserError
+
 if TYPE_CHECKING:
     from paho.mqtt.client import Client
 
@@ -41,7 +43,7 @@ TRIES_AFTER: Final = (1, 60)
 """Seconds before it is tried again, the first time and at most."""
 
 
-class BadBroker(ValueError):
+class BadBroker(UserError):
     """It is no address of a broker; the message says what to write instead."""
 
 
@@ -101,15 +103,16 @@ def is_topic(text: str, wildcards: bool = False) -> bool:
 class Broker:
     """A connection to a broker that comes back by itself.
 
-    `heard(topic, text)` and `linked(connected, because)` are called in its thread, which they must
-    not keep: `because` is a sentence, empty while it is connected.
+    `heard(topic, text, before)` and `linked(connected, because)` are called in its thread, which
+    they must not keep: `before` says that it was said before we listened, and kept for us;
+    `because` is a sentence, empty while it is connected.
     """
 
     def __init__(
         self,
         address: BrokerAddress,
         name: str,
-        heard: Callable[[str, str], None],
+        heard: Callable[[str, str, bool], None],
         linked: Callable[[bool, str], None] = lambda connected, because: None,
         password: str | None = None,
     ) -> None:
@@ -225,4 +228,4 @@ class Broker:
             text = message.payload.decode("utf-8")
         except UnicodeDecodeError:
             return
-        self._heard(message.topic, text)
+        self._heard(message.topic, text, bool(message.retain))

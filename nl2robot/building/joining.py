@@ -45,18 +45,17 @@ class House:
         self.broker = Broker(address, name, self._on_message, self._on_link)
         self._reporter = Reporter(address, robot, __version__, self.broker.publish, self._stop)
         self._topics: frozenset[str] = frozenset()
-        self._unsubscribe: Callable[[], None] | None = None
+        # From the first event on: who joins later hears how it stands.
+        self._unsubscribe = stage.subscribe(self._reporter.on_event)
 
     def __enter__(self) -> House:
         for topic in self._reporter.topics:
             self.broker.listen(topic)
-        self._unsubscribe = self._stage.subscribe(self._reporter.on_event)
         self.broker.open()
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self._unsubscribe is not None:
-            self._unsubscribe()
+        self._unsubscribe()
         self.broker.close()
 
     def listen_to(self, topics: frozenset[str]) -> None:
@@ -69,8 +68,9 @@ class House:
 
     # --- told by the broker, in its thread
 
-    def _on_message(self, topic: str, text: str) -> None:
-        if not self._reporter.heard(topic, text):
+    def _on_message(self, topic: str, text: str, before: bool) -> None:
+        # What was said before we came is over: nobody stops or begins anything for it now.
+        if not before and not self._reporter.heard(topic, text):
             self._heard(topic, text)
 
     def _on_link(self, connected: bool, because: str) -> None:

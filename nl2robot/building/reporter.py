@@ -28,9 +28,7 @@ DISCOVERY: Final = "homeassistant"
 BORN: Final = f"{DISCOVERY}/status"
 """Where Home Assistant says "online" when it begins: then it is told anew."""
 STOP: Final = "stop"
-KEPT: Final = {"state": True, "battery": True, "notice": False}
-"""The events that are told, and whether who comes later hears the last one."""
-_NOTICE: Final = "{{ {'event_type': 'notice', 'text': value_json.text} | tojson }}"
+_NOTICE: Final = "{{ {'event_type': 'notice', 'told': value_json.told} | tojson }}"
 STATES: Final = (
     *("idle", "reviewing", "charging", "running", "pausing", "paused"),
     *("stopping", "stopped", "lost"),
@@ -61,6 +59,8 @@ class Reporter:
         self._publish = publish
         self._stop = stop
         self._place: str | None = None
+        self._last: dict[str, str] = {}
+        """What is kept at the broker, by topic."""
 
     @property
     def topics(self) -> tuple[str, ...]:
@@ -68,16 +68,25 @@ class Reporter:
         return (self._address.topic(STOP), BORN)
 
     def connected(self) -> None:
-        """The broker is there, perhaps again."""
-        self._publish(self._discovery_topic, json.dumps(self.discovery()), kept=True)
+        """The broker is there, perhaps again, and may have forgotten all of it."""
+        self._keep(self._discovery_topic, json.dumps(self.discovery()))
+        for topic, text in tuple(self._last.items()):
+            self._publish(topic, text, kept=True)
 
     def on_event(self, kind: str, data: Mapping[str, Any]) -> None:
         """Something has happened, as on the wire."""
-        if kind in KEPT:
-            self._publish(self._address.topic(kind), json.dumps(dict(data)), kept=KEPT[kind])
+        if kind in ("state", "battery"):
+            self._keep(self._address.topic(kind), json.dumps(dict(data)))
+        elif kind == "notice":
+            self._publish(self._address.topic(kind), json.dumps(dict(data)))
         elif kind == "pose" and data.get("place") != self._place:
             self._place = data.get("place")
-            self._publish(self._address.topic("place"), self._place or "", kept=True)
+            self._keep(self._address.topic("place"), self._place or "")
+
+    def _keep(self, topic: str, text: str) -> None:
+        """Say it for those as well who come later."""
+        self._last[topic] = text
+        self._publish(topic, text, kept=True)
 
     def heard(self, topic: str, text: str) -> bool:
         """Something was said there; whether it was for us."""

@@ -8,9 +8,11 @@ robot is free: who is there, and how full the battery is.
 from __future__ import annotations
 
 import logging
+import math
 import queue
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from typing import Any, Final
 
 from nl2robot.schedule.appointments import Appointment
@@ -51,16 +53,19 @@ class Lookout:
         self._watch: Watch | None = None
         self._triggers: dict[int, Trigger] = {}
         self._topics: frozenset[str] = frozenset()
-        self._asked_battery: float | None = None
+        self._asked_battery = -math.inf
+        """By the monotonic clock."""
         self._place: str | None = None
+        self._located = False
+        """Whether the robot has told where it is; it tells only when it moves."""
 
     def note(self, kind: str, data: Mapping[str, Any]) -> None:
         """Something has happened: an event of the robot or the runner, or one of
         `nl2robot.schedule.triggers`."""
         if kind == "pose":  # ten a second, of which the place is of interest
-            if data.get("place") == self._place:
+            if self._located and data.get("place") == self._place:
                 return
-            self._place = data.get("place")
+            self._place, self._located = data.get("place"), True
         if kind == "program":
             if data.get("what") != "result" or data.get("method") != "scan" or "result" not in data:
                 return
@@ -79,9 +84,9 @@ class Lookout:
         watch = self._watch
         return watch.buttons() if watch is not None else []
 
-    def look(self, book: Book, appointments: list[Appointment], free: bool) -> None:
+    def look(self, book: Book, appointments: list[Appointment], free: bool, charging: bool) -> None:
         """Write down what is due by what came since the last look. `free`: the robot does nothing,
-        so it may be asked what it sees."""
+        so it may be asked what it sees; `charging`: it stands at its charger."""
         self._refresh(book, appointments)
         watch = self._watch
         if watch is None:
@@ -94,7 +99,9 @@ class Lookout:
                 break
             self._happened(book, watch, kind, data, at)
         if free:
-            for kind, data in self._looked(watch):
+            if not self._located:
+                self._locate(book, watch)
+            for kind, data in self._looked(watch, charging):
                 self._happened(book, watch, kind, data, self._clock())
 
     # --- inside
@@ -110,7 +117,8 @@ class Lookout:
         self._triggers = triggers
         if self._watch is None:
             last = {number: book.history(number, 1) for number in triggers}
-            self._watch = Watch(triggers, {of: came[0].due for of, came in last.items() if came})
+            due = {of: came[0].due for of, came in last.items() if came}
+            self._watch = Watch(triggers, due, self._place, self._located)
         else:
             self._watch.now(triggers)
         topics = frozenset(self._watch.topics())
@@ -128,7 +136,14 @@ class Lookout:
         for number in watch.happened(kind, data, at):
             book.come(number, at)
 
-    def _looked(self, watch: Watch) -> list[tuple[str, Mapping[str, Any]]]:
+    def _locate(self, book: Book, watch: Watch) -> None:
+        """Ask it where it is, once."""
+        self._located = True
+        with suppress(RobotError):
+            self._place = self._ask("location", {}).place
+            self._happened(book, watch, "pose", {"place": self._place}, self._clock())
+
+    def _looked(self, watch: Watch, charging: bool) -> list[tuple[str, Mapping[str, Any]]]:
         """What is to be seen now, and how full the battery is from time to time."""
         found: list[tuple[str, Mapping[str, Any]]] = []
         try:
@@ -137,11 +152,11 @@ class Lookout:
                     ("seen", {"thing": thing, "there": bool(self._ask("sees", {"thing": thing}))})
                 )
             now = time.monotonic()
-            lately = self._asked_battery is not None and now - self._asked_battery
-            due = lately is False or lately >= ASKS_BATTERY_EVERY
-            if due and any(each.what == "battery" for each in self._triggers.values()):
+            wanted = any(each.what == "battery" for each in self._triggers.values())
+            if wanted and now - self._asked_battery >= ASKS_BATTERY_EVERY:
                 self._asked_battery = now
-                found.append(("battery", {"percent": self._ask("battery", {}), "charging": None}))
+                percent = self._ask("battery", {})
+                found.append(("battery", {"percent": percent, "charging": charging}))
         except RobotError as error:
             _log.info("nothing is seen for triggers: %s", error)
         return found

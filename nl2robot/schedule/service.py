@@ -141,7 +141,8 @@ class Timekeeper:
             self._clerk = Clerk(book, robot, self._timing.settings)
         for occurrence, appointment in book.begun(robot):
             self._follow(self._clerk, book, occurrence, appointment)
-        self._lookout.look(book, book.appointments(robot), self._waits() is None)
+        free, charging = self._waits() is None, self._runner.present.state.charging
+        self._lookout.look(book, book.appointments(robot), free, charging)
         begin = self._clerk.look(self._timing.clock(), self._waits())
         self._tell(book)
         if begin is not None:

@@ -118,18 +118,24 @@ class Watch:
     """What is so, and which appointments were due lately. One thread at a time may use it.
 
     `triggers` by the numbers of their appointments, `last` when each was due (seconds since the
-    epoch), as the book knows it: so nothing is due too often after a restart.
+    epoch), as the book knows it: so nothing is due too often after a restart. `located`: it is
+    known where the robot is, at `place` or at none with a name.
     """
 
-    def __init__(self, triggers: Mapping[int, Trigger], last: Mapping[int, float]) -> None:
+    def __init__(
+        self,
+        triggers: Mapping[int, Trigger],
+        last: Mapping[int, float],
+        place: str | None = None,
+        located: bool = False,
+    ) -> None:
         self._triggers = dict(triggers)
         self._last = dict(last)
         self._held: dict[int, bool] = {}
         """Of what holds on: whether it does."""
         self._seen: dict[str, float] = {}
         """When each thing was seen last."""
-        self._place: str | None = None
-        """Where the robot is."""
+        self._place, self._located = place, located
 
     def now(self, triggers: Mapping[int, Trigger]) -> None:
         """The appointments that there are now; of those that stay, what was so stays so."""
@@ -158,8 +164,6 @@ class Watch:
     def happened(self, kind: str, data: Mapping[str, Any], now: float) -> list[int]:
         """Something has happened, an event of the wire or one of these: `seen` (thing, there),
         `scanned` (code), `pressed` (button), `message` (topic, text). Returns what is due."""
-        if kind == "pose":
-            self._place = data.get("place")
         due = []
         for number, trigger in self._triggers.items():
             if self._begins(number, trigger, kind, data, now) and self._may(number, trigger, now):
@@ -167,6 +171,8 @@ class Watch:
                 due.append(number)
         if kind == "seen" and data["there"]:
             self._seen[data["thing"]] = now
+        elif kind == "pose":
+            self._place, self._located = data.get("place"), True
         return due
 
     def _may(self, number: int, trigger: Trigger, now: float) -> bool:
@@ -182,7 +188,8 @@ class Watch:
                 return self._falls(number, trigger, data)
             case "place", "pose":
                 # Where it stands from the first is not where it has come to.
-                return self._changes(number, data.get("place") == trigger.place, first=True)
+                came = self._located and self._place != trigger.place
+                return came and data.get("place") == trigger.place
             case "seen", "seen" if data["thing"] == trigger.thing:
                 return bool(data["there"]) and self._comes(trigger, now)
             case "heard", "heard":
@@ -195,9 +202,9 @@ class Watch:
                 return matches(trigger.topic, data["topic"]) and trigger.text in ("", data["text"])
         return False
 
-    def _changes(self, number: int, holds: bool, first: bool = False) -> bool:
-        """Whether it holds now and did not before, or `first`, if that is not known."""
-        before = self._held.get(number, first)
+    def _changes(self, number: int, holds: bool) -> bool:
+        """Whether it holds now and did not before."""
+        before = self._held.get(number, False)
         self._held[number] = holds
         return holds and not before
 

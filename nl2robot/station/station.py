@@ -353,6 +353,7 @@ def _open(
     def publish(kind: str, data: Mapping[str, Any], to: str | None = None) -> None:
         if kind == "program":
             on_program(data)
+        if kind in ("program", "notice"):
             backstage.tell(kind, data)
         server.publish(kind, data, to)
 

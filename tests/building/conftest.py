@@ -84,7 +84,7 @@ class Listener:
         self.broker = Broker(
             BrokerAddress("127.0.0.1", port, user=user, prefix=f"ward/{name}"),
             name,
-            lambda topic, text: self.heard.put((topic, text)),
+            lambda topic, text, before: self.heard.put((topic, text)),
             lambda connected, because: self.links.put((connected, because)),
             password,
         )

@@ -74,6 +74,59 @@ def test_a_nurse_call_begins_what_was_approved_for_it(
                 states.add(json.loads(text)["state"])
 
 
+def test_the_house_hears_how_it_stands_and_what_was_not_done(
+    house: Any, join: Any, tmp_path: Path
+) -> None:
+    """Whoever looks at the house's own system, not at the robot."""
+    port = house().port
+    failing = 'robot.goto("ward a")\nrobot.grab("piano")\n'
+    with living_in(port, tmp_path) as robot:
+        nurse = join(port, "nurse")
+        assert nurse.is_told() == (True, "")
+        nurse.broker.listen("ward-a/+")
+        heard = dict(nurse.hears() for _ in range(2))
+        while not {"ward-a/available", "ward-a/state"} <= heard.keys():
+            heard |= dict([nurse.hears()])
+        assert heard["ward-a/available"] == "online"
+        assert json.loads(heard["ward-a/state"])["state"] in ("idle", "charging")
+        given = {
+            "program": failing,
+            "sha256": digest(failing),
+            "by": "Nurse Kim",
+            "sentence": "bring the piano",
+            "insists": True,
+            "trigger": {"what": "pressed", "text": "Piano"},
+        }
+        robot.request("schedule.add", given)
+        while robot.request("schedule.buttons", {}) != ["Piano"]:
+            pass
+        robot.request("schedule.press", {"button": "Piano"})
+        topic, text = nurse.hears()
+        while topic != "ward-a/notice":
+            topic, text = nurse.hears()
+        assert "bring the piano" in json.loads(text)["told"]["de"]
+
+
+def test_what_was_said_before_the_robot_came_is_over(house: Any, join: Any, tmp_path: Path) -> None:
+    port = house().port
+    nurse = join(port, "nurse")
+    assert nurse.is_told() == (True, "")
+    nurse.broker.publish("ward-a/stop", "stop", kept=True)
+    nurse.broker.listen("ward-a/#")
+    assert nurse.hears() == ("ward-a/stop", "stop")
+    with living_in(port, tmp_path):
+        topic, text = nurse.hears()
+        while topic != "ward-a/state":
+            topic, text = nurse.hears()
+        nurse.broker.publish("ward-a/stop", "now")
+        states = [json.loads(text)["because"]]
+        while states[-1] is None:
+            topic, text = nurse.hears()
+            if topic == "ward-a/state":
+                states.append(json.loads(text)["because"])
+    assert states[-1] == "A system of the house has stopped it."
+
+
 def test_a_message_can_stop_the_robot_and_begin_nothing_of_itself(
     house: Any, join: Any, tmp_path: Path
 ) -> None:

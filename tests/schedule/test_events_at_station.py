@@ -52,14 +52,18 @@ def test_a_button_that_nobody_made_is_none(ward: Ward) -> None:
         ward.ask("press", button="Open the door")
 
 
-def test_somebody_who_is_there_is_greeted(ward: Ward) -> None:
+@pytest.mark.parametrize("lately", [True, False], ids=["just come", "there for a while"])
+def test_somebody_who_is_there_is_greeted(ward: Ward, lately: bool) -> None:
     """There is a nurse where the robot goes."""
     people = ward.station.simulation.world.people
     place = next(each.at for each in people if each.at)
     ward.robot.goto(place)
+    if not lately:  # a button is there, so the station has looked since
+        on(ward, "pressed", text="Say hello")
+        ward.until_true(lambda: ward.ask("buttons") == ["Say hello"])
     on(ward, "seen", thing="person", place=place)
     ward.until(["done"])
-    [listed] = ward.ask("list", language="de")
+    *_, listed = ward.ask("list", language="de")
     assert place in listed["when"]
     assert ward.log.runs()[0].approved_by.startswith("Nurse Kim")
 
@@ -72,6 +76,12 @@ def test_a_battery_that_is_low_sends_it_to_charge(log: RunLog, clock: Clock) -> 
         on(ward, "battery", "robot.dock()\n", below=20)
         ward.until(["done"])
         assert ward.station.simulation.robot.charging
+
+
+def test_it_comes_to_a_place(ward: Ward) -> None:
+    on(ward, "place", place="ward a")
+    ward.robot.goto("ward a")
+    ward.until(["done"])
 
 
 def test_what_is_paused_does_not_happen(ward: Ward) -> None:

@@ -78,6 +78,14 @@ def test_where_it_stands_from_the_first_is_not_where_it_comes_to() -> None:
     assert due == [[], [], [], [1], []]
 
 
+def test_where_it_was_when_somebody_wished_it_is_where_it_comes_from() -> None:
+    wish = {1: Trigger(what="place", place="lobby")}
+    in_corridor = Watch(wish, {}, place=None, located=True)
+    assert in_corridor.happened("pose", {"place": "lobby"}, 0) == [1]
+    in_lobby = Watch(wish, {}, place="lobby", located=True)
+    assert in_lobby.happened("pose", {"place": "lobby"}, 0) == []
+
+
 def test_words_are_heard_as_words() -> None:
     room = watch(Trigger(what="heard", text="help me", every=SHORTEST))
     said = ["Help me, please!", "Can you HELP me?", "help meat", "me help", "Hilf mir"]

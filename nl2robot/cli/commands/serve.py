@@ -12,7 +12,7 @@ from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from nl2robot.building.broker import BadBroker, BrokerAddress, parse_broker
+from nl2robot.building.broker import parse_broker
 from nl2robot.cli.options.robot import add_address, robot_of
 from nl2robot.cli.options.sound import add_sound, sound_of
 from nl2robot.cli.options.values import add_clock, add_seed, speed, whole
@@ -128,7 +128,7 @@ def run(options: argparse.Namespace) -> int:
     allow_open_files()
     robot = robot_of(options)
     timing = Timing(settings=_settings(options))
-    broker = _broker(options.mqtt)
+    broker = parse_broker(options.mqtt) if options.mqtt else None
     world, log = world_of(options), open_log(options.debug)
     with ExitStack() as stack:
         stack.enter_context(kept_for(log, options.log_days * DAY))
@@ -184,14 +184,6 @@ def _settings(options: argparse.Namespace) -> Settings:
     """Of the appointments that are done here. Raises `UserError`."""
     quiet = quiet_hours(options.quiet_hours, local_zone()) if options.quiet_hours else None
     return Settings(quiet=quiet, kept=options.log_days * DAY)
-
-
-def _broker(given: str | None) -> BrokerAddress | None:
-    """Raises `UserError`."""
-    try:
-        return parse_broker(given) if given is not None else None
-    except BadBroker as error:
-        raise UserError(str(error)) from error
 
 
 @contextmanager
