@@ -4,9 +4,12 @@ what the environment variable TZ says."""
 from __future__ import annotations
 
 from datetime import datetime
+from typing import Final
 from zoneinfo import ZoneInfoNotFoundError
 
 import tzlocal
+
+NO_NAME: Final = "UTC"
 
 
 def local_now() -> datetime:
@@ -16,3 +19,11 @@ def local_now() -> datetime:
         return datetime.now(tzlocal.get_localzone())
     except ZoneInfoNotFoundError:
         return datetime.now().astimezone()
+
+
+def local_zone() -> str:
+    """What the zone is called, "Europe/Zurich"; UTC where it has no name that is known."""
+    try:
+        return tzlocal.get_localzone_name() or NO_NAME
+    except ZoneInfoNotFoundError:
+        return NO_NAME

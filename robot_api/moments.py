@@ -14,6 +14,7 @@ from robot_api.errors import InvalidCall, NotPossible
 from robot_api.methods import WEEKDAYS
 
 _A_MINUTE: Final = timedelta(minutes=1)
+_A_SECOND: Final = timedelta(seconds=1)
 _DAYS_AHEAD: Final = 9
 """A weekday comes within seven days, a time that is over today on the next; and one day may be left
 out, as the Samoans' was when they changed sides of the date line."""
@@ -38,7 +39,7 @@ def next_moment(
         that_day = now.date() + timedelta(days=ahead)
         if weekday is not None and WEEKDAYS[that_day.weekday()] != weekday:
             continue
-        moment = _shown_on(that_day, shown, now)
+        moment = first_shown(datetime.combine(that_day, shown, now.tzinfo))
         if seconds_until(moment, now) > 0:
             return moment
     raise AssertionError(f"no {clock} within {_DAYS_AHEAD} days of {now}")
@@ -65,6 +66,24 @@ def zone_name(moment: datetime) -> str:
     return str(getattr(moment.tzinfo, "key", None) or moment.tzname() or "UTC")
 
 
+def first_shown(wanted: datetime) -> datetime:
+    """The first moment at which clocks show that date and time, or are beyond it, where they leap
+    over it; of one that they show twice, it is the first."""
+    wanted = wanted.replace(fold=0)
+    before, after = wanted.utcoffset(), wanted.replace(fold=1).utcoffset()
+    if before is None or after is None or before >= after:
+        return wanted
+    # What is read with the offset before the leap lies after it, and the other way round.
+    low, high = wanted.replace(fold=1).astimezone(UTC), wanted.astimezone(UTC)
+    while high - low > _A_SECOND:
+        middle = low + (high - low) / 2
+        if middle.astimezone(wanted.tzinfo).utcoffset() == before:
+            low = middle
+        else:
+            high = middle
+    return datetime.fromtimestamp(round(high.timestamp()), wanted.tzinfo)
+
+
 def _on_a_date(now: datetime, shown: time, weekday: str | None, day: str) -> datetime:
     try:
         that_day = date.fromisoformat(day)
@@ -76,20 +95,10 @@ def _on_a_date(now: datetime, shown: time, weekday: str | None, day: str) -> dat
     called = WEEKDAYS[that_day.weekday()]
     if weekday not in (None, called):
         raise InvalidCall(f"{day} is a {called}, not a {weekday}. Leave one of the two out.")
-    moment = _shown_on(that_day, shown, now)
+    moment = first_shown(datetime.combine(that_day, shown, now.tzinfo))
     if seconds_until(moment + _A_MINUTE, now) <= 0:
         raise NotPossible(
             f"{shown:%H:%M} on {day} is past: now it is {now:%H:%M} on {now:%Y-%m-%d}."
             " Say a time that is still to come."
         )
-    return moment
-
-
-def _shown_on(day: date, shown: time, now: datetime) -> datetime:
-    """The first moment of that day, or after it, at which clocks show that time or are beyond."""
-    moment = datetime.combine(day, shown, now.tzinfo)
-    while moment.astimezone(UTC).astimezone(now.tzinfo).replace(tzinfo=None) != moment.replace(
-        tzinfo=None
-    ):
-        moment += _A_MINUTE  # clocks leave it out
     return moment

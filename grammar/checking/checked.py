@@ -40,10 +40,9 @@ from robot_api.methods import METHODS
 MOST_OWN: Final = 2
 SHARE_OF_OWN: Final = 0.3
 """So many words of one text, and so much of it, nobody has said: that is too much."""
-_BY_THE_WAY: Final = frozenset({"say", "ask", "goto", "find", "stop", "read_text"}) | {
-    "wait",
-    "wait_until",
-}
+_BY_THE_WAY: Final = frozenset(
+    ("say", "ask", "goto", "find", "wait", "wait_until", "stop", "read_text")
+)
 """What a plan may do on its way to what was asked for, beside looking and telling."""
 UNASKED: Final = frozenset(
     name for name, method in METHODS.items() if not method.looks_or_tells

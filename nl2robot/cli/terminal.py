@@ -37,10 +37,10 @@ from nl2robot.run.trouble import error_told, told
 from nl2robot.schedule.rhythm import local
 from nl2robot.schedule.schedule import Listed
 from nl2robot.schedule.words import a_date, a_moment
-from nl2robot.schedule.zone import local_zone
 from nl2robot.translate.teaching import topic_of
 from nl2robot.words import authorship, foreseen, words_in
 from robot_api.errors import InvalidCall, RobotError
+from robot_api.local_time import local_zone
 from sim.world.model import name_in
 
 if TYPE_CHECKING:

@@ -15,13 +15,14 @@ import itertools
 import re
 from calendar import monthrange
 from collections.abc import Iterator, Mapping
-from datetime import UTC, datetime, timedelta
+from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Final, Literal
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 import msgspec
 
 from nl2robot.errors import UserError
+from robot_api.moments import first_shown
 
 if TYPE_CHECKING:
     from dateutil.rrule import rrule
@@ -139,11 +140,7 @@ def local(moment: float, zone: str) -> datetime:
 def moment_of(local: datetime, zone: str) -> float:
     """When the clocks there show that, in seconds since the epoch; the first moment after, where
     they leap over it, the first time where they show it twice."""
-    aware = local.replace(tzinfo=zone_of(zone), fold=0)
-    ahead, behind = aware.utcoffset(), aware.replace(fold=1).utcoffset()
-    if ahead is not None and behind is not None and ahead < behind:
-        return _leap(aware)
-    return aware.timestamp()
+    return first_shown(local.replace(tzinfo=zone_of(zone))).timestamp()
 
 
 @functools.lru_cache(maxsize=64)
@@ -316,18 +313,3 @@ _OF_DATEUTIL: Final[Mapping[str, Literal[0, 1, 2, 3, 4, 5]]] = {
     "HOURLY": 4,
     "MINUTELY": 5,
 }
-
-
-def _leap(aware: datetime) -> float:
-    """The first moment after a time of day that the clocks leap over."""
-    # What is read with the offset before the leap lies after it, and the other way round.
-    zone = aware.tzinfo
-    low = aware.replace(fold=1).astimezone(UTC)
-    high = aware.astimezone(UTC)
-    while high - low > timedelta(seconds=1):
-        middle = low + (high - low) / 2
-        if middle.astimezone(zone).utcoffset() == low.astimezone(zone).utcoffset():
-            low = middle
-        else:
-            high = middle
-    return round(high.timestamp())

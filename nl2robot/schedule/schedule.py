@@ -33,8 +33,8 @@ from nl2robot.schedule.rhythm import Rhythm, checked, local, next_time, times
 from nl2robot.schedule.telling import outcome, told, when
 from nl2robot.schedule.triggers import Trigger
 from nl2robot.schedule.triggers import checked as checked_trigger
-from nl2robot.schedule.zone import local_zone
 from robot_api.errors import AccessDenied
+from robot_api.local_time import local_zone
 
 FILE: Final = "schedule.sqlite"
 """The book's name, beside the run log."""

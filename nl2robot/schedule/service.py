@@ -29,10 +29,10 @@ from nl2robot.schedule.findings import decoded, findings_of, news
 from nl2robot.schedule.lookout import Ask, Lookout
 from nl2robot.schedule.schedule import FILE, Schedule
 from nl2robot.schedule.telling import told
-from nl2robot.schedule.zone import local_zone
 from nl2robot.sentences import in_language
 from nl2robot.texts import texts_in
 from robot_api.errors import AccessDenied, LostConnection, NotPossible, RobotError, cause
+from robot_api.local_time import local_zone
 
 RESTS_AFTER_STOP: Final = 120.0
 """Seconds after somebody has stopped the robot in which nothing begins by itself."""

@@ -11,9 +11,9 @@ from grammar.requests import Request, When
 from nl2robot.errors import UserError
 from nl2robot.schedule.rhythm import local
 from nl2robot.schedule.words import a_moment, on_date
-from nl2robot.schedule.zone import local_zone
 from nl2robot.sentences import in_language
 from nl2robot.texts import texts_in
+from robot_api.local_time import local_zone
 
 if TYPE_CHECKING:
     from nl2robot.schedule.schedule import Listed, Schedule

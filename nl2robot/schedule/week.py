@@ -13,8 +13,8 @@ from nl2robot.schedule.appointments import Appointment, Occurrence, State
 from nl2robot.schedule.rhythm import local, moment_of, times
 from nl2robot.schedule.schedule import Schedule
 from nl2robot.schedule.telling import outcome, when
-from nl2robot.schedule.zone import local_zone
 from nl2robot.texts import texts_in
+from robot_api.local_time import local_zone
 
 DAYS: Final = 7
 MOST_TIMES: Final = 3000

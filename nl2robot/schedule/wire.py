@@ -14,8 +14,8 @@ from nl2robot.schedule.rhythm import LONGEST_RULE, BadRhythm, Rhythm
 from nl2robot.schedule.schedule import Came, Listed, Schedule, Told
 from nl2robot.schedule.triggers import LONGEST, SHORTEST, Trigger, What
 from nl2robot.schedule.week import Week, week_of
-from nl2robot.schedule.zone import local_zone
 from nl2robot.wire import an_object, service
+from robot_api.local_time import local_zone
 from robot_api.methods import MAX_TEXT
 from robot_api.server import Service
 

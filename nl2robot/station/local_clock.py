@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from datetime import datetime
 
+from nl2robot.errors import UserError
 from robot_api.local_time import local_now
 from sim.world.model import World
 from sim.world.starts import starting
@@ -32,6 +33,11 @@ def beginning_of(world: World, said: str | None = None) -> datetime:
 
 def moment_in(world: World, said: str) -> datetime:
     """A moment in ISO 8601, "2026-12-24T06:00"; without an offset, by the clocks of the world.
-    Raises `ValueError`."""
-    moment = datetime.fromisoformat(said)
+    Raises `UserError`."""
+    try:
+        moment = datetime.fromisoformat(said)
+    except ValueError:
+        raise UserError(
+            f'"{said}" is no date and time. Write one such as "2026-12-24T06:00".'
+        ) from None
     return moment if moment.tzinfo is not None else moment.replace(tzinfo=now_in(world).tzinfo)

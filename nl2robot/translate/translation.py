@@ -43,7 +43,6 @@ from nl2robot.schedule import talking as appointments
 from nl2robot.schedule.asking import Timeless, asked_for
 from nl2robot.schedule.rhythm import BadRhythm, Rhythm
 from nl2robot.schedule.words import in_words
-from nl2robot.schedule.zone import local_zone
 from nl2robot.sentences import in_language
 from nl2robot.texts import texts_in
 from nl2robot.translate.courtesies import courtesy
@@ -53,6 +52,7 @@ from nl2robot.translate.teaching import Reply, reply, settle
 from nl2robot.words import authorship
 from nl2robot.work import Died, Do, TookTooLong, here
 from robot_api.capabilities.matching import match_answer
+from robot_api.local_time import local_zone
 
 if TYPE_CHECKING:
     from nl2robot.run.history import History, Record

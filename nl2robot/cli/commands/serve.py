@@ -26,7 +26,6 @@ from nl2robot.run.retention import DAY, kept_for
 from nl2robot.schedule.clerk import Settings
 from nl2robot.schedule.quiet import quiet_hours
 from nl2robot.schedule.service import Timing
-from nl2robot.schedule.zone import local_zone
 from nl2robot.station.accounts import Accounts
 from nl2robot.station.entrance import PAGES_AT, Entrance
 from nl2robot.station.garbage import swept
@@ -36,6 +35,7 @@ from nl2robot.station.robots import places_of, reached, zones_of
 from nl2robot.station.station import robot_station, simulated_station
 from nl2robot.translate import planners
 from robot_api.capabilities.sound import SILENT
+from robot_api.local_time import local_zone
 from robot_api.server import Server
 from robot_api.serving.access import LONGEST_SECRET, is_loopback
 

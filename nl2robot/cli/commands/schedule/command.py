@@ -28,8 +28,8 @@ from nl2robot.schedule.schedule import Came, Listed, Schedule, Told
 from nl2robot.schedule.telling import happening
 from nl2robot.schedule.triggers import WRITTEN, written
 from nl2robot.schedule.words import in_words
-from nl2robot.schedule.zone import local_zone
 from nl2robot.station.robots import Chosen
+from robot_api.local_time import local_zone
 
 ACTIONS: Final = (
     *("list", "add", "approve", "pause", "resume", "remove", "skip", "history", "notices"),
