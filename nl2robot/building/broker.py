@@ -12,7 +12,6 @@ cannot be reached is sent when it can be.
 from __future__ import annotations
 
 import os
-import re
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -20,6 +19,7 @@ from typing import TYPE_CHECKING, Any, Final
 from urllib.parse import unquote, urlsplit
 
 from nl2robot.errors import UserError
+from nl2robot.schedule.topics import is_topic
 
 if TYPE_CHECKING:
     from paho.mqtt.client import Client
@@ -33,7 +33,6 @@ ALIVE: Final = "available"
 when the robot's server is gone."""
 LONGEST_MESSAGE: Final = 65_536
 """Bytes; what is longer is not for us."""
-LONGEST_TOPIC: Final = 200
 KEPT_UNSENT: Final = 1_000
 """Messages that wait for a broker that is away; then the oldest are lost."""
 ASKS_EVERY: Final = 20
@@ -86,18 +85,6 @@ def parse_broker(text: str) -> BrokerAddress:
         user=unquote(parts.username) if parts.username else None,
         prefix=prefix,
     )
-
-
-def is_topic(text: str, wildcards: bool = False) -> bool:
-    """Whether one can publish there or, with `wildcards`, listen: `+` is any one level, `#` at the
-    end all that is below."""
-    if not 0 < len(text) <= LONGEST_TOPIC or "\0" in text or text.startswith("$"):
-        return False
-    levels = text.split("/")
-    special = [level for level in levels if re.search(r"[+#]", level)]
-    if not wildcards:
-        return not special
-    return all(level in ("+", "#") for level in special) and "#" not in levels[:-1]
 
 
 class Broker:

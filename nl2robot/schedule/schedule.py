@@ -94,12 +94,15 @@ class Schedule:
         robot: Callable[[], str | None],
         check: Checks,
         clock: Callable[[], float],
+        noticed: Callable[[Trigger], Trigger] = checked_trigger,
     ) -> None:
         """`file`: where the book is or will be, None to keep it in memory.
-        `robot`: its name; None for those of all robots, to which none can be added."""
+        `robot`: its name; None for those of all robots, to which none can be added.
+        `noticed` raises `BadTrigger` for what this robot would never notice."""
         self._file = file
         self._robot = robot
         self._check = check
+        self._noticed = noticed
         self.clock = clock
         self._book: Book | None = None
         self._lock = threading.Lock()
@@ -148,7 +151,7 @@ class Schedule:
             if next_time(rhythm, now) is None:
                 raise UserError("That time is over. Choose one that is still to come.")
         if trigger is not None:
-            trigger = checked_trigger(trigger)
+            trigger = self._noticed(trigger)
         if not PRIORITIES[0] <= priority <= PRIORITIES[1]:
             raise UserError(f"A priority is {PRIORITIES[0]} to {PRIORITIES[1]}. Choose another.")
         if not 0 <= makes_up <= MAKES_UP_AT_MOST:

@@ -29,6 +29,7 @@ from nl2robot.schedule.findings import decoded, findings_of, news
 from nl2robot.schedule.lookout import Ask, Lookout
 from nl2robot.schedule.schedule import FILE, Schedule
 from nl2robot.schedule.telling import told
+from nl2robot.schedule.triggers import Trigger, checked, possible
 from nl2robot.sentences import in_language
 from nl2robot.texts import texts_in
 from robot_api.errors import AccessDenied, LostConnection, NotPossible, RobotError, cause
@@ -73,11 +74,17 @@ def schedule_of(runner: Runner, timing: Timing | None) -> Schedule:
         capabilities = runner.knowledge.capabilities
         return capabilities.name if capabilities is not None else ""
 
+    def noticed(trigger: Trigger) -> Trigger:
+        knowledge = runner.knowledge
+        has = knowledge.capabilities.methods if knowledge.capabilities is not None else ()
+        return possible(checked(trigger), has, [place.name for place in knowledge.world.places])
+
     return Schedule(
         log.with_name(FILE) if str(log) != ":memory:" else None,
         robot,
         runner.check,
         timing.clock if timing is not None else time.time,
+        noticed,
     )
 
 

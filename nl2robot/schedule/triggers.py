@@ -19,12 +19,13 @@ second. And none is due more often than it allows.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any, Final, Literal
 
 import msgspec
 
 from nl2robot.errors import UserError
+from nl2robot.schedule.topics import is_topic, matches
 
 What = Literal["battery", "place", "seen", "heard", "scanned", "pressed", "message"]
 MINUTE: Final = 60.0
@@ -74,6 +75,11 @@ def checked(trigger: Trigger) -> Trigger:
         raise BadTrigger(f"An event of the kind {trigger.what!r} needs {name!r}: say which.")
     if trigger.what == "battery" and not 1 <= trigger.below <= 99:
         raise BadTrigger("A battery is below 1 to 99 percent: say how many.")
+    if trigger.what == "message" and not is_topic(trigger.topic, wildcards=True):
+        raise BadTrigger(
+            f"{trigger.topic!r} is no topic of MQTT. Write one such as ward-a/call, with + for any"
+            " one level and # at the end for all below."
+        )
     if any(len(each) > LONGEST for each in (trigger.text, trigger.thing, trigger.topic)):
         raise BadTrigger(f"What begins a program is told in {LONGEST} letters at most.")
     if not SHORTEST <= trigger.every <= 31 * 24 * 60 * MINUTE:
@@ -81,6 +87,22 @@ def checked(trigger: Trigger) -> Trigger:
             f"An event begins a program every {SHORTEST:.0f} seconds at most: allow it that rarely."
         )
     return trigger
+
+
+def possible(trigger: Trigger, methods: Collection[str], places: Collection[str]) -> Trigger:
+    """The same, its place by the name that it has in this house. Raises `BadTrigger` if a robot
+    with these methods, in a house with these places, would never notice it."""
+    by: Mapping[What, str] = {"seen": "sees", "scanned": "scan"}
+    if trigger.what in by and by[trigger.what] not in methods:
+        raise BadTrigger("This robot would never notice that. Choose another event.")
+    if not trigger.place:
+        return trigger
+    named = {name.casefold(): name for name in places}
+    if trigger.place.casefold() not in named:
+        raise BadTrigger(
+            f"There is no place “{trigger.place}” here. Name one as the map of this house does."
+        )
+    return msgspec.structs.replace(trigger, place=named[trigger.place.casefold()])
 
 
 _OF_A_TEXT: Final[Mapping[str, What]] = {
@@ -225,19 +247,6 @@ class Watch:
             return False
         before = self._seen.get(trigger.thing)
         return before is None or not 0 <= now - before < GONE_AFTER
-
-
-def matches(topic: str, said_at: str) -> bool:
-    """Whether a topic of MQTT with wildcards means this one (MQTT 3.1.1, section 4.7)."""
-    wanted, levels = topic.split("/"), said_at.split("/")
-    if said_at.startswith("$") and wanted[0] in ("+", "#"):
-        return False
-    for index, level in enumerate(wanted):
-        if level == "#":
-            return True
-        if index >= len(levels) or level not in ("+", levels[index]):
-            return False
-    return len(wanted) == len(levels)
 
 
 def _words(text: str) -> str:

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from nl2robot.building.broker import BadBroker, BrokerAddress, is_topic, parse_broker
+from nl2robot.building.broker import BadBroker, BrokerAddress, parse_broker
+from nl2robot.schedule.topics import is_topic
 
 
 def test_a_nurse_call_reaches_the_robot(house: Any, join: Any) -> None:

@@ -52,6 +52,16 @@ def test_a_button_that_nobody_made_is_none(ward: Ward) -> None:
         ward.ask("press", button="Open the door")
 
 
+def test_what_it_would_never_notice_is_refused(ward: Ward) -> None:
+    with pytest.raises(InvalidCall, match="no place “garden” here"):
+        on(ward, "seen", thing="person", place="garden")
+    with pytest.raises(InvalidCall, match="no topic of MQTT"):
+        on(ward, "message", topic="ward/#/call")
+    on(ward, "place", place="Ward A")
+    [listed] = ward.ask("list")
+    assert listed["appointment"]["trigger"]["place"] == "ward a"
+
+
 @pytest.mark.parametrize("lately", [True, False], ids=["just come", "there for a while"])
 def test_somebody_who_is_there_is_greeted(ward: Ward, lately: bool) -> None:
     """There is a nurse where the robot goes."""

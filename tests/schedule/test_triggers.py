@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from nl2robot.schedule.topics import matches
 from nl2robot.schedule.triggers import (
     GONE_AFTER,
     SHORTEST,
@@ -16,7 +17,6 @@ from nl2robot.schedule.triggers import (
     Trigger,
     Watch,
     checked,
-    matches,
 )
 
 GREETS, CHARGES = 1, 2
@@ -164,6 +164,7 @@ def test_a_clock_that_was_set_back_silences_nobody() -> None:
         (Trigger(what="heard", text=" "), "needs 'text'"),
         (Trigger(what="pressed"), "needs 'text'"),
         (Trigger(what="message"), "needs 'topic'"),
+        (Trigger(what="message", topic="ward/#/call"), "no topic of MQTT"),
         (Trigger(what="battery"), "say how many"),
         (Trigger(what="battery", below=100), "say how many"),
         (Trigger(what="scanned", text="x" * 201), "200 letters"),
