@@ -11,7 +11,7 @@ from nl2robot.texts import texts_in
 
 if TYPE_CHECKING:
     from nl2robot.review.rehearsal import DryRun
-    from nl2robot.translate.translation import Translation
+    from nl2robot.translate.outcome import Translation
 
 
 def words_in(language: str) -> Mapping[str, Any]:

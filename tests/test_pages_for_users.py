@@ -13,7 +13,8 @@ import yaml
 
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.translate.routines import Routines
-from nl2robot.translate.translation import Talk, translate
+from nl2robot.translate.talk import Talk
+from nl2robot.translate.translation import translate
 from sim.world.loading import load_world
 
 ROOT = Path(__file__).parents[1]

@@ -47,7 +47,8 @@ from nl2robot.changes import difference
 from nl2robot.errors import UserError
 from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.review.rehearsal import Budget, EventKind, rehearse
-from nl2robot.translate.translation import Translation, translate
+from nl2robot.translate.outcome import Translation
+from nl2robot.translate.translation import translate
 from robot_api.errors import cause
 from sim.world.files import read_text
 from sim.world.loading import load_world

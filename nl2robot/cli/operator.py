@@ -16,8 +16,8 @@ from nl2robot.schedule.appointments import Appointment
 from nl2robot.schedule.rhythm import Rhythm
 from nl2robot.schedule.schedule import Listed
 from nl2robot.schedule.triggers import Trigger
+from nl2robot.translate.outcome import Translation
 from nl2robot.translate.thinking import EVENT, OnProgress, Progress
-from nl2robot.translate.translation import Translation
 from robot_api.client import Robot
 from robot_api.errors import InvalidCall, RobotError, Stopped
 

@@ -30,7 +30,8 @@ from nl2robot.run.runs import Approval, Status
 from nl2robot.run.state import GOING, HELD
 from nl2robot.station.harmless import approver, needs_no_question
 from nl2robot.translate.other_language import accepted, hint, language_of, question
-from nl2robot.translate.translation import STOP, Scheduled, Translation
+from nl2robot.translate.outcome import Scheduled, Translation
+from nl2robot.translate.translation import STOP
 from robot_api.errors import (
     AccessDenied,
     InvalidCall,

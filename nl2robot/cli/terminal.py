@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from nl2robot.review.rehearsal import DryRun
     from nl2robot.review.review import Review
     from nl2robot.run.answers import Sentence
-    from nl2robot.translate.translation import Translation
+    from nl2robot.translate.outcome import Translation
     from sim.world.model import World
 
 Decision = Literal["approve", "edit", "reject"]

@@ -11,7 +11,7 @@ from typing import Final
 
 from grammar.language import load_language
 from nl2robot.review.review import Review
-from nl2robot.translate.translation import Translation
+from nl2robot.translate.outcome import Translation
 from robot_api.methods import METHODS
 
 HARMLESS: Final = frozenset(method.name for method in METHODS.values() if method.looks_or_tells)

@@ -21,10 +21,11 @@ from nl2robot.run.runs import Approval, Status
 from nl2robot.run.state import GOING, Reviewing
 from nl2robot.schedule.schedule import Schedule
 from nl2robot.station.local_clock import moment_in
+from nl2robot.translate.outcome import Translation
 from nl2robot.translate.planners import names
 from nl2robot.translate.talks import Talks
 from nl2robot.translate.thinking import EVENT, Thought, published
-from nl2robot.translate.translation import Translation, translate
+from nl2robot.translate.translation import translate
 from nl2robot.voice.services import Microphones, voice_services
 from nl2robot.wire import an_object, schema_of, service, service_of_call
 from robot_api.driver import StopFlag

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import OrderedDict
 from typing import Final
 
-from nl2robot.translate.translation import Talk
+from nl2robot.translate.talk import Talk
 
 TALKS_KEPT: Final = 100
 """Conversations whose context is kept; the one unused longest is forgotten first."""

@@ -9,9 +9,8 @@ import time
 from collections import Counter
 from collections.abc import Sequence
 from contextlib import suppress
-from copy import copy
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -33,23 +32,23 @@ from grammar.program_parser import NotAPlan, parse_program
 from grammar.requests import ABOUT_RUNS, Request, agreed
 from grammar.summary import summary
 from grammar.understanding import Context
-from nl2robot.deliberation.deciding import Chosen, Offer, Open, between, decide
+from nl2robot.deliberation.deciding import Chosen, Open, between, decide
 from nl2robot.deliberation.sufficing import is_sure
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
-from nl2robot.plain import visible
 from nl2robot.run.history import told_of
 from nl2robot.schedule import talking as appointments
 from nl2robot.schedule.asking import Timeless, asked_for
-from nl2robot.schedule.rhythm import BadRhythm, Rhythm
+from nl2robot.schedule.rhythm import BadRhythm
 from nl2robot.schedule.words import in_words
 from nl2robot.sentences import in_language
 from nl2robot.texts import texts_in
 from nl2robot.translate.courtesies import courtesy
 from nl2robot.translate.other_language import language_of
+from nl2robot.translate.outcome import Scheduled, Status, Translation
 from nl2robot.translate.planners import AUTO, available, planner
+from nl2robot.translate.talk import Talk
 from nl2robot.translate.teaching import Reply, reply, settle
-from nl2robot.words import authorship
 from nl2robot.work import Died, Do, TookTooLong, here
 from robot_api.capabilities.matching import match_answer
 from robot_api.local_time import local_zone
@@ -57,7 +56,6 @@ from robot_api.local_time import local_zone
 if TYPE_CHECKING:
     from nl2robot.run.history import History, Record
     from nl2robot.schedule.schedule import Schedule
-    from nl2robot.translate.teaching import Pending
 
 
 STOP = "robot.stop()\n"
@@ -68,144 +66,6 @@ POLITE = 3
 """Words that an answer may have besides those of what was offered."""
 _IN_ANY_LANGUAGE = ({"set_language"}, {"stop"})
 """What is done, whatever language it is asked for in."""
-
-Status = Literal["ok", "clarify", "rejected"]
-
-
-class Scheduled(msgspec.Struct, frozen=True, kw_only=True):
-    """What is to be done at set times, once somebody has approved it for them; the fields of the
-    program are those of its `Translation`."""
-
-    rhythm: Rhythm
-    when: str
-    """The rhythm in words: "every day at 08:00"."""
-    sentence: str
-    """What is to be done, as it was said, without the times."""
-    program: str
-    plan: dict[str, Any] | None
-    source: str | None
-    confidence: float
-    explanation: str
-    unused: tuple[str, ...] = ()
-    own: tuple[str, ...] = ()
-
-    @property
-    def translation(self) -> Translation:
-        """What is done each time."""
-        return Translation(
-            utterance=self.sentence,
-            status="ok",
-            program=self.program,
-            plan=self.plan,
-            source=self.source,
-            confidence=self.confidence,
-            explanation=self.explanation,
-            message=None,
-            suggestions=[],
-            ms=0.0,
-            unused=self.unused,
-            own=self.own,
-        )
-
-
-class Translation(msgspec.Struct, frozen=True, kw_only=True):
-    """What became of an utterance; `to_json` gives the object of `translate --json`."""
-
-    utterance: str
-    status: Status
-    program: str | None
-    plan: dict[str, Any] | None
-    source: str | None
-    """Which planner found the plan: "grammar", "model", or another."""
-    confidence: float
-    """How likely it is that this was meant; calibrated: of all programs at 0.9, nine in ten are."""
-    explanation: str
-    """What the program does, in a breath; empty if there is none."""
-    message: str | None
-    """Why there is no program, or the question back."""
-    suggestions: Sequence[str]
-    """Sentences that would be understood."""
-    ms: float
-    """Milliseconds it took."""
-    unused: tuple[str, ...] = ()
-    """Words of the utterance that the program makes nothing of."""
-    own: tuple[str, ...] = ()
-    """What the robot would say of a language model's own knowledge."""
-    request: Request | None = None
-    """What is asked of the application instead of the robot, such as to learn a routine; there
-    is no program then, and the message is the answer."""
-    schedule: Scheduled | None = None
-    """What is asked to be done at set times. There is no program to be run now then: this one is
-    reviewed and approved for those times (`schedule.add` on the wire)."""
-
-    def to_json(self) -> str:
-        return msgspec.json.encode(self).decode()
-
-    def readable(self, language: str = "en") -> str:
-        """For people at a terminal: the program with its explanation, or why there is none."""
-        if self.program is not None:
-            told = [self.explanation, *self._authorship(language)]
-            return visible(self.program + "".join(f"# {line}\n" for line in told))
-        if self.schedule is not None:
-            return visible(f"# {self.message}\n{self.schedule.program}")
-        lines = [self.message or ""]
-        if self.suggestions:
-            lines += [
-                load_language(language).phrase("could_say"),
-                *(f"  {phrase}" for phrase in self.suggestions),
-            ]
-        return visible("\n".join(lines))
-
-    def _authorship(self, language: str) -> list[str]:
-        if self.source == "grammar":  # nearly always, and the words take a moment to read
-            return []
-
-        return list(authorship(self, language))
-
-
-class Talk:
-    """A conversation: "no, the pharmacy" refers to what was said before in it."""
-
-    context: Context | None = None
-    pending: Pending | appointments.CallOff | None = None
-    """What waits for a yes."""
-    offers: tuple[Offer, ...] = ()
-    """Programs of which one was asked whether it was meant."""
-    last: Translation | None = None
-    """The last one with a program."""
-    last_at: float = 0.0
-    """When that was: seconds since the epoch."""
-    refused: str = ""
-    """The words that no program was made of last. Said again, they are meant as they stand:
-    whatever language they seem to be in, and whatever the robot remembers."""
-    timeless: Timeless | None = None
-    """What is to be done at a time of day that was asked back."""
-    who: str = ""
-    """Who speaks; noted with the routines that they teach."""
-
-    def copy(self) -> Talk:
-        """For a translation that may be given up: only what comes of it is to be remembered."""
-        return copy(self)
-
-    def adopt(self, other: Talk) -> None:
-        """Remember what a copy does."""
-        vars(self).update(vars(other))
-
-    def note(self, translation: Translation) -> None:
-        """Remember a program, so that it is known when it was carried out."""
-        self.last, self.last_at = translation, time.time()
-
-    def carried_out(self, record: Record | None) -> bool:
-        """Whether the last program has been run since."""
-        return (
-            record is not None
-            and self.last is not None
-            and record.run.started >= self.last_at
-            and (
-                record.run.program == self.last.program
-                or record.run.utterance == self.last.utterance
-            )
-        )
 
 
 def translate(

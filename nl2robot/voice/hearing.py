@@ -27,8 +27,10 @@ from nl2robot.speech.hear.streaming import Streaming
 from nl2robot.speech.hear.vocabulary import Missing, missing_words
 from nl2robot.speech.hotword.words import WORDS
 from nl2robot.translate.completing import names_said
+from nl2robot.translate.outcome import Translation
 from nl2robot.translate.planners import AUTO
-from nl2robot.translate.translation import Talk, Translation, translate
+from nl2robot.translate.talk import Talk
+from nl2robot.translate.translation import translate
 from nl2robot.work import Do, here
 
 MOST_RESPELLED: Final = 8

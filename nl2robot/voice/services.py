@@ -34,8 +34,9 @@ from nl2robot.speech.hear.listening import (
     SpeechEnded,
     TooLong,
 )
+from nl2robot.translate.outcome import Translation
+from nl2robot.translate.talk import Talk
 from nl2robot.translate.thinking import Thought, published
-from nl2robot.translate.translation import Talk, Translation
 from nl2robot.wire import service, service_of_call
 from nl2robot.work import Do, here
 from robot_api.capabilities.sound import SILENT

@@ -23,7 +23,8 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.review.review import review
 from nl2robot.speech.audio import AudioError, Converter, read_bytes
 from nl2robot.speech.hear.recording import opened
-from nl2robot.translate.translation import Talk, translate
+from nl2robot.translate.talk import Talk
+from nl2robot.translate.translation import translate
 from robot_api.stub import stub
 from sandbox.check import check
 from sim.world.loading import load_world

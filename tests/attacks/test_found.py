@@ -15,7 +15,8 @@ from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.speech.audio import read_bytes
 from nl2robot.station.accounts import Accounts
-from nl2robot.translate.translation import Talk, translate
+from nl2robot.translate.talk import Talk
+from nl2robot.translate.translation import translate
 from robot_api import protocol
 from robot_api.errors import InvalidCall
 from robot_api.schema import is_oversize, read_arguments

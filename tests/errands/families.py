@@ -50,7 +50,8 @@ import yaml
 
 from nl2robot.deliberation.paper_robot import Event, Over, PaperRobot, Scene
 from nl2robot.knowledge import Knowledge
-from nl2robot.translate.translation import Translation, translate
+from nl2robot.translate.outcome import Translation
+from nl2robot.translate.translation import translate
 from sim.world.loading import load_world
 from sim.world.model import World
 

@@ -15,7 +15,9 @@ from hypothesis import strategies as st
 from grammar.language import Language, load_language
 from nl2robot.deliberation.paper_robot import Scene
 from nl2robot.knowledge import Knowledge
-from nl2robot.translate.translation import Talk, Translation, translate
+from nl2robot.translate.outcome import Translation
+from nl2robot.translate.talk import Talk
+from nl2robot.translate.translation import translate
 from sim.world.loading import load_world
 from tests.errands.families import carried_out
 

@@ -18,7 +18,8 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.review.apart import Helpers, think
 from nl2robot.review.review import review, review_apart
 from nl2robot.sentences import told
-from nl2robot.translate.translation import Talk, translate
+from nl2robot.translate.talk import Talk
+from nl2robot.translate.translation import translate
 from nl2robot.work import Died, Do, TookTooLong, here
 from robot_api.drivers import simulated
 from robot_api.errors import NotPossible

@@ -2,7 +2,7 @@
 
 import pytest
 
-from nl2robot.translate.translation import Translation
+from nl2robot.translate.outcome import Translation
 
 
 class Nurse:

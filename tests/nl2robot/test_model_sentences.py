@@ -19,7 +19,9 @@ from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.language_model.scripted import ScriptedWriter
 from nl2robot.translate import planners
-from nl2robot.translate.translation import Talk, Translation, translate
+from nl2robot.translate.outcome import Translation
+from nl2robot.translate.talk import Talk
+from nl2robot.translate.translation import translate
 from robot_api.driver import Capabilities
 from robot_api.methods import METHODS
 from sim.world.loading import load_world

@@ -17,8 +17,9 @@ from nl2robot.review.review import Review, review
 from nl2robot.run.present import Present
 from nl2robot.run.sightings import Sightings
 from nl2robot.translate.other_language import accepted, language_of, question
+from nl2robot.translate.talk import Talk
 from nl2robot.translate.talks import Talks
-from nl2robot.translate.translation import Talk, translate
+from nl2robot.translate.translation import translate
 from nl2robot.words import words_in
 from nl2robot.work import here
 from sim.world.loading import load_world

@@ -14,7 +14,8 @@ from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.translate.routine_files import Choice, exported, read, state_of, take_over
 from nl2robot.translate.routines import Routine, Routines
-from nl2robot.translate.translation import Talk, translate
+from nl2robot.translate.talk import Talk
+from nl2robot.translate.translation import translate
 from sim.world.loading import load_world
 
 TEA = 'robot.goto("lobby")\nrobot.say("Tea!")\n'

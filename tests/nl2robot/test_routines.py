@@ -13,7 +13,8 @@ from nl2robot.cli.main import main
 from nl2robot.errors import UserError
 from nl2robot.knowledge import Knowledge
 from nl2robot.translate.routines import Routines, open_routines
-from nl2robot.translate.translation import Talk, translate
+from nl2robot.translate.talk import Talk
+from nl2robot.translate.translation import translate
 from sim.world.loading import load_world
 
 ROUND = "go to every ward and say good night"

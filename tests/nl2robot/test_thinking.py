@@ -15,8 +15,8 @@ from nl2robot.cli.session import Session
 from nl2robot.cli.terminal import Terminal
 from nl2robot.cli.waiting import Waiting
 from nl2robot.errors import ExitStatus
+from nl2robot.translate.outcome import Translation
 from nl2robot.translate.thinking import Progress, Thought, published
-from nl2robot.translate.translation import Translation
 from robot_api.errors import Stopped
 from tests.nl2robot.conftest import SOON
 

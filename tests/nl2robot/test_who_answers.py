@@ -9,7 +9,8 @@ import pytest
 
 from nl2robot.knowledge import Knowledge
 from nl2robot.language_model.scripted import ScriptedWriter
-from nl2robot.translate.translation import Translation, translate
+from nl2robot.translate.outcome import Translation
+from nl2robot.translate.translation import translate
 from sim.world.loading import load_world
 
 WARD = Knowledge(load_world("ward", names_only=True))

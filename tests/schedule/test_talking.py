@@ -10,7 +10,9 @@ import pytest
 from nl2robot.knowledge import Knowledge
 from nl2robot.review.review import digest, review
 from nl2robot.schedule.schedule import Schedule
-from nl2robot.translate.translation import Talk, Translation, translate
+from nl2robot.translate.outcome import Translation
+from nl2robot.translate.talk import Talk
+from nl2robot.translate.translation import translate
 from sim.world.loading import load_world
 from tests.schedule.conftest import ROUND, Clock, rhythm
 

@@ -15,7 +15,7 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.speech.audio import RATE, Samples
 from nl2robot.speech.hear.listening import COMMANDS, Listener, Manner
 from nl2robot.speech.hear.recogniser import Heard, Reading
-from nl2robot.translate.translation import Talk
+from nl2robot.translate.talk import Talk
 from nl2robot.voice import services as voice_services
 from nl2robot.voice.hearing import Ear
 from nl2robot.voice.services import Microphones

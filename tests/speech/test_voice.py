@@ -17,7 +17,7 @@ from nl2robot.speech.hear.listening import Listener, Manner
 from nl2robot.speech.hear.recogniser import Heard, Reading
 from nl2robot.speech.hotword.detection import Detection
 from nl2robot.speech.speak.voices import joined, voice
-from nl2robot.translate.translation import Talk
+from nl2robot.translate.talk import Talk
 from nl2robot.voice.hearing import Ear
 from nl2robot.voice.services import MOST_OPEN, Microphones
 from nl2robot.voice.voice import Cried, Hears, OwnVoice, Said, Slept, SpokenLines, VoiceInput, Woke

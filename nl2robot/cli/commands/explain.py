@@ -22,8 +22,9 @@ from nl2robot.errors import ExitStatus
 from nl2robot.knowledge import Knowledge
 from nl2robot.plain import visible
 from nl2robot.review.review import review
+from nl2robot.translate.outcome import Translation
 from nl2robot.translate.routines import open_routines
-from nl2robot.translate.translation import Translation, translate
+from nl2robot.translate.translation import translate
 from nl2robot.words import decimal, words_in
 from robot_api.methods import METHODS
 

@@ -13,8 +13,9 @@ from nl2robot.cli.waiting import thought_aloud
 from nl2robot.errors import ExitStatus
 from nl2robot.knowledge import Knowledge
 from nl2robot.translate.other_language import hint, language_of
+from nl2robot.translate.outcome import Translation
 from nl2robot.translate.routines import open_routines
-from nl2robot.translate.translation import Translation, translate
+from nl2robot.translate.translation import translate
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

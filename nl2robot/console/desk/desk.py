@@ -18,7 +18,7 @@ from nl2robot.console.desk.thought_view import ThoughtView
 from nl2robot.console.rendering import rendered
 from nl2robot.console.visitor import texts
 from nl2robot.station.part import Backstage
-from nl2robot.translate.translation import Translation
+from nl2robot.translate.outcome import Translation
 
 if TYPE_CHECKING:
     from nicegui.events import GenericEventArguments

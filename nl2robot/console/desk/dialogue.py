@@ -34,8 +34,9 @@ from nl2robot.schedule.rhythm import local, next_time
 from nl2robot.station.harmless import approver, needs_no_question
 from nl2robot.station.part import Backstage
 from nl2robot.translate.other_language import accepted, declined, language_of, question
+from nl2robot.translate.outcome import Scheduled, Translation
 from nl2robot.translate.teaching import told as told_in_words
-from nl2robot.translate.translation import STOP, Scheduled, Translation, translate
+from nl2robot.translate.translation import STOP, translate
 from nl2robot.words import words_in
 from robot_api.driver import StopFlag
 from robot_api.errors import AccessDenied, NotPossible, RobotError, Stopped

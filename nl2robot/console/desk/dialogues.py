@@ -19,7 +19,7 @@ from nl2robot.console.desk.dialogue import Dialogue, Draft, Line
 from nl2robot.run.archive import state_of
 from nl2robot.run.state import GOING, Reviewing
 from nl2robot.station.part import STOP, Backstage
-from nl2robot.translate.translation import Scheduled, Translation
+from nl2robot.translate.outcome import Scheduled, Translation
 
 IN_MEMORY: Final = 50
 IN_FILES: Final = 200

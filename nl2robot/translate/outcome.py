@@ -1,0 +1,107 @@
+"""What became of words: a program, one for set times, a question back, or why there is none."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Literal
+
+import msgspec
+
+from grammar.language import load_language
+from grammar.requests import Request
+from nl2robot.plain import visible
+from nl2robot.schedule.rhythm import Rhythm
+from nl2robot.words import authorship
+
+Status = Literal["ok", "clarify", "rejected"]
+
+
+class Scheduled(msgspec.Struct, frozen=True, kw_only=True):
+    """What is to be done at set times, once somebody has approved it for them; the fields of the
+    program are those of its `Translation`."""
+
+    rhythm: Rhythm
+    when: str
+    """The rhythm in words: "every day at 08:00"."""
+    sentence: str
+    """What is to be done, as it was said, without the times."""
+    program: str
+    plan: dict[str, Any] | None
+    source: str | None
+    confidence: float
+    explanation: str
+    unused: tuple[str, ...] = ()
+    own: tuple[str, ...] = ()
+
+    @property
+    def translation(self) -> Translation:
+        """What is done each time."""
+        return Translation(
+            utterance=self.sentence,
+            status="ok",
+            program=self.program,
+            plan=self.plan,
+            source=self.source,
+            confidence=self.confidence,
+            explanation=self.explanation,
+            message=None,
+            suggestions=[],
+            ms=0.0,
+            unused=self.unused,
+            own=self.own,
+        )
+
+
+class Translation(msgspec.Struct, frozen=True, kw_only=True):
+    """What became of an utterance; `to_json` gives the object of `translate --json`."""
+
+    utterance: str
+    status: Status
+    program: str | None
+    plan: dict[str, Any] | None
+    source: str | None
+    """Which planner found the plan: "grammar", "model", or another."""
+    confidence: float
+    """How likely it is that this was meant; calibrated: of all programs at 0.9, nine in ten are."""
+    explanation: str
+    """What the program does, in a breath; empty if there is none."""
+    message: str | None
+    """Why there is no program, or the question back."""
+    suggestions: Sequence[str]
+    """Sentences that would be understood."""
+    ms: float
+    """Milliseconds it took."""
+    unused: tuple[str, ...] = ()
+    """Words of the utterance that the program makes nothing of."""
+    own: tuple[str, ...] = ()
+    """What the robot would say of a language model's own knowledge."""
+    request: Request | None = None
+    """What is asked of the application instead of the robot, such as to learn a routine; there
+    is no program then, and the message is the answer."""
+    schedule: Scheduled | None = None
+    """What is asked to be done at set times. There is no program to be run now then: this one is
+    reviewed and approved for those times (`schedule.add` on the wire)."""
+
+    def to_json(self) -> str:
+        return msgspec.json.encode(self).decode()
+
+    def readable(self, language: str = "en") -> str:
+        """For people at a terminal: the program with its explanation, or why there is none."""
+        if self.program is not None:
+            told = [self.explanation, *self._authorship(language)]
+            return visible(self.program + "".join(f"# {line}\n" for line in told))
+        if self.schedule is not None:
+            return visible(f"# {self.message}\n{self.schedule.program}")
+        lines = [self.message or ""]
+        if self.suggestions:
+            lines += [
+                load_language(language).phrase("could_say"),
+                *(f"  {phrase}" for phrase in self.suggestions),
+            ]
+        return visible("\n".join(lines))
+
+    def _authorship(self, language: str) -> list[str]:
+        if self.source == "grammar":  # nearly always, and the words take a moment to read
+            return []
+
+        return list(authorship(self, language))
