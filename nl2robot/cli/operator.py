@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Mapping
+from datetime import datetime
 from typing import Any, TypeVar
 
 import msgspec
@@ -113,9 +114,19 @@ class Operator:
         """What can be said here: sentences by topic."""
         return self._request("program.phrases", {"language": language}, dict[str, list[str]])
 
-    def check(self, program: str, language: str = "en", continues: int | None = None) -> Review:
-        """Review a program, or what is left of it after a run; nothing moves."""
-        parameters = {"program": program, "language": language, **_continuing(continues)}
+    def check(
+        self,
+        program: str,
+        language: str = "en",
+        continues: int | None = None,
+        at: datetime | None = None,
+    ) -> Review:
+        """Review a program, or what is left of it after a run, as if it began now or `at` some
+        time; nothing moves."""
+        parameters: dict[str, Any] = {"program": program, "language": language}
+        parameters |= _continuing(continues)
+        if at is not None:
+            parameters["at"] = at.isoformat()
         return self._request("program.check", parameters, Review)
 
     def unfinished(self, language: str = "en") -> Left | None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import secrets
 import threading
+import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -28,6 +29,7 @@ from nl2robot.run.going_on import asks_to_go_on
 from nl2robot.run.going_on import texts as going_on_texts
 from nl2robot.run.runs import Approval, Status
 from nl2robot.run.state import GOING, HELD
+from nl2robot.schedule.rhythm import next_begin
 from nl2robot.station.harmless import approver, needs_no_question
 from nl2robot.translate.other_language import accepted, hint, language_of, question
 from nl2robot.translate.outcome import Scheduled, Translation
@@ -203,7 +205,8 @@ class Session:
             if len(program.encode()) > MAX_PROGRAM:
                 words = self.terminal.words["program_too_long"]
                 raise UserError(words.format(kilobytes=MAX_PROGRAM // 1000))
-            review = self.operator.check(program, self.language, continues)
+            at = next_begin(wish.rhythm, time.time()) if wish is not None else None
+            review = self.operator.check(program, self.language, continues, at)
             edited = translation is None or program != translation.program
             if wish is not None:
                 self.terminal.show_when(wish.when)

@@ -122,6 +122,13 @@ def next_time(rhythm: Rhythm, after: float) -> float | None:
     return next(times(rhythm, after), None)
 
 
+def next_begin(rhythm: Rhythm | None, after: float) -> datetime | None:
+    """The same by the clocks there: what a dry run as of its next time begins at. None for never,
+    and for what no clock begins."""
+    due = next_time(rhythm, after) if rhythm is not None else None
+    return local(due, rhythm.zone) if rhythm is not None and due is not None else None
+
+
 def times(rhythm: Rhythm, after: float | None = None) -> Iterator[float]:
     """The moments at which it is done, in seconds since the epoch, in order, each once; those after
     a moment, or all."""

@@ -29,7 +29,7 @@ from nl2robot.schedule.appointments import (
 )
 from nl2robot.schedule.book import Book
 from nl2robot.schedule.findings import encoded, findings_of
-from nl2robot.schedule.rhythm import Rhythm, checked, local, next_time, times
+from nl2robot.schedule.rhythm import Rhythm, checked, local, next_begin, next_time, times
 from nl2robot.schedule.telling import outcome, told, when
 from nl2robot.schedule.triggers import Trigger
 from nl2robot.schedule.triggers import checked as checked_trigger
@@ -63,6 +63,9 @@ class Listed(msgspec.Struct, frozen=True, kw_only=True):
     """In words: "every weekday at 08:00"."""
     next: tuple[float, ...]
     """When it is done next, as far as it is approved and not paused; seconds since the epoch."""
+    due: float | None
+    """When its next time is, whether it is done then or not: a review for an approval anew is made
+    as of then (`program.check` with `at`). None if there is none, or an event begins it."""
     off: tuple[float, ...]
     """The times to come that were called off."""
     state: str
@@ -307,9 +310,7 @@ class Schedule:
             raise AccessDenied(
                 "The program was changed after its review. Review it again, then approve it."
             )
-        due = next_time(rhythm, self.clock()) if rhythm is not None else None
-        at = local(due, rhythm.zone) if rhythm is not None and due is not None else None
-        review = self._check(program, language, at=at)
+        review = self._check(program, language, at=next_begin(rhythm, self.clock()))
         errors = [each for each in review.findings if each.severity == "error"]
         if errors:
             raise AccessDenied(
@@ -355,6 +356,7 @@ class Schedule:
             appointment=kept,
             when=when(kept, language),
             next=tuple(coming),
+            due=next_time(kept.rhythm, now) if kept.rhythm is not None else None,
             off=tuple(off),
             state=latest[0].state if latest else "",
         )

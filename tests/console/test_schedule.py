@@ -195,7 +195,7 @@ def test_what_waits_for_an_approval_is_read_and_approved_anew(
     number = ward.add(
         "go to ward a and talk",
         "FREQ=DAILY",
-        "2026-11-30T08:00",
+        "2026-11-30T03:00",
         program=long,
         until=ward.now + 3600,
     )
@@ -209,6 +209,7 @@ def test_what_waits_for_an_approval_is_read_and_approved_anew(
     approve = it.get_by_role("button", name="Approve anew")
     expect(approve).to_be_disabled()
     expect(it.locator(".outlook")).to_be_visible()
+    expect(it).to_contain_text("at night")  # at noon it is approved for three
     expect(it).to_contain_text("Read to the end, then you can approve it.")
     picture(page, "schedule-approval")
     it.locator(".code li").last.scroll_into_view_if_needed()

@@ -124,6 +124,15 @@ def test_an_appointment_is_approved_anew(home: Path, capsys: pytest.CaptureFixtu
     assert schedule("approve", "2", "--yes", "--world", "ward") == ExitStatus.BAD_INPUT
 
 
+def test_it_is_reviewed_as_it_would_go_at_its_time(capsys: pytest.CaptureFixture[str]) -> None:
+    """Who approves a round at three sees that it would talk at night, whenever they approve it."""
+    at_three = ("add", "go to ward a and say good morning", "--at", "03:00", "--every", "day")
+    assert schedule(*at_three, "--world", "ward", "--yes") == ExitStatus.OK
+    assert "It speaks at 03:00, at night" in capsys.readouterr().out
+    assert schedule("approve", "1", "--yes", "--world", "ward") == ExitStatus.OK
+    assert "It speaks at 03:00, at night" in capsys.readouterr().out
+
+
 def test_the_book_of_a_server_is_changed_over_the_wire(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -13,7 +13,6 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from datetime import datetime
 from typing import Final, Literal
 
 import msgspec
@@ -30,7 +29,7 @@ from nl2robot.run.going_on import asks_to_go_on
 from nl2robot.run.going_on import texts as going_on_texts
 from nl2robot.run.state import HELD
 from nl2robot.run.trouble import told
-from nl2robot.schedule.rhythm import local, next_time
+from nl2robot.schedule.rhythm import next_begin
 from nl2robot.station.harmless import approver, needs_no_question
 from nl2robot.station.part import Backstage
 from nl2robot.translate.other_language import accepted, declined, language_of, question
@@ -455,7 +454,7 @@ class Dialogue:
     def _review(self, draft: Draft, language: str) -> None:
         self.draft = draft
         self._changed()
-        at = _begins(draft.times) if draft.times is not None else None
+        at = next_begin(draft.times.rhythm, time.time()) if draft.times is not None else None
         review = self._backstage.runner.check(draft.program, language, draft.continues, at)
         if self.draft is draft:
             self.draft = replace(draft, review=review)
@@ -572,12 +571,6 @@ def _changed_by_hand(draft: Draft, program: str, who: str) -> Draft:
     """It needs a new review; the program that was proposed is not forgotten."""
     proposed = draft.program if draft.proposed is None else draft.proposed
     return replace(draft, program=program, review=None, proposed=proposed, changed_by=who)
-
-
-def _begins(times: Scheduled) -> datetime | None:
-    """When it would be done the next time."""
-    due = next_time(times.rhythm, time.time())
-    return local(due, times.rhythm.zone) if due is not None else None
 
 
 def _said(key: str, language: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import time
 from collections.abc import Sequence
 from datetime import datetime
 from typing import Any, Final
@@ -23,7 +24,7 @@ from nl2robot.errors import ExitStatus, UserError
 from nl2robot.plain import visible
 from nl2robot.review.review import Review
 from nl2robot.schedule.appointments import MAKES_UP_AT_MOST, PRIORITIES
-from nl2robot.schedule.rhythm import local
+from nl2robot.schedule.rhythm import local, next_begin
 from nl2robot.schedule.schedule import Came, Listed, Schedule, Told
 from nl2robot.schedule.telling import happening
 from nl2robot.schedule.triggers import WRITTEN, written
@@ -192,7 +193,7 @@ def _approve(options: argparse.Namespace, robot: Chosen, number: int) -> int:
                 f"There is no appointment {number}. `nl2robot schedule` lists those there are."
             )
         kept = known[number].appointment
-        review = operator.check(kept.program, options.lang)
+        review = operator.check(kept.program, options.lang, at=next_begin(kept.rhythm, time.time()))
         terminal.show_when(known[number].when)
         terminal.show_review(review)
         if not (review.acceptable and _agreed(terminal, review, options)):

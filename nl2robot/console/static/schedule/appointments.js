@@ -211,7 +211,7 @@ export class Appointments {
     };
     reviewPanel(this.panel(card), {
       wire: this.wire, words: this.words, language: this.language,
-      appointment, approve: this.operates ? done : null, today: this.today, zone: this.zone,
+      appointment, due: this.known.get(appointment.id).due, approve: this.operates ? done : null, today: this.today, zone: this.zone,
     });
   }
 

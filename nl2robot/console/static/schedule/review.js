@@ -7,8 +7,8 @@ import {dayAfter, endOf} from '/static/schedule/days.js';
 const HOLDS = 30; // days
 const BAR = 76; // pixels of the header, which lies over the page
 
-/** `approve(sha256, until, insists)`; null for who only looks on. */
-export async function reviewPanel(panel, {wire, words, language, appointment, approve, today, zone}) {
+/** `approve(sha256, until, insists)`; null for who only looks on. It is reviewed as it would go when it is `due` (seconds since the epoch). */
+export async function reviewPanel(panel, {wire, words, language, appointment, due, approve, today, zone}) {
   const program = element('ol', {class: 'code'}, ...appointment.program.trimEnd().split('\n').map((line) => element('li', {}, element('code', {}, line || ' '))));
   const heading = element('h4', {}, words.program);
   if (!approve) return panel.replaceChildren(heading, program);
@@ -16,7 +16,7 @@ export async function reviewPanel(panel, {wire, words, language, appointment, ap
   panel.replaceChildren(status, heading, program);
   let found;
   try {
-    found = await wire.request('desk.check', {program: appointment.program, language});
+    found = await wire.request('desk.check', {program: appointment.program, language, ...(due && {at: new Date(1000 * due).toISOString()})});
   } catch (error) {
     return (status.textContent = error.message);
   }
