@@ -88,6 +88,8 @@ def test_a_routine_is_run_by_touch_and_only_after_approval(
         shelf.get_by_role("button", name="Approve and run").click()
         expect(shelf.locator("#run-panel .chip[role=status]")).to_be_visible()
         robot.stop()
+        # a stop ends whatever is asked meanwhile, such as what is known
+        expect(shelf.locator("#run-panel .chip[role=status]")).to_have_text("Stopped")
     assert known(served)["evening round"]["runs"] == 1
 
 
