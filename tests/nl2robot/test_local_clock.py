@@ -7,6 +7,7 @@ from zoneinfo import ZoneInfo
 
 import pytest
 
+from nl2robot.errors import UserError
 from nl2robot.station import local_clock
 from nl2robot.station.local_clock import beginning_of, moment_in
 from sim.world.model import Clock, World
@@ -45,5 +46,5 @@ def test_a_moment_is_by_the_clocks_of_the_house_unless_it_says_by_which() -> Non
     zurich = world(zone="Europe/Zurich")
     assert moment_in(zurich, "2026-12-24T06:00").tzinfo == ZoneInfo("Europe/Zurich")
     assert moment_in(zurich, "2026-12-24T06:00+00:00").utcoffset() == UTC.utcoffset(None)
-    with pytest.raises(ValueError):
+    with pytest.raises(UserError, match="no date and time"):
         moment_in(zurich, "tomorrow")
