@@ -7,6 +7,7 @@ import queue
 import shutil
 import socket
 import subprocess
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -43,10 +44,15 @@ class House:
             [MOSQUITTO, "-c", self._settings], stderr=subprocess.PIPE, text=True
         )
         assert self._broker.stderr is not None
-        for line in self._broker.stderr:
-            if "running" in line:
+        assert any("running" in line for line in self._broker.stderr), "the broker does not come"
+        # Some versions say so before they listen.
+        ends = time.monotonic() + SOON
+        while True:
+            try:
+                socket.create_connection(("127.0.0.1", self.port), timeout=SOON).close()
                 return
-        raise AssertionError("the broker does not come")
+            except ConnectionRefusedError:
+                assert time.monotonic() < ends, "the broker does not listen"
 
     def goes(self) -> None:
         if self._broker is not None:
