@@ -130,6 +130,8 @@ class Answers:
     """The command that told somebody something, or asked, last."""
     request: Any = None
     """What somebody was asked to do last (`grammar.meanings.requested.Request`)."""
+    reminded: Any = None
+    """Who was reminded last (`grammar.meanings.reminded.Reminded`), if the last message did that."""
     undelivered: Any = None
     """That of somebody who is not there, and what was known then (`grammar.meanings.absences`)."""
     instead_of: str | None = None

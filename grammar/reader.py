@@ -24,6 +24,7 @@ from grammar.freetext import Doubt, doubtful, words_for
 from grammar.language import Language, speech
 from grammar.lexicon import Lexicon
 from grammar.meanings.offers import with_offers_kept
+from grammar.meanings.reminders import reminding
 from grammar.memory import Command, Deliveries, People, Scene
 from grammar.names import Names
 from grammar.naming import joined_up, naming, place_called
@@ -149,6 +150,7 @@ class SentenceReader:
             return self._doubted(doubt)
         plan = without_unused(plan)  # what came to nothing is lost, too
         plan = by_the_clock(charging_last(returning(with_numbers(in_company(plan)))))
+        plan = reminding(plan, discourse)
         resolved = discourse.command.resolved
         lost = left_out(tree, self.tokens, plan, self.language, self.lexicon, resolved)
         lost += unspoken(tree, self.tokens, plan, self.language, resolved)

@@ -56,6 +56,7 @@ import grammar.meanings.quantifiers
 import grammar.meanings.questions
 import grammar.meanings.references
 import grammar.meanings.remarks
+import grammar.meanings.reminders
 import grammar.meanings.repeating
 import grammar.meanings.requests
 import grammar.meanings.rounds

@@ -10,6 +10,7 @@ from grammar.meanings.persons import guest_for
 from grammar.meanings.questions import turn_to_you
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning
+from grammar.meanings.reminded import note_reminder
 from grammar.meanings.requested import Request
 from grammar.plan import Call, Text
 from grammar.wordorder import asked_of_you
@@ -52,6 +53,7 @@ def ask_to(d: Discourse, node: Node) -> Steps:
     request = d.sentence(str(node.production.fixed.get("phrase", "please_do")), what=what)
     saying = Call("say", {"text": request})
     steps = speak_to(d, person, [saying])
+    note_reminder(d, node, person, "fact" if "phrase" in node.production.fixed else "deed")
     if "phrase" not in node.production.fixed and isinstance(words, Text):
         d.answers.request = Request(saying, words.value, person)
     return steps

@@ -23,6 +23,7 @@ from grammar.meanings.persons import guest_for, is_me, person_me
 from grammar.meanings.questions import turn_to_you
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning
+from grammar.meanings.reminded import note_reminder
 from grammar.meanings.rooms import in_words, room_spoken_of
 from grammar.meanings.speaking import put_for, sentence_form
 from grammar.meanings.verb_forms import base_form
@@ -53,6 +54,7 @@ def say_that(d: Discourse, node: Node) -> Steps:
     d.answers.message = node
     if node.production.fixed.get("to_me"):
         person = person_me(d, node)
+    note_reminder(d, node, person, "fact")
     if isinstance(part, Leaf) and part.slot == "quote":
         text = str(part.value)
     elif node.production.fixed.get("to_you"):
@@ -382,6 +384,7 @@ def remind(d: Discourse, node: Node) -> Steps:
     person: Thing | None = d.get(node, "person_ref")
     part = node.parts["text"]
     phrase = str(node.production.fixed.get("phrase", "reminder"))
+    note_reminder(d, node, person, "thing" if phrase == "reminder" else "fact")
     if is_me(person):
         what = put_for(d, "of_speaker", d.words(part.start, part.end))
     elif phrase == "only":  # "remind her at noon that she has a visitor"
