@@ -1,7 +1,7 @@
 """Reminders to people: "remind Alice to drink at ten and at four".
 
-Who is reminded is asked afterwards whether it is done (or understood, of what is no deed), once more
-if nobody answers. The answer is kept under a name by which it is known everywhere (`ANSWER`).
+Who is reminded is asked afterwards whether it is done (or understood, of what is no deed), once
+more if nobody answers. The answer is kept under a name by which it is known everywhere (`ANSWER`).
 Reminders among other errands ("and remind her to call me") are messages as any other.
 """
 
@@ -39,7 +39,7 @@ from grammar.plan import (
     Value,
 )
 from grammar.requests import Request
-from grammar.traversal import nodes, rebuilt
+from grammar.traversal import nodes
 
 ANSWER: Final = "reminder_done"
 """The variable with the answer: by it a program that reminds somebody is known."""

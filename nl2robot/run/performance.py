@@ -389,7 +389,8 @@ class Performance:
             if self._odometer is not None:
                 self._broken_movement = number, self._odometer
                 made = _on_paper(self._odometer.made)
-            self._logged(log.call_ends, number, seconds, error=told, made=made)
+            here = {"made": made, "place": self._place}
+            self._logged(log.call_ends, number, seconds, error=told, **here)
             self._tell("result", **about, error=told, seconds=seconds)
             if broken_off:
                 raise _BrokenOff from None
@@ -397,13 +398,19 @@ class Performance:
         seconds = time.perf_counter() - began
         told = msgspec.json.encode(result).decode()
         self._letters += len(told)
-        self._logged(log.call_ends, number, seconds, result=told)
+        place = self._place
+        self._logged(log.call_ends, number, seconds, result=told, place=place)
         self._tell("result", **about, result=msgspec.to_builtins(result), seconds=seconds)
-        place = self._pose.get("place") if self._pose is not None else None
         self._means.sightings.note(method, arguments, result, place)
         if method == "stop":
             raise Stopped  # whoever stops the robot, its program is over
         return result
+
+    @property
+    def _place(self) -> str | None:
+        """Where the robot is, by the name of the place; None if that has none, or nobody knows."""
+        place = self._pose.get("place") if self._pose is not None else None
+        return place if isinstance(place, str) else None
 
     def _note_made(self, here: Mapping[str, Any] | None) -> Made | None:
         """How much of the movement that was broken off last is made, now that the robot stands

@@ -62,6 +62,7 @@ CREATE TABLE IF NOT EXISTS calls (
     result TEXT,                     -- JSON
     error TEXT,                      -- the error's name and sentence
     made TEXT,                       -- JSON: metres and degrees of a movement that was broken off
+    place TEXT,                      -- where the robot was when it came back, by the place's name
     PRIMARY KEY (run, number)
 );
 CREATE TABLE IF NOT EXISTS output (
@@ -87,7 +88,7 @@ CREATE TABLE IF NOT EXISTS movements (
 );
 """
 
-_VERSION = 9
+_VERSION = 10
 _ADDED = {
     "runs": {
         "start": "TEXT",
@@ -97,7 +98,7 @@ _ADDED = {
         "changed_by": "TEXT",
         "stood": "TEXT",
     },
-    "calls": {"made": "TEXT"},
+    "calls": {"made": "TEXT", "place": "TEXT"},
 }
 """Columns that a log of an older version has not got, by their tables."""
 
@@ -158,6 +159,7 @@ class LoggedCall(msgspec.Struct, frozen=True, kw_only=True):
     result: str | None
     error: str | None
     made: str | None = None
+    place: str | None = None
 
 
 class DoneByHand(msgspec.Struct, frozen=True, kw_only=True):
@@ -266,11 +268,12 @@ class RunLog:
         result: str | None = None,
         error: str | None = None,
         made: str | None = None,
+        place: str | None = None,
     ) -> None:
         self._write(
-            "UPDATE calls SET seconds = ?, result = ?, error = ?, made = ?"
+            "UPDATE calls SET seconds = ?, result = ?, error = ?, made = ?, place = ?"
             " WHERE run = ? AND number = ?",
-            *(seconds, result, error, made, run, number),
+            *(seconds, result, error, made, place, run, number),
         )
 
     def made(self, run: int, number: int, made: str) -> None:
@@ -358,6 +361,15 @@ class RunLog:
         rows = self._read(f"SELECT {_COLUMNS} FROM runs ORDER BY id DESC LIMIT ?", last)
         return [Run(**row) for row in rows]
 
+    def runs_with(self, name: str, since: float, last: int) -> list[Run]:
+        """The newest runs since a moment whose program has this name in it, newest first."""
+        rows = self._read(
+            f"SELECT {_COLUMNS} FROM runs WHERE started >= ? AND instr(program, ?) > 0"
+            " ORDER BY id DESC LIMIT ?",
+            *(since, name, last),
+        )
+        return [Run(**row) for row in rows]
+
     def done_by_hand(self, last: int = 20) -> list[DoneByHand]:
         """What was done last without a program, the newest first."""
         rows = self._read("SELECT * FROM by_hand ORDER BY rowid DESC LIMIT ?", last)
@@ -376,7 +388,7 @@ class RunLog:
 
     def calls(self, run: int) -> list[LoggedCall]:
         rows = self._read(
-            "SELECT number, line, method, arguments, started, seconds, result, error, made"
+            "SELECT number, line, method, arguments, started, seconds, result, error, made, place"
             " FROM calls WHERE run = ? ORDER BY number",
             run,
         )

@@ -29,7 +29,16 @@ NoticeKind = Literal[
     "refused",
     "failed",
     "broken_off",
+    "reminder_no",
+    "reminder_unclear",
+    "reminder_silent",
+    "reminder_away",
+    "reminder_gone",
 ]
+"""Those of a reminder tell what somebody has to see to; that it is done is only kept in the record
+(`nl2robot.schedule.reminders`)."""
+NONE: Final = 0
+"""The number of the appointment of what somebody had done at once."""
 
 DAY: Final = 24 * 3600.0
 HOLDS: Final = 30 * DAY
@@ -109,6 +118,7 @@ class Notice(msgspec.Struct, frozen=True, kw_only=True):
     time: float
     kind: NoticeKind
     appointment: int
+    """`NONE` if it is about a run without one; `parts` then has the "robot"."""
     occurrence: int | None
     parts: dict[str, Any]
     """What the sentence is about: see `nl2robot/data/schedules.yaml`, "notices"."""

@@ -341,6 +341,18 @@ class Book:
         )
         return {row["run"] for row in rows}
 
+    def has_run(self, run: int) -> bool:
+        """Whether a run of the log is one of an appointment."""
+        return bool(self._read("SELECT 1 FROM occurrences WHERE run = ? LIMIT 1", run))
+
+    def since(self, moment: float, last: int) -> list[Occurrence]:
+        """The newest of the times from a moment on, the newest first."""
+        rows = self._read(
+            "SELECT * FROM occurrences WHERE due >= ? ORDER BY due DESC, id DESC LIMIT ?",
+            *(moment, last),
+        )
+        return [Occurrence(**row) for row in rows]
+
     def call_back(self, appointment: int, due: float) -> bool:
         """Have a time to come done after all that was called off; False if it was not."""
         cursor = self._write(

@@ -22,14 +22,23 @@ from __future__ import annotations
 
 import itertools
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Final, Literal
 
 import msgspec
 
-from nl2robot.schedule.appointments import DAY, Appointment, Notice, NoticeKind, Occurrence, Why
+from nl2robot.schedule.appointments import (
+    DAY,
+    NONE,
+    Appointment,
+    Notice,
+    NoticeKind,
+    Occurrence,
+    Why,
+)
 from nl2robot.schedule.book import Book
 from nl2robot.schedule.findings import News
+from nl2robot.schedule.outcomes import ACTED_ON, Outcome, Result, worst
 from nl2robot.schedule.quiet import QuietHours
 from nl2robot.schedule.rhythm import next_time, times
 
@@ -45,6 +54,15 @@ gives it longer."""
 MISSED_AT_ONCE: Final = 50
 """Times of an appointment that were missed in one go and are in the book one by one; of more only
 the latest are, and how many there were."""
+
+
+_REMINDER_KINDS: Final[Mapping[Result, NoticeKind]] = {
+    "no": "reminder_no",
+    "unclear": "reminder_unclear",
+    "silent": "reminder_silent",
+    "away": "reminder_away",
+    "gone": "reminder_gone",
+}
 
 
 class Settings(msgspec.Struct, frozen=True, kw_only=True):
@@ -124,17 +142,31 @@ class Clerk:
         appointment: Appointment,
         status: str | None,
         message: str | None,
+        reminded: Sequence[Outcome] = (),
     ) -> None:
         """Its run is over: `status` and `message` as the run log has them; None for a run, or a
-        beginning, that was broken off with its process."""
+        beginning, that was broken off with its process. `reminded`: what came of it, if it
+        reminded somebody."""
         with self._book.at_once():
+            result = worst(reminded)
             if status == "done":
-                self._book.end(occurrence.id, "done")
+                note = f"reminder_{result}" if result is not None else None
+                if self._book.end(occurrence.id, "done", note):
+                    self._tell_reminders(reminded, appointment, occurrence)
             elif status is None:
                 if self._book.end(occurrence.id, "failed", "broken_off"):
                     self._tell("broken_off", appointment, occurrence, run=occurrence.run)
+                    self._tell_reminders(reminded, appointment, occurrence)
             elif self._book.end(occurrence.id, "failed", message or status):
                 self._tell("failed", appointment, occurrence, status=status, because=message)
+                self._tell_reminders(reminded, appointment, occurrence)
+
+    def reminded(self, run: int, began: float, sentence: str, found: Sequence[Outcome]) -> None:
+        """What came of a reminder that somebody had said at once."""
+        about = {"sentence": sentence, "due": began, "run": run, "robot": self._robot}
+        with self._book.at_once():
+            for kind, parts in _to_act_on(found):
+                self._book.tell(kind, NONE, None, {**about, **parts})
 
     # --- what was told
 
@@ -270,6 +302,12 @@ class Clerk:
             if self._book.end(occurrence.id, "missed", why):
                 self._tell(kind, appointment, occurrence, why=why)
 
+    def _tell_reminders(
+        self, found: Sequence[Outcome], appointment: Appointment, occurrence: Occurrence
+    ) -> None:
+        for kind, parts in _to_act_on(found):
+            self._tell(kind, appointment, occurrence, run=occurrence.run, **parts)
+
     def _wait(self, occurrence: Occurrence, appointment: Appointment, why: Waits) -> None:
         """Note what it waits for, and tell it the first time."""
         if occurrence.waited_for == why:
@@ -294,3 +332,11 @@ class Clerk:
         self._book.tell(
             kind, appointment.id, occurrence.id if occurrence else None, {**known, **parts}
         )
+
+
+def _to_act_on(found: Sequence[Outcome]) -> Iterator[tuple[NoticeKind, dict[str, object]]]:
+    """What of a reminder somebody has to see to, and what the notice is about."""
+    for each in found:
+        if each.result in ACTED_ON:
+            about = {"person": each.person, "what": each.what, "question": each.question}
+            yield _REMINDER_KINDS[each.result], about

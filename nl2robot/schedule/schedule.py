@@ -21,6 +21,7 @@ from nl2robot.schedule.appointments import (
     DAY,
     HOLDS,
     MAKES_UP_AT_MOST,
+    NONE,
     ORDINARY,
     PRIORITIES,
     Appointment,
@@ -119,6 +120,10 @@ class Schedule:
         if self._book is None and self._file is not None and self._file.exists():
             self._open()
         return self._book
+
+    def opened(self) -> Book:
+        """The book, made if there is none yet. Raises `BookError`."""
+        return self._open()
 
     def close(self) -> None:
         with self._lock:
@@ -283,10 +288,14 @@ class Schedule:
         return [
             Told(notice=each, told=told(each, language, zone))
             for each in book.notices(after, last)
-            if each.appointment in known
+            if each.appointment in known or self._is_mine(each)
         ]
 
     # --- inside
+
+    def _is_mine(self, notice: Notice) -> bool:
+        """Whether it is about a run of this robot without an appointment."""
+        return notice.appointment == NONE and self.robot in (None, notice.parts.get("robot"))
 
     def _open(self) -> Book:
         with self._lock:

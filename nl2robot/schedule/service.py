@@ -27,6 +27,7 @@ from nl2robot.schedule.book import Book
 from nl2robot.schedule.clerk import Begin, Clerk, Settings, Waits
 from nl2robot.schedule.findings import decoded, findings_of, news
 from nl2robot.schedule.lookout import Ask, Lookout
+from nl2robot.schedule.outcomes import Outcome, asking_of, outcomes
 from nl2robot.schedule.schedule import FILE, Schedule
 from nl2robot.schedule.telling import told
 from nl2robot.schedule.triggers import Trigger, checked, possible
@@ -48,8 +49,10 @@ EVENTS: Final[Mapping[str, str]] = {
     "schedule": "open (what waits, begins or runs now, as schedule.history tells it): something in"
     " the book of appointments has changed; schedule.list tells all of it",
     "notice": "id, time, kind (missed | missed_many | overtaken | waits | ended | changed | refused"
-    " | failed | broken_off | trouble), appointment, occurrence, parts, told (the sentence by"
-    " language): what somebody has to know of an appointment who was not looking",
+    " | failed | broken_off | reminder_no | reminder_unclear | reminder_silent | reminder_away |"
+    " reminder_gone | trouble), appointment (0: of a reminder that somebody had said at once),"
+    " occurrence, parts, told (the sentence by language): what somebody has to know who was not"
+    " looking",
 }
 
 _log = logging.getLogger(__name__)
@@ -117,6 +120,8 @@ class Timekeeper:
         self._version: object = None
         self._trouble = ""
         self._forgot: float | None = None
+        self._last_run: int | None = None
+        """The run that was looked at when it had ended."""
 
     def __enter__(self) -> Timekeeper:
         self._thread.start()
@@ -140,12 +145,16 @@ class Timekeeper:
 
     def look(self) -> None:
         """Look once: tell what came of what was begun, and begin what is due."""
-        book = self._schedule.book()
+        reminded = self._ended_at_once()
+        book = self._schedule.book() if reminded is None else self._schedule.opened()
         robot = self._schedule.robot
         if book is None or robot is None:
             return
         if self._clerk is None:
             self._clerk = Clerk(book, robot, self._timing.settings)
+        if reminded is not None and not book.has_run(reminded[0].id):
+            run, found = reminded
+            self._clerk.reminded(run.id, run.started, run.utterance or "", found)
         for occurrence, appointment in book.begun(robot):
             self._follow(self._clerk, book, occurrence, appointment)
         free, charging = self._waits() is None, self._runner.present.state.charging
@@ -223,14 +232,31 @@ class Timekeeper:
             clerk.runs(occurrence, run.id)
             occurrence = msgspec.structs.replace(occurrence, run=run.id)
         if run is not None and run.status is not None:
-            clerk.ended(occurrence, appointment, run.status, run.message)
+            came = self._reminded(run)
+            clerk.ended(occurrence, appointment, run.status, run.message, came)
             return
         present = self._runner.state()
         if mine and run is not None and present is not None and present.run == run.id:
             if present.state not in GOING:  # its end could not be logged
                 clerk.ended(occurrence, appointment, present.state, present.message)
             return
-        clerk.ended(occurrence, appointment, None, None)
+        clerk.ended(occurrence, appointment, None, None, self._reminded(run))
+
+    def _reminded(self, run: Run | None) -> list[Outcome]:
+        """What came of it, if that run reminded somebody."""
+        if run is None or asking_of(run.program) is None:
+            return []
+        return outcomes(run.program, self._runner.log.calls(run.id))
+
+    def _ended_at_once(self) -> tuple[Run, list[Outcome]] | None:
+        """The run that has just ended and reminded somebody, told once; an appointment's too."""
+        present = self._runner.state()
+        if present is None or present.state in GOING or present.run == self._last_run:
+            return None
+        self._last_run = present.run
+        run = self._runner.log.run(present.run) if present.run is not None else None
+        found = self._reminded(run)
+        return (run, found) if run is not None and found else None
 
     def _run_of(self, book: Book, occurrence: Occurrence, appointment: Appointment) -> Run | None:
         """Its run in the log; also of a process that ended before it could note which that is."""

@@ -33,6 +33,8 @@ def told(notice: Notice, language: str = "en", zone: str = _UTC) -> str:
             for each in parts["news"]
         )
         parts["news"] = " ".join(each.strip() for each in found)
+    if not parts.get("person", "somebody"):
+        parts["person"] = texts["reminders"]["somebody"]
     if "because" in parts:
         because = parts["because"] or texts["notes"].get(parts.get("status"), "")
         parts["because"] = _ended(_sentence(because, language))

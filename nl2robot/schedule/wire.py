@@ -9,7 +9,9 @@ from typing import Any, Final, Protocol, get_args
 import msgspec
 
 from nl2robot.errors import UserError
+from nl2robot.run.runlog import RunLog
 from nl2robot.schedule.appointments import MAKES_UP_AT_MOST, PRIORITIES, Appointment
+from nl2robot.schedule.reminders import Reminder, reminders
 from nl2robot.schedule.rhythm import LONGEST_RULE, BadRhythm, Rhythm
 from nl2robot.schedule.schedule import Came, Listed, Schedule, Told
 from nl2robot.schedule.triggers import LONGEST, SHORTEST, Trigger, What
@@ -62,8 +64,10 @@ class Face(Protocol):
     def note(self, kind: str, data: Mapping[str, Any]) -> None: ...
 
 
-def schedule_services(schedule: Schedule, face: Face | None = None) -> dict[str, Service]:
-    """The methods to register with a `robot_api.server.Server`."""
+def schedule_services(
+    schedule: Schedule, face: Face | None = None, log: RunLog | None = None
+) -> dict[str, Service]:
+    """The methods to register with a `robot_api.server.Server`; `log` is for the reminders."""
 
     def pressed(p: Mapping[str, Any]) -> None:
         if face is None or p["button"] not in face.buttons:
@@ -204,6 +208,19 @@ def schedule_services(schedule: Schedule, face: Face | None = None) -> dict[str,
             {"date": _DATE, "language": _LANGUAGE},
             observes=True,
             result=Week,
+        ),
+        "schedule.reminders": service(
+            lambda p: reminders(
+                schedule, log, p.get("since", 0.0), p.get("language", "en"), p.get("last", 100)
+            ),
+            "List the latest reminders, or those since a moment (seconds since the epoch), the"
+            " newest first: when each was due and said, to whom, where, and what came of it"
+            " (yes, no, unclear, silent, away: not found, gone: not there any more when asked,"
+            " broken_off, or what became of a time at which it was not said). A program reminds"
+            " somebody if it keeps the answer to a question of its own as `reminder_done`.",
+            {"since": {"type": "number"}, "last": _LAST, "language": _LANGUAGE},
+            observes=True,
+            result=list[Reminder],
         ),
         "schedule.notices": service(
             lambda p: schedule.notices(

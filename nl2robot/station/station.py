@@ -455,7 +455,7 @@ def _open(
         token=token,
         services={
             **services(runner, talks, microphones, schedule),
-            **schedule_services(schedule, keeper),
+            **schedule_services(schedule, keeper, runner.log),
             **attention.services(),
             **(added.services if added else {}),
         },

@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 
 ANSWER_TIMEOUT = 10.0
 """Seconds that somebody has to begin an answer."""
+NOT_UNDERSTOOD = "Nobody gave an answer that I understood. Ask again when somebody is there."
+"""Somebody spoke, and it was none of the answers that count."""
+NOT_ANSWERED = "Nobody answered my question. Ask again when somebody is there."
 _TRIES = 2
 _YES_NO = ["yes", "no"]
 
@@ -96,11 +99,12 @@ class Hearing(Capability):
     ) -> str:
         if person is not None and not self.is_here(person):
             raise NotFound(f"I do not see {person} here. Let me look for {person} first.")
-        misheard = False
+        misheard = spoken = False
         for attempt in range(_TRIES):
             again = language_data(self.language).again
             said = f"{again} {question}" if misheard else question
             heard = self._answered(stop, said, ANSWER_TIMEOUT, question, options, person)
+            spoken = spoken or heard is not None
             if isinstance(heard, Unsure) and options and heard.perhaps in options:
                 if self._confirmed(stop, heard.perhaps, person):
                     return heard.perhaps
@@ -115,14 +119,14 @@ class Hearing(Capability):
             if answer is not None:
                 return answer
             misheard = attempt == 0
-        if not options or self._screen is None or not self._screen.touchable:
-            raise TimedOut(
-                "Nobody gave an answer that I understood. Ask again when somebody is there."
-                if options
-                else "Nobody answered my question. Ask again when somebody is there."
-            )
-        choose = language_data(self.language).choose
-        return self._screen.touch(stop, options, f"{question} {choose}")
+        if options and self._screen is not None and self._screen.touchable:
+            choose = language_data(self.language).choose
+            try:
+                return self._screen.touch(stop, options, f"{question} {choose}")
+            except TimedOut:
+                if not spoken:
+                    raise
+        raise TimedOut(NOT_UNDERSTOOD if spoken else NOT_ANSWERED)
 
     def _chosen(self, words: str, options: Sequence[str]) -> str | None:
         """The option that is meant, by its own words or by those that the tablet has for it."""

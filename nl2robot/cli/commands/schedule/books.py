@@ -7,18 +7,23 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from datetime import date, datetime
-from typing import Any, TypeVar
+from typing import Any, Final, TypeVar
 
 import msgspec
 
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.paths import data_folder
 from nl2robot.review.review import Review
+from nl2robot.run.runlog import RunLog
 from nl2robot.schedule.appointments import Appointment
+from nl2robot.schedule.reminders import Reminder, reminders
 from nl2robot.schedule.schedule import FILE, Came, Listed, Schedule, Told
 from nl2robot.station.robots import Chosen
 from robot_api.client import Robot
 from robot_api.errors import AccessDenied, NotTrusted
+
+RUNS: Final = "runs.sqlite"
+"""The run log's name, beside the book."""
 
 T = TypeVar("T")
 
@@ -38,6 +43,9 @@ class Distant:
 
     def notices(self, after: int, last: int, language: str) -> list[Told]:
         return self._ask("notices", list[Told], after=after, last=last, language=language)
+
+    def reminders(self, since: float, last: int, language: str) -> list[Reminder]:
+        return self._ask("reminders", list[Reminder], since=since, last=last, language=language)
 
     def pause(self, number: int, paused: bool = True) -> Appointment:
         return self._ask("pause" if paused else "resume", Appointment, id=number)
@@ -74,6 +82,21 @@ def book_of(options: argparse.Namespace, robot: Chosen) -> Iterator[Schedule | D
         raise UserError(f"{error} Give the token with --token.", ExitStatus.NO_ROBOT) from error
     with client:
         yield Distant(client)
+
+
+def reminders_in(
+    book: Schedule | Distant, since: float, last: int, language: str
+) -> list[Reminder]:
+    """The record of reminders, of this computer's book and run log or of a server's."""
+    if isinstance(book, Distant):
+        return book.reminders(since, last, language)
+    path = data_folder() / RUNS
+    log = RunLog(path) if path.exists() else None
+    try:
+        return reminders(book, log, since, language, last)
+    finally:
+        if log is not None:
+            log.close()
 
 
 def _no_review(program: str, language: str = "en", *, at: datetime | None = None) -> Review:

@@ -13,6 +13,7 @@ import msgspec
 
 from nl2robot.cli.commands.run import open_session
 from nl2robot.cli.commands.schedule.books import Distant, book_of
+from nl2robot.cli.commands.schedule.record import show_reminders
 from nl2robot.cli.commands.schedule.times import DAYS, day_of, end_of, rhythm_of_options
 from nl2robot.cli.operator import Wish
 from nl2robot.cli.options.robot import add_robot, robot_of
@@ -33,7 +34,18 @@ from nl2robot.station.robots import Chosen
 from robot_api.local_time import local_zone
 
 ACTIONS: Final = (
-    *("list", "add", "approve", "pause", "resume", "remove", "skip", "history", "notices"),
+    *(
+        "list",
+        "add",
+        "approve",
+        "pause",
+        "resume",
+        "remove",
+        "skip",
+        "history",
+        "notices",
+        "reminders",
+    ),
 )
 OF_ONE: Final = ("approve", "pause", "resume", "remove", "skip")
 EXAMPLE: Final = 'nl2robot schedule add "every weekday at eight" "go to the lobby"'
@@ -85,6 +97,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--last", type=whole(1, 1000), default=20, metavar="N", help="how many (default: 20)"
     )
+    record = parser.add_argument_group("reminders")
+    record.add_argument("--since", metavar="DATE", help="from this day on, all of them")
+    record.add_argument(
+        "--csv", metavar="FILE", help="write them into this file for a spreadsheet; - prints them"
+    )
     parser.add_argument("--json", action="store_true", help="one JSON object a line")
     add_robot(parser)
     add_language(parser)
@@ -109,6 +126,8 @@ def run(options: argparse.Namespace) -> int:
                 _show_history(terminal, book.history(number, options.last, options.lang), options)
             case "notices":
                 _show_notices(terminal, book.notices(0, options.last, options.lang), options)
+            case "reminders":
+                show_reminders(terminal, book, options)
             case "skip":
                 assert number is not None
                 _skip(terminal, book, number, options)
