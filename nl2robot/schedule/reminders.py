@@ -96,9 +96,11 @@ class _Record:
             return
         run = self.log.run(time.run) if self.log is not None and time.run is not None else None
         came = self._came(run) if time.state in OVER else []
+        broken_off = time.state == "failed" and time.run is not None
+        state: Became = "broken_off" if broken_off else time.state
         for each, became, told in [
             *((each, each.result, self.words[each.result]) for each in came),
-            *((each, time.state, outcome(time, self.language)) for each in _meant(asking, came)),
+            *((each, state, outcome(time, self.language)) for each in _meant(asking, came)),
         ]:
             yield Reminder(
                 **_about(each, asking),

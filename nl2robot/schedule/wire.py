@@ -1,4 +1,4 @@
-"""The methods on the wire for appointments: `schedule.list` to `schedule.notices`."""
+"""The methods on the wire for appointments: `schedule.list` to `schedule.reminders`."""
 
 from __future__ import annotations
 

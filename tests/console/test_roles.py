@@ -37,6 +37,7 @@ OBSERVER = {
     *("desk.run", "scene.floor", "zones.list", "zones.history", "places.list", "places.export"),
     *("location.history", "helm.state", "helm.body", "helm.log", "runs.list", "runs.show"),
     *("schedule.list", "schedule.week", "schedule.history", "schedule.notices"),
+    *("schedule.reminders",),
     *("routines.list", "routines.show", "routines.export", "station.state"),
     *("program.phrases", "program.wait", "program.state", "program.list"),
     *("program.answer", "program.unfinished"),

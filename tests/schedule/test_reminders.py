@@ -59,7 +59,8 @@ def opened(log: RunLog, clock: Clock, monkeypatch: pytest.MonkeyPatch) -> Opened
 
 
 def reminded(ward: Ward, **more: Any) -> None:
-    ward.add(program(), sentence="remind Alice to drink", rhythm=TEN_AND_FOUR, **more)
+    values = {"sentence": "remind Alice to drink", "rhythm": TEN_AND_FOUR, **more}
+    ward.add(program(), **values)
 
 
 def record(ward: Ward) -> list[dict[str, Any]]:
@@ -241,7 +242,7 @@ def test_the_server_is_killed_in_the_middle(log: RunLog, clock: Clock) -> None:
 def test_on_the_days_when_the_clocks_are_changed(opened: Opened, day: str) -> None:
     with opened(world("yes", "yes")) as ward:
         ward.clock.set(f"{day} 00:30")
-        reminded(ward)
+        reminded(ward, rhythm={**TEN_AND_FOUR, "begins": f"{day}T10:00"})
         ward.clock.set(f"{day} 10:00")
         ward.until(["done"])
         ward.clock.set(f"{day} 16:00")
@@ -259,11 +260,10 @@ def test_nobody_looked_at_ten(opened: Opened) -> None:
         assert row["told"] == "missed: nl2robot was not running"
 
 
-def at_once(ward: Ward, written: str, sentence: str) -> int:
+def at_once(ward: Ward, written: str, sentence: str) -> None:
     given = {"program": written, "sha256": digest(written), "by": "Nurse Kim"}
     approval = ward.robot.request("program.approve", {**given, "utterance": sentence})
-    run: int = ward.robot.request("program.run", {"approval": approval["id"]})["run"]
-    return run
+    ward.robot.request("program.run", {"approval": approval["id"]})
 
 
 def test_one_that_is_said_at_once_is_in_the_record_and_told(opened: Opened) -> None:
