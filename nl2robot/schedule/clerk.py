@@ -338,5 +338,9 @@ def _to_act_on(found: Sequence[Outcome]) -> Iterator[tuple[NoticeKind, dict[str,
     """What of a reminder somebody has to see to, and what the notice is about."""
     for each in found:
         if each.result in ACTED_ON:
-            about = {"person": each.person, "what": each.what, "question": each.question}
+            about: dict[str, object] = {
+                "person": each.person,
+                "what": each.what,
+                "question": each.question,
+            }
             yield _REMINDER_KINDS[each.result], about

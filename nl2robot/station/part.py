@@ -25,6 +25,7 @@ from robot_api.server import Publish, Service
 
 if TYPE_CHECKING:
     from nl2robot.run.runner import Runner
+    from nl2robot.schedule.schedule import Schedule
     from nl2robot.station.entrance import Entrance
     from nl2robot.translate.talks import Talks
     from robot_api.capabilities.camera import Camera
@@ -76,6 +77,8 @@ class Backstage:
     """What the driver of a real robot is sent by, if it is: told of places as people name them."""
     camera: Camera | None = None
     """The robot's, if people may look through it."""
+    schedule: Schedule | None = None
+    """The appointments; None where there are none."""
     links: list[Link] = field(default_factory=list)
     """To the pages that other packages add; complete before the first page is built."""
     _listeners: list[Listener] = field(default_factory=list)

@@ -407,6 +407,7 @@ def _open(
         simulation=simulation,
         entrance=entrance,
         places=places,
+        schedule=schedule,
         camera=driver.camera if isinstance(driver, ComposedDriver) else None,
         publish=publish,
         wanted=lambda kind: server.wanted(kind),

@@ -20,6 +20,11 @@ from tests.schedule.conftest import at
 ZURICH = "Europe/Zurich"
 ROUND = 'robot.goto("ward a")\nrobot.say("Good morning.")\n'
 TEA = 'robot.say("It is time for tea.")\n'
+REMINDER = """\
+if robot.find("=Henry"):
+    robot.say("Please drink.")
+    reminder_done = robot.ask("Have you done it?", ["yes", "no"])
+"""
 STORY = Path(__file__).with_name("scheduled_console.py")
 
 
@@ -377,3 +382,19 @@ def test_the_form_and_the_page_fit_a_phone_in_every_language(
         assert page.evaluate(STICKS_OUT) == []
         assert page.evaluate("document.querySelector('.times-form').scrollWidth") <= 320
     assert nameless(page) == []
+
+
+def test_what_came_of_a_reminder_stands_in_a_table_that_can_be_saved(
+    look: Look, ward: Ward
+) -> None:
+    ward.add("remind somebody to drink", None, "2026-12-02T10:05", program=REMINDER, insists=True)
+    page = schedule(look)
+    ward.clock("2026-12-02T10:05")
+    row = page.locator(".reminders tbody tr", has_text="=Henry")
+    expect(row).to_contain_text("2 Dec, 10:05")
+    expect(row).to_contain_text("answered")
+    with page.expect_download() as saved:
+        page.get_by_role("link", name="Save as CSV").click()
+    text = Path(saved.value.path()).read_text(encoding="utf-8-sig")
+    assert text.startswith("due,said,person,what,") and ",'=Henry,Please drink.," in text
+    assert "2026-12-02T10:05:00+01:00" in text

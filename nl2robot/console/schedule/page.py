@@ -1,16 +1,28 @@
-"""Schedule (`/schedule`): the week of the robot, and its appointments.
+"""Schedule (`/schedule`): the week of the robot, its appointments, and the record of reminders.
 
-All of it is drawn by the page's scripts from the wire (`static/schedule/`): the methods
+    /schedule/reminders.csv    the record for a spreadsheet
+
+All else is drawn by the page's scripts from the wire (`static/schedule/`): the methods
 `schedule.*` are the station's own (`nl2robot.schedule.wire`).
 """
 
 from __future__ import annotations
 
+from datetime import datetime
 from html import escape
 from typing import Final
 
+from starlette.requests import Request
+from starlette.responses import PlainTextResponse, Response
+from starlette.routing import Route
+
 from nl2robot.console.frame import frame
+from nl2robot.console.visitor import visitor_of
+from nl2robot.errors import UserError
+from nl2robot.schedule.reminders import as_csv, reminders
+from nl2robot.sentences import in_language
 from nl2robot.station.part import Backstage, Part
+from robot_api.local_time import local_zone
 
 _HEAD: Final = (
     '<link rel="stylesheet" href="/static/schedule/schedule.css">'
@@ -35,4 +47,21 @@ def part(backstage: Backstage) -> Part:
                     sanitize=False,
                 )
 
-    return Part(pages=pages)
+    def saved(request: Request) -> Response:
+        """In a thread of its own."""
+        if backstage.schedule is None:
+            return PlainTextResponse("There are no appointments here.", 404)
+        language = visitor_of(request).language
+        try:
+            found = reminders(backstage.schedule, backstage.runner.log, language=language)
+        except UserError as error:
+            sentence = in_language(str(error), language) or str(error)
+            return PlainTextResponse(sentence, 503)
+        name = f"reminders-{datetime.now():%Y-%m-%d}.csv"
+        about = {
+            "Content-Disposition": f'attachment; filename="{name}"',
+            "Cache-Control": "no-store",
+        }
+        return Response(as_csv(found, local_zone()), 200, about, "text/csv")
+
+    return Part(pages=pages, routes=[Route("/schedule/reminders.csv", saved)])

@@ -5,6 +5,7 @@ import {notice} from '/static/console.js';
 import {notifies, notify} from '/static/notices.js';
 import {wire} from '/static/wire.js';
 import {Appointments} from '/static/schedule/appointments.js';
+import {Reminders} from '/static/schedule/reminders.js';
 import {showWeek} from '/static/schedule/week.js';
 import {datesIn, dayAfter} from '/static/schedule/days.js';
 
@@ -13,6 +14,7 @@ const LOOKS_EVERY = 60_000;
 
 const root = await appears('#schedule');
 const week = element('section', {class: 'card week', 'aria-labelledby': 'week-title'});
+const record = element('section', {class: 'card reminders', 'aria-labelledby': 'reminders-title', hidden: true});
 const all = element('section', {'aria-labelledby': 'all-title'});
 let day = null; // of the week that is shown; null: this one
 let at = 0;
@@ -67,6 +69,7 @@ async function refresh() {
     const now = JSON.stringify([found, [...appointments.known]]);
     if (now !== drawn) drawWeek();
     drawn = now;
+    await reminders.refresh(found.zone);
     appointments.goToTheOneAsked(); // after the week above has its height
     root.dataset.ready = 'yes';
   } catch (error) {
@@ -89,9 +92,11 @@ function notifying() {
 }
 
 const appointments = new Appointments(all, {wire, words, language, role, who: pageData.who, changed: refresh});
+const reminders = new Reminders(record, {wire, words, language});
 const looksOn = role === 'operator' ? [] : [element('p', {class: 'muted'}, words.looking_on)];
-root.replaceChildren(notifying(), ...looksOn, week, all);
+root.replaceChildren(notifying(), ...looksOn, week, all, record);
 narrow.addEventListener('change', drawWeek);
 wire.subscribe('schedule', refresh);
+wire.subscribe('notice', refresh);
 wire.onChange((connected) => connected && refresh());
 setInterval(() => document.hidden || refresh(), LOOKS_EVERY);
