@@ -3,11 +3,13 @@
 An appointment is approved once and done many times in a world that changes: a zone is drawn, a
 ward is added, a door is locked. Before each time its program is reviewed again, and what is in that
 review and was not in the approved one has to be seen by somebody. Where the robot happens to stand
-then, who walks about and how long it takes is no news, nor is a risk that is gone.
+then, who walks about and how long it takes is no news, nor is a risk that is gone. Who is looked
+for may be anywhere, so a program that looks for somebody is approved for all places at once.
 """
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Iterator
 from typing import Final, Literal
 
@@ -46,6 +48,8 @@ class Findings(msgspec.Struct, frozen=True, kw_only=True):
     """Whether it came to its end."""
     error: str | None
     message: str | None
+    looks_everywhere: bool = False
+    """Whether it looks for somebody, or something, wherever that may be."""
 
 
 def findings_of(review: Review) -> Findings:
@@ -64,6 +68,7 @@ def findings_of(review: Review) -> Findings:
         complete=review.came_through,
         error=dry_run.error if dry_run is not None else None,
         message=dry_run.message if dry_run is not None else None,
+        looks_everywhere=_looks_everywhere(review.program),
     )
 
 
@@ -90,7 +95,8 @@ def _news(approved: Findings, now: Findings) -> Iterator[News]:
     for line, kind, text in now.risks:
         if (line, kind) not in risks:
             yield News("risk", text)
-    for place in now.places:
+    anywhere = approved.looks_everywhere and now.looks_everywhere
+    for place in () if anywhere else now.places:
         if place not in approved.places and place != now.stood:
             yield News("place", place)
     for place in now.closed:
@@ -109,3 +115,21 @@ def _worked_in(dry_run: DryRun) -> Iterator[str]:
             yield place
     if place is not None:
         yield place
+
+
+def _looks_everywhere(program: str) -> bool:
+    """Whether it calls `robot.find` without a place."""
+    try:
+        tree = ast.parse(program)
+    except (SyntaxError, ValueError, RecursionError):
+        return False
+    return any(
+        isinstance(each, ast.Call)
+        and isinstance(each.func, ast.Attribute)
+        and each.func.attr == "find"
+        and isinstance(each.func.value, ast.Name)
+        and each.func.value.id == "robot"
+        and len(each.args) < 2
+        and all(given.arg != "place" for given in each.keywords)
+        for each in ast.walk(tree)
+    )

@@ -214,3 +214,42 @@ def test_times_by_options(at: str | None, every: str | None, told: str) -> None:
 def test_a_day_that_there_is_not_is_no_end() -> None:
     with pytest.raises(UserError, match="no day 2026-13-01"):
         rhythm_of_options("08:00", "day", "2026-13-01", ZURICH, datetime(2026, 11, 30))
+
+
+def test_the_record_of_reminders_is_shown_and_saved(
+    home: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert schedule("reminders") == ExitStatus.OK
+    assert "No reminder has been due yet." in capsys.readouterr().out
+    assert not (home / FILE).exists(), "to look makes nothing"
+    assert main(["run", "-y", "remind Alice to drink", "--world", "ward"]) == ExitStatus.OK
+    capsys.readouterr()
+    assert schedule("reminders") == ExitStatus.OK
+    shown = capsys.readouterr().out
+    assert "Please drink." in shown and "ward a" in shown and "Nurse Kim" in shown
+    assert schedule("reminders", "--json", "--since", "2026-01-01") == ExitStatus.OK
+    [row] = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert (row["person"], row["result"], row["place"]) == ("Alice", "yes", "ward a")
+    file = tmp_path / "reminders.csv"
+    assert schedule("reminders", "--csv", str(file), "--lang", "de") == ExitStatus.OK
+    assert "Erinnerungen: 1." in capsys.readouterr().out
+    head, line = file.read_text(encoding="utf-8-sig").splitlines()
+    assert head.startswith("due,said,person,what,place,result,told")
+    assert ",Alice,Please drink.,ward a,yes,sagte ja," in line
+    assert file.stat().st_mode & 0o077 == 0, "it tells of patients"
+    assert schedule("reminders", "--csv", str(tmp_path)) == ExitStatus.BAD_INPUT
+    assert "cannot be written" in capsys.readouterr().err
+    assert schedule("reminders", "--since", "yesterday") == ExitStatus.BAD_INPUT
+
+
+def test_the_record_of_a_server_comes_over_the_wire(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log = RunLog(tmp_path / "server" / "runs.sqlite")
+    with simulated_station(load_world("ward"), log) as station:
+        there = ("--robot", f"ws://{station.address}")
+        assert main(["run", "-y", "remind Alice to drink", *there]) == ExitStatus.OK
+        capsys.readouterr()
+        assert schedule("reminders", "--csv", "-", *there) == ExitStatus.OK
+        assert ",Alice,Please drink.,ward a,yes," in capsys.readouterr().out
+    log.close()

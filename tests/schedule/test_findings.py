@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from msgspec.structs import replace
 
 from nl2robot.knowledge import Knowledge
 from nl2robot.review.review import review
@@ -16,8 +17,19 @@ from sim.world.model import Zone
 EVERY_WARD = 'for ward in robot.places("ward"):\n    robot.goto(ward)\n    robot.say("Hello!")\n'
 
 
-def found(program: str, *, start: str | None = None, zones: tuple[Zone, ...] = ()) -> Findings:
+def found(
+    program: str,
+    *,
+    start: str | None = None,
+    zones: tuple[Zone, ...] = (),
+    alice: str = "ward a",
+) -> Findings:
     world = load_world("ward")
+    people = tuple(
+        replace(each, at=alice, pose=None) if each.name == "Alice" else each
+        for each in world.people
+    )
+    world = replace(world, people=people)
     simulation = Simulation(world)
     if zones:
         simulation.set_zones(zones)
@@ -61,3 +73,13 @@ def test_a_ward_more_and_another_failure_are_news(change: str) -> None:
 def test_what_is_said_where_it_stands_is_no_other_place() -> None:
     program = 'robot.say("Hello!")\n'
     assert news(found(program), found(program, start="ward b")) == ()
+
+
+def test_whoever_is_looked_for_may_have_gone_on() -> None:
+    looks = 'if robot.find("Alice"):\n    robot.say("Please drink.")\n'
+    before, after = found(looks), found(looks, alice="ward b")
+    assert before.places != after.places and news(before, after) == ()
+    there = 'robot.find("Alice", place="ward a")\n'
+    assert not found(there).looks_everywhere
+    older = encoded(before).replace(',"looks_everywhere":true', "")
+    assert [each.kind for each in news(decoded(older), after)] == ["place"], "as it was kept then"

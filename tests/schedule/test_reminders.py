@@ -147,6 +147,16 @@ def test_she_is_somewhere_else_and_is_found_there(opened: Opened) -> None:
         assert [(row["result"], row["place"]) for row in record(ward)] == [("yes", "ward b")]
 
 
+def test_she_walks_about_all_day(opened: Opened) -> None:
+    """Where she was when it was approved is no matter."""
+    with opened(world("yes", "yes", "yes", "yes", walks=("ward b", "corridor", "ward a"))) as ward:
+        reminded(ward)
+        for number, time in enumerate(("11-30 10", "11-30 16", "12-01 10", "12-01 16"), 1):
+            ward.clock.set(f"2026-{time}:00")
+            ward.until(["done"] * number)
+        assert [row["result"] for row in record(ward)] == ["yes"] * 4
+
+
 def test_two_reminders_for_one_person(opened: Opened) -> None:
     with opened(world("yes", "no")) as ward:
         reminded(ward)
