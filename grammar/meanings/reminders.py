@@ -16,7 +16,7 @@ from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse
 from grammar.meanings.persons import is_me
 from grammar.meanings.registry import meaning
-from grammar.meanings.reminded import Reminded
+from grammar.meanings.reminded import Of, Reminded
 from grammar.meanings.requests import request
 from grammar.plan import (
     Ask,
@@ -74,7 +74,7 @@ def reminding(plan: Plan, d: Discourse) -> Plan:
     person = reminded.person
     whom = person.value if person is not None and person.known and person.group is None else None
     several = person is not None and (person.plural or person.text == ANYONE)
-    asking = _Asking(d, saying, f"reminder_of_{reminded.of}", several)
+    asking = _Asking(d, saying, reminded.of, several)
     return msgspec.structs.replace(plan, steps=asking.inside(plan.steps, whom))
 
 
@@ -90,10 +90,10 @@ def _is_failure(said: Call | Ask, plan: Plan) -> bool:
 class _Asking:
     """Puts the question behind what is said."""
 
-    def __init__(self, d: Discourse, saying: Call | Ask, phrase: str, several: bool) -> None:
+    def __init__(self, d: Discourse, saying: Call | Ask, of: Of, several: bool) -> None:
         self.d = d
         self.saying = saying
-        self.phrase = phrase
+        self.of = of
         self.several = several
 
     def inside(self, steps: tuple[Step, ...], person: Value | None) -> tuple[Step, ...]:
@@ -127,7 +127,7 @@ class _Asking:
         d = self.d
         yes, no = Text(d.language.phrase("yes")), Text(d.language.phrase("no"))
         question: dict[str, Value] = {
-            "question": d.sentence(self.phrase),
+            "question": d.sentence(f"reminder_of_{self.of}"),
             "options": Items((yes, no)),
         }
         if person is not None:
@@ -135,6 +135,8 @@ class _Asking:
         unanswered = Compare(Recall(ANSWER), "==", Text(""))
         ask = Try((Call("ask", question, ANSWER),), (Remember(ANSWER, Text("")),))
         trying = Repeat(Number(TRIES), (*said, ask, If(Not(unanswered), (End(),))))
+        if self.of == "fact":  # understood or not, there is nothing to thank for
+            return (trying,)
         told = d.say("reminder_not_done")
         otherwise = If(Compare(Recall(ANSWER), "==", no), (told,))
         thanked = If(Compare(Recall(ANSWER), "==", yes), (d.say("thanks"),), (otherwise,))

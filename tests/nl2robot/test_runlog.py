@@ -143,15 +143,18 @@ def test_a_log_from_before_movements_were_measured_is_read_and_goes_on(tmp_path)
     database = sqlite3.connect(tmp_path / "runs.sqlite")
     database.execute("ALTER TABLE runs DROP COLUMN stood")
     database.execute("ALTER TABLE calls DROP COLUMN made")
+    database.execute("ALTER TABLE calls DROP COLUMN place")
     database.execute("PRAGMA user_version = 7")
     database.commit()
     database.close()
     log = RunLog(tmp_path / "runs.sqlite")
     assert (log.run(run).stood, log.calls(run)[0].made) == (None, None)
-    log.call_ends(run, 1, 2.0, error="Stopped: So.", made='{"metres":1.0,"degrees":0.0}')
+    log.call_ends(
+        run, 1, 2.0, error="Stopped: So.", made='{"metres":1.0,"degrees":0.0}', place="hall"
+    )
     log.stands_at(run, '{"x":1.0,"y":0.0,"theta":0.0}')
     assert log.whole(log.run(run))["calls"][0]["made"] == '{"metres":1.0,"degrees":0.0}'
-    assert log.run(run).stood is not None
+    assert log.run(run).stood is not None and log.calls(run)[0].place == "hall"
     log.close()
 
 
