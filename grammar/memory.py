@@ -131,7 +131,7 @@ class Answers:
     request: Any = None
     """What somebody was asked to do last (`grammar.meanings.requested.Request`)."""
     reminded: Any = None
-    """Who was reminded by the last message (`grammar.meanings.reminded.Reminded`), if anybody."""
+    """Who was reminded by the last message (`grammar.reminders.reminded.Reminded`), if anybody."""
     undelivered: Any = None
     """That of somebody who is not there, and what was known then (`grammar.meanings.absences`)."""
     instead_of: str | None = None

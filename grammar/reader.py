@@ -24,7 +24,6 @@ from grammar.freetext import Doubt, doubtful, words_for
 from grammar.language import Language, speech
 from grammar.lexicon import Lexicon
 from grammar.meanings.offers import with_offers_kept
-from grammar.meanings.reminders import reminding
 from grammar.memory import Command, Deliveries, People, Scene
 from grammar.names import Names
 from grammar.naming import joined_up, naming, place_called
@@ -34,6 +33,7 @@ from grammar.planning.by_the_clock import by_the_clock
 from grammar.plausible import implausible
 from grammar.prepared import prepared
 from grammar.refusals import forbidden, is_half, no_thing, not_said, out_of_range, strange, why_not
+from grammar.reminders.reminding import reminding
 from grammar.report_after_loop import told_when_all_are_asked
 from grammar.requests import Request
 from grammar.samples import nearest_phrases

@@ -56,7 +56,6 @@ import grammar.meanings.quantifiers
 import grammar.meanings.questions
 import grammar.meanings.references
 import grammar.meanings.remarks
-import grammar.meanings.reminders
 import grammar.meanings.repeating
 import grammar.meanings.requests
 import grammar.meanings.rounds
@@ -78,4 +77,5 @@ import grammar.meanings.visiting
 import grammar.meanings.volunteers
 import grammar.meanings.waiting
 import grammar.meanings.when_found
-import grammar.meanings.whereabouts  # noqa: F401 (each enters its meanings)
+import grammar.meanings.whereabouts
+import grammar.reminders.reminding  # noqa: F401 (each enters its meanings)

@@ -10,9 +10,9 @@ from grammar.meanings.persons import guest_for
 from grammar.meanings.questions import turn_to_you
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning
-from grammar.meanings.reminded import note_reminder
 from grammar.meanings.requested import Request
 from grammar.plan import Call, Text
+from grammar.reminders.reminded import note_reminder
 from grammar.wordorder import asked_of_you
 
 

@@ -23,12 +23,12 @@ from grammar.meanings.persons import guest_for, is_me, person_me
 from grammar.meanings.questions import turn_to_you
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning
-from grammar.meanings.reminded import note_reminder
 from grammar.meanings.rooms import in_words, room_spoken_of
 from grammar.meanings.speaking import put_for, sentence_form
 from grammar.meanings.verb_forms import base_form
 from grammar.names import names_of
 from grammar.plan import Call, Recall, Text
+from grammar.reminders.reminded import note_reminder
 from grammar.tokens import COMMA, STOP, Token
 from grammar.wordorder import direct_clause, is_direct
 

@@ -1,7 +1,7 @@
 """What came of a reminder, read from the calls of its run and from nothing else.
 
 A program reminds somebody if it keeps the answer to a question of its own as `reminder_done`
-(`grammar.meanings.reminders` writes it so). What is found out is by person: what was said to them,
+(`grammar.reminders.reminding` writes it so). What is found out is by person: what was said to them,
 when and where, and what they answered.
 """
 

@@ -16,7 +16,6 @@ from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse
 from grammar.meanings.persons import is_me
 from grammar.meanings.registry import meaning
-from grammar.meanings.reminded import Of, Reminded
 from grammar.meanings.requests import request
 from grammar.plan import (
     Ask,
@@ -38,6 +37,7 @@ from grammar.plan import (
     Try,
     Value,
 )
+from grammar.reminders.reminded import Of, Reminded
 from grammar.requests import Request
 from grammar.traversal import nodes
 
