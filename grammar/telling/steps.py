@@ -95,6 +95,8 @@ class Teller(ValueTeller):
     def _called(self, name: str, step: p.Step) -> Iterator[str]:
         readable = name.replace("_", " ")
         match step:
+            case _ if (sort := sort_of(name)) in self.words.findings and sort in self.words.names:
+                yield self.words.names[sort]  # however it is found out
             case p.Call():
                 words = self.words.methods[step.method]
                 if words.first and step == as_call(self.plan.steps[0]):

@@ -9,6 +9,7 @@ import pytest
 
 from grammar.program import write_program
 from grammar.requests import When
+from grammar.summary import summary
 from grammar.understand import understand
 from tests.grammar.hospitals import hospital
 
@@ -148,3 +149,28 @@ def test_one_moment_is_waited_for(time: str) -> None:
 )
 def test_what_is_no_reminder_of_the_ward_is_only_said(sentence: str) -> None:
     assert "reminder_done" not in program(sentence)
+
+
+@pytest.mark.parametrize(
+    ("language", "sentence", "told"),
+    [
+        (
+            *("en", "remind Alice to drink"),
+            "I will look for Alice. Twice I will say “Please drink”, ask Alice “Have you done it?”"
+            " and, if somebody answers, go no further. If the answer to the reminder is “yes”, I"
+            " will say “Thank you”. Otherwise, if the answer to the reminder is “no”, I will say"
+            " “All right. Thank you for telling me”. If I do not find Alice, I will say so.",
+        ),
+        (
+            *("de", "erinnere Alice daran zu trinken"),
+            "Ich werde Alice suchen. Zweimal werde ich „Bitte trinken Sie“ sagen, Alice „Haben Sie"
+            " das gemacht?“ fragen und, wenn jemand antwortet, damit aufhören. Wenn die Antwort auf"
+            " die Erinnerung „ja“ ist, werde ich „Vielen Dank“ sagen. Sonst, wenn die Antwort auf"
+            " die Erinnerung „nein“ ist, werde ich „In Ordnung. Danke, dass Sie es mir sagen“"
+            " sagen. Wenn ich Alice nicht finde, werde ich das melden.",
+        ),
+    ],
+)
+def test_what_it_does_is_told_in_plain_words(language: str, sentence: str, told: str) -> None:
+    understood = understand(sentence, hospital(language), language)
+    assert understood.plan is not None and summary(understood.plan, language) == told
