@@ -267,7 +267,10 @@ class Proposals:
                     f"Proposal {number} has waited too long and does not hold any more. Whoever"
                     " made it may make it again."
                 )
-        raise UserError(f"Proposal {number} was {found.state} by {found.decided_by} already.")
+            case "approved":
+                raise UserError(f"Proposal {number} was approved by {found.decided_by} already.")
+            case "declined":
+                raise UserError(f"Proposal {number} was declined by {found.decided_by} already.")
 
     def _decide(self, number: int, state: State, by: str | None, **more: Any) -> Proposal:
         """With the lock."""
